@@ -3,7 +3,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use linkwork::{Lanes, RheonomicDerivatives, mechanism};
+use linkwork::{Derivatives, Lanes, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 

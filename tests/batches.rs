@@ -1,6 +1,6 @@
 //! Batched functions of several states return, in each lane, the same bits as the function of a single state.
 
-use linkwork::Rheonomic;
+use linkwork::Mechanism;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use std::any::type_name;
@@ -365,7 +365,8 @@ fn a_lanewise_mechanism_is_a_mechanism() {
         m: &M,
         v: M::Scalar,
     ) -> M::Scalar {
-        m.kinetic_energy(&m.neutral(), &SVector::repeat(v)) + m.potential_energy(&m.neutral())
+        let t = v - v;
+        m.kinetic_energy(t, &m.neutral(), &SVector::repeat(v)) + m.potential_energy(t, &m.neutral())
     }
     let found = energy(&at(&Ur5.lanes::<4>(), Lanes::splat(0.0)), Lanes([0.0, 1.0, 2.0, 3.0]));
     for k in 0..4 {

@@ -86,8 +86,8 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
     let mut random = Random::new(12);
     for _ in 0..8 {
         let (q, v) = (random.configuration(robot), random.vector(2.0));
-        let tau = robot.generalized_forces(&q, &v, &random.vector(20.0));
-        let a = robot.forward_dynamics(&q, &v, &tau);
+        let tau = robot.generalized_forces(0.0, &q, &v, &random.vector(20.0));
+        let a = robot.forward_dynamics(0.0, &q, &v, &tau);
         let rate = matrix(&q) * a + bias(&q, &v);
         let weight = [0.0, 0.0, -9.81 * mass, 0.0, 0.0, 0.0];
         assert_similar("rate of momentum", rate.as_slice(), &weight, 1e-9);

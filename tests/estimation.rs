@@ -4,7 +4,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
-use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, discrete};
+use linkwork::{Derivatives, OutputDerivatives, Outputs, discrete};
 use support::random::Random;
 
 /// Load that swings and rotates on a ball joint, with a gyroscope and an accelerometer.
@@ -54,7 +54,7 @@ struct Belief {
 /// (Bell and Cathey, *The iterated Kalman filter update as a Gauss-Newton method*, 1993).
 fn update<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
 where
-    M: RheonomicDerivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
+    M: Derivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
 {
     let u = SVector::from([]);
     let step = discrete::transition(m, &Rk4::step(PERIOD), 0.0, &belief.q, &belief.v, &u).unwrap();
@@ -104,7 +104,7 @@ fn run<M, const NY: usize>(
     gusts: f64,
 ) -> (SVector<f64, 6>, Belief, SVector<f64, 4>)
 where
-    M: RheonomicDerivatives<4, 3, 0, Scalar = f64>
+    M: Derivatives<4, 3, 0, Scalar = f64>
         + OutputDerivatives<4, 3, 0, NY, Scalar = f64>
         + Outputs<4, 3, 0, NY, Scalar = f64>,
 {

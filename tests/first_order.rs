@@ -3,7 +3,7 @@
 use linkwork::integrate::Method;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{OutputDerivatives, Outputs, Rheonomic, RheonomicDerivatives, mechanism};
+use linkwork::{Derivatives, Mechanism, OutputDerivatives, Outputs, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
@@ -111,7 +111,7 @@ const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
 
 #[test]
 fn states_are_named_after_the_velocities() {
-    fn names<M: Rheonomic<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+    fn names<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
         _: &M,
     ) -> [&'static str; NV] {
         assert_eq!(M::FIRST_ORDER, 2);
@@ -145,8 +145,8 @@ fn the_rates_are_what_was_written() {
         let own = v.fixed_rows::<6>(0).into_owned();
         let whole = fighter.extended();
         let found = whole.forward_dynamics(t, &q, &v, &whole.generalized_forces(t, &q, &v, &u));
-        let tau = Rheonomic::generalized_forces(&now, t, &q, &own, &u);
-        let accelerations = Rheonomic::forward_dynamics(&now, t, &q, &own, &tau);
+        let tau = Mechanism::generalized_forces(&now, t, &q, &own, &u);
+        let accelerations = Mechanism::forward_dynamics(&now, t, &q, &own, &tau);
         assert_similar("v̇", found.fixed_rows::<6>(0).as_slice(), accelerations.as_slice(), 1e-14);
         // Velocities are expressed in body axes.
         let speed = own.fixed_rows::<3>(0).norm();

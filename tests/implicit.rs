@@ -2,10 +2,10 @@
 //! evaluations of the dynamics.
 
 use linkwork::contact::{self, Touch};
-use linkwork::integrate::{DormandPrince8, Method, Rodas, Rosenbrock};
+use linkwork::integrate::{DormandPrince8, Hooks, Method, Rodas, Rosenbrock};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use linkwork::{ByMotion, ConstrainedDerivatives, ConstraintError, Rheonomic, at, constraint::stabilized};
+use linkwork::{ByMotion, ConstrainedDerivatives, ConstraintError, Mechanism, at, constraint::stabilized};
 use linkwork_models::{CarAxle, RollingDisk};
 use std::cell::Cell;
 
@@ -29,18 +29,15 @@ macro_rules! pass {
     )*};
 }
 
-impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Rheonomic<NQ, NV, NU>
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Mechanism<NQ, NV, NU>
     for Counted<'_, M, KNOWN>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     type Scalar = f64;
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; NU] = M::INPUTS;
-    const CONSTRAINED: bool = M::CONSTRAINED;
-    const FEEDBACK: bool = M::FEEDBACK;
-    const FIRST_ORDER: usize = M::FIRST_ORDER;
 
     fn neutral(&self) -> SVector<f64, NQ> {
         self.mechanism.neutral()
@@ -64,6 +61,27 @@ where
         self.count.set(self.count.get() + 1);
         self.mechanism.forward_dynamics(t, q, v, tau)
     }
+    pass! {
+        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
+        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
+        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
+        generalized_forces(q: NQ, v: NV, u: NU) -> SVector<f64, NV>;
+        kinetic_energy(q: NQ, v: NV) -> f64;
+        potential_energy(q: NQ) -> f64;
+        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
+        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
+    }
+}
+
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Hooks<f64, NQ, NV, NU>
+    for Counted<'_, M, KNOWN>
+where
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+
     fn impulse(
         &self,
         t: f64,
@@ -84,14 +102,6 @@ where
         if KNOWN { self.mechanism.acceleration_derivatives(t, q, v, u) } else { None }
     }
     pass! {
-        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
-        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
-        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
-        generalized_forces(q: NQ, v: NV, u: NU) -> SVector<f64, NV>;
-        kinetic_energy(q: NQ, v: NV) -> f64;
-        potential_energy(q: NQ) -> f64;
-        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
-        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
         project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
         is_nearly_singular(q: NQ, dv: NV) -> bool;
     }
@@ -197,7 +207,7 @@ fn evaluations<M, const NQ: usize, const NV: usize>(
     v: SVector<f64, NV>,
 ) -> [usize; 2]
 where
-    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+    M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
     fn count<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
         m: &Counted<'_, M, KNOWN>,
@@ -205,7 +215,7 @@ where
         v: SVector<f64, NV>,
     ) -> usize
     where
-        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+        M: Mechanism<NQ, NV, 1, Scalar = f64>,
     {
         let method = Rodas::new().tolerance(1e-2, 1e-2).initial_step(1e-6).max_step(1e-6);
         simulate(m).from(q, v).method(method).duration(1e-6).finish().unwrap();
@@ -221,7 +231,7 @@ fn ends<M, S, const NQ: usize, const NV: usize>(
     method: S,
 ) -> [(SVector<f64, NQ>, SVector<f64, NV>); 2]
 where
-    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+    M: Mechanism<NQ, NV, 1, Scalar = f64>,
     S: Method<f64> + Clone,
 {
     fn end<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
@@ -230,7 +240,7 @@ where
         method: S,
     ) -> (SVector<f64, NQ>, SVector<f64, NV>)
     where
-        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+        M: Mechanism<NQ, NV, 1, Scalar = f64>,
         S: Method<f64>,
     {
         let last = NV - 1;
@@ -246,7 +256,7 @@ where
 #[track_caller]
 fn agree<M, const NQ: usize, const NV: usize>(m: &M, start: (SVector<f64, NQ>, SVector<f64, NV>))
 where
-    M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+    M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
     let [known, differences] = ends(m, start, Rodas::new().tolerance(1e-8, 1e-10));
     let gap = |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
@@ -350,10 +360,10 @@ fn derivatives_spare_two_evaluations_for_each_velocity() {
 #[test]
 fn wrappers_pass_derivatives_on_that_they_do_not_change() {
     let (cart, q, v, u) = (Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into(), [0.3].into());
-    let known = Mechanism::acceleration_derivatives(&cart, &q, &v, &u);
+    let known = Hooks::acceleration_derivatives(&cart, 0.0, &q, &v, &u);
     assert!(known.is_some());
-    assert_eq!(known, Mechanism::acceleration_derivatives(&&cart, &q, &v, &u));
-    assert_eq!(known, Mechanism::acceleration_derivatives(&at(&cart, 0.0), &q, &v, &u));
+    assert_eq!(known, Hooks::acceleration_derivatives(&&cart, 0.0, &q, &v, &u));
+    assert_eq!(known, Hooks::acceleration_derivatives(&at(&cart, 0.0), 0.0, &q, &v, &u));
     let linear = cart.linear_motion(&q, &v, &u);
     assert_eq!(known, Some((linear.by_q, linear.by_v, linear.by_u)));
 }
@@ -366,7 +376,7 @@ fn differences<M, const NQ: usize, const NV: usize, const NU: usize>(
     u: &SVector<f64, NU>,
 ) -> ByMotion<f64, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let accelerated = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
@@ -459,7 +469,7 @@ fn lanes_have_derivatives() {
     let end = end.finish().unwrap();
     for k in 0..4 {
         let (q, v) = of(k);
-        let alone = Mechanism::acceleration_derivatives(&cart, &q, &v, &[0.3].into()).unwrap();
+        let alone = Hooks::acceleration_derivatives(&cart, 0.0, &q, &v, &[0.3].into()).unwrap();
         let motion = cart.linear_motion(&q, &v, &[0.3].into());
         assert_eq!(motion.acceleration, linear.acceleration.map(|x| x.0[k]));
         assert_eq!(alone.0, by_q.map(|x| x.0[k]));

@@ -81,7 +81,7 @@ where
     T: Real,
     M: Mechanism<1, 1, NU, Scalar = T>,
 {
-    m.mass_matrix(&m.neutral())[0]
+    m.mass_matrix(T::zero(), &m.neutral())[0]
 }
 
 #[test]

@@ -200,7 +200,7 @@ fn three_fingers_agree() {
         let (q, v, a) = (vector(), vector(), vector());
         let (m, tau) = (gripper.mass_matrix(&q), gripper.inverse_dynamics(&q, &v, &a));
         assert!((m * a + gripper.bias_forces(&q, &v) - tau).amax() < 1e-6);
-        assert!((v.dot(&(m * v)) / 2.0 - Mechanism::kinetic_energy(&gripper, &q, &v)).abs() < 1e-6);
+        assert!((v.dot(&(m * v)) / 2.0 - Mechanism::kinetic_energy(&gripper, 0.0, &q, &v)).abs() < 1e-6);
         // The inertia of one finger does not couple to another.
         assert!((0..2).all(|i| (2..6).all(|j| m[(i, j)] == 0.0)));
         assert!((gripper.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-3);

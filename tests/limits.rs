@@ -1,7 +1,7 @@
 //! Joint limits of files and of structs, as generic code accesses them.
 
 use linkwork::nalgebra::SVector;
-use linkwork::{Limits, Mechanism, Real, Rheonomic, at, mechanism};
+use linkwork::{Limits, Mechanism, Real, at, mechanism};
 use linkwork_models::{AnymalB, Panda, PandaArm, SimpleHumanoid, Solo12, Ur5};
 
 const NONE: f64 = f64::INFINITY;
@@ -168,7 +168,7 @@ fn limits_do_not_depend_on_time() {
     let turning = Turning { rate: 2.0, bead_range: 0.25 };
     assert_eq!(turning.upper_limits()[0], 0.25);
     assert_eq!(at(&turning, 3.0).clamp_configuration(&vector([-1.0]))[0], -0.25);
-    assert_eq!(Rheonomic::neutral(&turning)[0], 0.0);
+    assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 
 /// Robot with kinematics only.

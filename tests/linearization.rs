@@ -47,18 +47,18 @@ macro_rules! check_differences {
             let u: SVector<f64, NU> = random.vector(1.0);
 
             let (by_q, by_v) = $at.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
-            check_columns("∂τ/∂q", &by_q, |d| m.inverse_dynamics(&m.integrate(&q, &d), &v, &a));
-            check_columns("∂τ/∂v", &by_v, |d| m.inverse_dynamics(&q, &(v + d), &a));
+            check_columns("∂τ/∂q", &by_q, |d| Mechanism::inverse_dynamics(m, 0.0, &m.integrate(&q, &d), &v, &a));
+            check_columns("∂τ/∂v", &by_v, |d| Mechanism::inverse_dynamics(m, 0.0, &q, &(v + d), &a));
 
             let (by_q, by_v, inverse) = $at.forward_dynamics_derivatives($($t,)? &q, &v, &tau);
-            check_columns("∂v̇/∂q", &by_q, |d| m.forward_dynamics(&m.integrate(&q, &d), &v, &tau));
-            check_columns("∂v̇/∂v", &by_v, |d| m.forward_dynamics(&q, &(v + d), &tau));
-            check_columns("∂v̇/∂τ", &inverse, |d| m.forward_dynamics(&q, &v, &(tau + d)));
+            check_columns("∂v̇/∂q", &by_q, |d| Mechanism::forward_dynamics(m, 0.0, &m.integrate(&q, &d), &v, &tau));
+            check_columns("∂v̇/∂v", &by_v, |d| Mechanism::forward_dynamics(m, 0.0, &q, &(v + d), &tau));
+            check_columns("∂v̇/∂τ", &inverse, |d| Mechanism::forward_dynamics(m, 0.0, &q, &v, &(tau + d)));
             assert_close("M⁻¹", $at.mass_matrix_inverse($($t,)? &q).as_slice(), inverse.as_slice(), 1e-9);
 
             let (state, input) = $at.linearize($($t,)? &q, &v, &u);
             check_columns("B", &input, |d| {
-                let change = m.forward_dynamics(&q, &v, &Mechanism::generalized_forces(m, &q, &v, &(u + d)));
+                let change = Mechanism::forward_dynamics(m, 0.0, &q, &v, &Mechanism::generalized_forces(m, 0.0, &q, &v, &(u + d)));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { 0.0 } else { change[i - NV] })
             });
             check_columns("A", &state, |d| {
@@ -66,7 +66,7 @@ macro_rules! check_differences {
                 let (start, w) = (m.integrate(&q, &dq), v + dv);
                 // Rate of change of the displacement from one motion to the other.
                 let apart = slope(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
-                let change = m.forward_dynamics(&start, &w, &Mechanism::generalized_forces(m, &start, &w, &u));
+                let change = Mechanism::forward_dynamics(m, 0.0, &start, &w, &Mechanism::generalized_forces(m, 0.0, &start, &w, &u));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
             });
         }

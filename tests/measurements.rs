@@ -2,7 +2,7 @@
 //! differences, and all outputs as one vector.
 
 use linkwork::prelude::*;
-use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, index_of};
+use linkwork::{Derivatives, OutputDerivatives, Outputs, index_of};
 use support::random::Random;
 
 /// Flying body with a load on a ball joint, with a gyroscope, an accelerometer, an altimeter, a current and a
@@ -165,7 +165,7 @@ fn close<const R: usize, const C: usize>(
 
 fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(m: &M)
 where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64> + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
     M: Outputs<NQ, NV, NU, NY, Scalar = f64>,
 {
     for seed in 0..3 {
@@ -182,8 +182,8 @@ where
         // In the total derivatives, accelerations are functions of state and inputs.
         let now = at(m, t);
         let measured = |q: &_, v: &_, u: &_| {
-            let tau = Mechanism::generalized_forces(&now, q, v, u);
-            m.outputs(t, q, v, &Mechanism::forward_dynamics(&now, q, v, &tau), u)
+            let tau = Mechanism::generalized_forces(&now, 0.0, q, v, u);
+            m.outputs(t, q, v, &Mechanism::forward_dynamics(&now, 0.0, q, v, &tau), u)
         };
         let motion = now.linear_motion(&q, &v, &u);
         let found = m.output_derivatives(t, &q, &v, &motion.acceleration, &u).in_motion(&motion);

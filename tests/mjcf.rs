@@ -29,14 +29,19 @@ where
         let of = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, u) = (&case.vector("q"), &case.vector("v"), &case.vector("u"));
         let mass_matrix = case.symmetric::<NV>("M");
-        assert_close(of("mass matrix"), robot.mass_matrix(q).as_slice(), mass_matrix.as_slice(), TOLERANCE);
-        let bias = robot.bias_forces(q, v);
+        assert_close(
+            of("mass matrix"),
+            robot.mass_matrix(0.0, q).as_slice(),
+            mass_matrix.as_slice(),
+            TOLERANCE,
+        );
+        let bias = robot.bias_forces(0.0, q, v);
         assert_close(of("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
-        let forces = robot.generalized_forces(q, v, u);
+        let forces = robot.generalized_forces(0.0, q, v, u);
         assert_close(of("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
         // MuJoCo's friction is a constraint and is not part of these reference values; here it is a force.
         let tau = forces + case.vector("friction");
-        let a = robot.forward_dynamics(q, v, &tau);
+        let a = robot.forward_dynamics(0.0, q, v, &tau);
         assert_close(of("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
     }
 }

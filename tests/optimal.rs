@@ -4,7 +4,7 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{Indefinite, Policy, Quadratic, Value, backward};
 use linkwork::prelude::*;
-use linkwork::{RheonomicSecondDerivatives, discrete};
+use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
 
 /// Two links in a vertical plane with a motor at the shoulder only.
@@ -239,7 +239,7 @@ impl Problem {
         curved: bool,
     ) -> Option<(Vec<Policy<f64, 2, 1>>, f64)>
     where
-        M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
+        M: SecondDerivatives<2, 2, 1, Scalar = f64>,
     {
         let (mut to_go, mut policies, mut slope) = (self.last(&states[STEPS]), Vec::new(), 0.0_f64);
         // The adjoint of the trajectory is the weight of the dynamics' curvature and gives the gradient,
@@ -275,7 +275,7 @@ impl Problem {
         length: f64,
     ) -> (Vec<State>, Vec<SVector<f64, 1>>)
     where
-        M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
+        M: SecondDerivatives<2, 2, 1, Scalar = f64>,
     {
         let (mut all, mut new) = (vec![states[0]], Vec::new());
         for ((policy, u), (q, v)) in policies.iter().zip(inputs).zip(states) {

@@ -28,17 +28,22 @@ where
         let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
         let mass_matrix = case.symmetric::<NV>("M");
 
-        assert_close(of("mass matrix"), robot.mass_matrix(q).as_slice(), mass_matrix.as_slice(), DYNAMICS);
-        let bias = robot.bias_forces(q, v);
+        assert_close(
+            of("mass matrix"),
+            robot.mass_matrix(0.0, q).as_slice(),
+            mass_matrix.as_slice(),
+            DYNAMICS,
+        );
+        let bias = robot.bias_forces(0.0, q, v);
         assert_close(of("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
-        let inverse = robot.inverse_dynamics(q, v, a);
+        let inverse = robot.inverse_dynamics(0.0, q, v, a);
         assert_close(of("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
-        let forward = robot.forward_dynamics(q, v, tau);
+        let forward = robot.forward_dynamics(0.0, q, v, tau);
         assert_close(of("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
-        let energies = [robot.kinetic_energy(q, v), robot.potential_energy(q)];
+        let energies = [robot.kinetic_energy(0.0, q, v), robot.potential_energy(0.0, q)];
         let expected = [case.number("kinetic_energy"), case.number("potential_energy")];
         assert_close(of("energies"), &energies, &expected, DYNAMICS);
-        let momentum = robot.generalized_momentum(q, v);
+        let momentum = robot.generalized_momentum(0.0, q, v);
         assert_close(of("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
     }
 }
@@ -55,7 +60,7 @@ where
     assert_eq!(M::CONFIGURATION[NQ - NU..], *joints);
 
     let u = SVector::from_fn(|i, _| i as f64 + 0.5);
-    let forces = robot.generalized_forces(&robot.neutral(), &SVector::zeros(), &u);
+    let forces = robot.generalized_forces(0.0, &robot.neutral(), &SVector::zeros(), &u);
     for (i, force) in forces.iter().enumerate() {
         let expected = if i < NV - NU { 0.0 } else { u[i - (NV - NU)] };
         assert_eq!(*force, expected, "{name}: force on velocity {i}");

@@ -3,7 +3,7 @@
 use linkwork::discrete::{self, StepByParameters};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::{Rk4, SemiImplicitEuler};
-use linkwork::{RheonomicDerivatives, Sensitivities, mechanism};
+use linkwork::{Derivatives, Sensitivities, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
@@ -228,7 +228,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP:
     method: &S,
     parameters: [fn(&mut M) -> &mut f64; NP],
 ) where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64> + Sensitivities<NQ, NV, NU, NP, Scalar = f64> + Copy,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + Sensitivities<NQ, NV, NU, NP, Scalar = f64> + Copy,
     S: StepByParameters<f64>,
 {
     let mut random = Random::new(37);

@@ -109,7 +109,7 @@ where
         bench.pair(
             "mass matrix",
             operations.function("mass_matrix"),
-            |s| robot.mass_matrix(&s.q),
+            |s| robot.mass_matrix(0.0, &s.q),
             |g, s| {
                 g.model.mass_matrix(&mut g.data, s.q.as_slice(), &mut g.matrix);
                 g.matrix.as_slice()
@@ -118,7 +118,7 @@ where
         bench.pair(
             "bias forces",
             operations.function("bias_forces"),
-            |s| robot.bias_forces(&s.q, &s.v),
+            |s| robot.bias_forces(0.0, &s.q, &s.v),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
                 let (q, v) = (s.q.as_slice(), s.v.as_slice());
@@ -129,7 +129,7 @@ where
         bench.pair(
             "inverse dynamics",
             operations.function("inverse_dynamics"),
-            |s| robot.inverse_dynamics(&s.q, &s.v, &s.a),
+            |s| robot.inverse_dynamics(0.0, &s.q, &s.v, &s.a),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
                 let (q, v, a) = (s.q.as_slice(), s.v.as_slice(), s.a.as_slice());
@@ -140,7 +140,7 @@ where
         bench.pair(
             "forward dynamics",
             operations.function("forward_dynamics"),
-            |s| robot.forward_dynamics(&s.q, &s.v, &s.tau),
+            |s| robot.forward_dynamics(0.0, &s.q, &s.v, &s.tau),
             |g, s| {
                 let a = g.vector.as_mut_slice();
                 let (q, v, tau) = (s.q.as_slice(), s.v.as_slice(), s.tau.as_slice());
@@ -151,7 +151,7 @@ where
         bench.pair(
             "kinetic energy",
             operations.function("kinetic_energy"),
-            |s| SVector::<f64, 1>::new(robot.kinetic_energy(&s.q, &s.v)),
+            |s| SVector::<f64, 1>::new(robot.kinetic_energy(0.0, &s.q, &s.v)),
             |g, s| {
                 let energy = g.model.kinetic_energy(&mut g.data, s.q.as_slice(), s.v.as_slice());
                 g.vector[0] = energy;

@@ -4,7 +4,7 @@
 use linkwork::integrate::Method;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use linkwork::{ByMotion, ConstraintError, Rheonomic};
+use linkwork::{ByMotion, ConstraintError, Mechanism};
 use linkwork_models::{AndrewsSqueezer, CarAxle};
 use std::cell::Cell;
 use std::time::Instant;
@@ -110,15 +110,14 @@ macro_rules! pass {
     )*};
 }
 
-impl<M, const NQ: usize, const NV: usize> Rheonomic<NQ, NV, 0> for Counted<'_, M>
+impl<M, const NQ: usize, const NV: usize> Mechanism<NQ, NV, 0> for Counted<'_, M>
 where
-    M: Rheonomic<NQ, NV, 0, Scalar = f64>,
+    M: Mechanism<NQ, NV, 0, Scalar = f64>,
 {
     type Scalar = f64;
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
     const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
     const INPUTS: [&'static str; 0] = [];
-    const CONSTRAINED: bool = M::CONSTRAINED;
 
     fn neutral(&self) -> SVector<f64, NQ> {
         self.mechanism.neutral()
@@ -142,6 +141,32 @@ where
         count(self.evaluations);
         self.mechanism.forward_dynamics(t, q, v, tau)
     }
+    fn generalized_forces(
+        &self,
+        _t: f64,
+        _q: &SVector<f64, NQ>,
+        _v: &SVector<f64, NV>,
+        _u: &SVector<f64, 0>,
+    ) -> SVector<f64, NV> {
+        SVector::zeros()
+    }
+    pass! {
+        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
+        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
+        kinetic_energy(q: NQ, v: NV) -> f64;
+        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
+        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
+        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
+        potential_energy(q: NQ) -> f64;
+    }
+}
+
+impl<M, const NQ: usize, const NV: usize> linkwork::integrate::Hooks<f64, NQ, NV, 0> for Counted<'_, M>
+where
+    M: Mechanism<NQ, NV, 0, Scalar = f64>,
+{
+    const CONSTRAINED: bool = M::CONSTRAINED;
+
     fn impulse(
         &self,
         t: f64,
@@ -151,15 +176,6 @@ where
         p: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
         self.mechanism.impulse(t, q, v, h, p)
-    }
-    fn generalized_forces(
-        &self,
-        _t: f64,
-        _q: &SVector<f64, NQ>,
-        _v: &SVector<f64, NV>,
-        _u: &SVector<f64, 0>,
-    ) -> SVector<f64, NV> {
-        SVector::zeros()
     }
     fn acceleration_derivatives(
         &self,
@@ -172,13 +188,6 @@ where
         self.mechanism.acceleration_derivatives(t, q, v, u)
     }
     pass! {
-        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
-        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
-        kinetic_energy(q: NQ, v: NV) -> f64;
-        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
-        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
-        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
-        potential_energy(q: NQ) -> f64;
         project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
         is_nearly_singular(q: NQ, dv: NV) -> bool;
     }
@@ -204,7 +213,7 @@ trait Visit {
     type Result;
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
     where
-        M: Rheonomic<N, N, 0, Scalar = f64>;
+        M: Mechanism<N, N, 0, Scalar = f64>;
 }
 
 fn with<V: Visit>(problem: usize, visit: V) -> V::Result {
@@ -223,7 +232,7 @@ impl<S: Method<f64> + Clone> Visit for Solve<S> {
 
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
     where
-        M: Rheonomic<N, N, 0, Scalar = f64>,
+        M: Mechanism<N, N, 0, Scalar = f64>,
     {
         let mut best: Option<Found> = None;
         for _ in 0..5 {
@@ -263,7 +272,7 @@ impl Visit for Start {
 
     fn visit<M, const N: usize>(self, _: &M, (q, v): ([f64; N], [f64; N]), end: f64) -> Self::Result
     where
-        M: Rheonomic<N, N, 0, Scalar = f64>,
+        M: Mechanism<N, N, 0, Scalar = f64>,
     {
         (q.into_iter().chain(v).collect(), end)
     }
@@ -285,11 +294,11 @@ impl Visit for Rate<'_> {
 
     fn visit<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)
     where
-        M: Rheonomic<N, N, 0, Scalar = f64>,
+        M: Mechanism<N, N, 0, Scalar = f64>,
     {
         let (q, v) = self.y.split_at(N);
         let (q, v) = (SVector::from_column_slice(q), SVector::from_column_slice(v));
-        let a = Rheonomic::forward_dynamics(m, self.t, &q, &v, &SVector::zeros());
+        let a = Mechanism::forward_dynamics(m, self.t, &q, &v, &SVector::zeros());
         let (place, change) = self.rate.split_at_mut(N);
         place.copy_from_slice(v.as_slice());
         change.copy_from_slice(a.as_slice());

@@ -40,9 +40,8 @@ use std::path::PathBuf;
 ///
 /// A field of the struct is a parameter (`f64`, `f32` or the struct's own type parameter) or an element
 /// (`linkwork::elements`). Parameters remain fields. Elements define the bodies, joints and forces of the
-/// mechanism and are removed from the struct. The trait `linkwork::Mechanism` (`linkwork::Rheonomic` if the
-/// mechanism depends on time) documents the generated methods with their shapes, units and conventions; the
-/// rustdoc of the struct lists them. The guide, `linkwork::guide`, is an introduction from the beginning.
+/// mechanism and are removed from the struct. The trait `linkwork::Mechanism` documents the generated methods with their
+/// shapes, units and conventions; the rustdoc of the struct lists them. The guide, `linkwork::guide`, is an introduction from the beginning.
 ///
 /// **Order.** `#[mechanism]` must be above `#[derive(…)]`, so that the derives see the struct without its
 /// elements. The other order is reported as an error.

@@ -27,21 +27,21 @@ pub use error::Error;
 pub use lanewise::Lanewise;
 pub use rollout::{Lockstep, Progress, Rollout, unwatched};
 
-use crate::{Lanes, Rheonomic};
+use crate::{Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
 
 /// Column vector of lanes.
 type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 
 /// Mechanism with functions of several states at once, implemented by `#[mechanism(…, batch)]`. Shapes, units
-/// and conventions are those of [`Rheonomic`], for the state of every lane; `t` has no effect if the
+/// and conventions are those of [`Mechanism`], for the state of every lane; `t` has no effect if the
 /// mechanism does not depend on time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no functions of several states at once",
     label = "this needs the word `batch`",
     note = "add the word to the attribute: `#[mechanism(…, batch)]`"
 )]
-pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ, NV, NU> {
+pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
     /// Returns the mechanism with `L` lanes as its scalar type.
     fn lanes<const L: usize>(&self) -> Lanewise<'_, Self, L>
     where
@@ -50,21 +50,21 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         Lanewise::new(self)
     }
 
-    /// Returns [`integrate`](Rheonomic::integrate) of each lane: `q ⊕ dv`.
+    /// Returns [`integrate`](Mechanism::integrate) of each lane: `q ⊕ dv`.
     fn integrate_lanes<const L: usize>(
         &self,
         q: &Column<Self::Scalar, L, NQ>,
         dv: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NQ>;
 
-    /// Returns [`difference`](Rheonomic::difference) of each lane: `to ⊖ from`.
+    /// Returns [`difference`](Mechanism::difference) of each lane: `to ⊖ from`.
     fn difference_lanes<const L: usize>(
         &self,
         from: &Column<Self::Scalar, L, NQ>,
         to: &Column<Self::Scalar, L, NQ>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`tangent_rate`](Rheonomic::tangent_rate) of each lane: the rate of `dv` such that `q ⊕ dv`
+    /// Returns [`tangent_rate`](Mechanism::tangent_rate) of each lane: the rate of `dv` such that `q ⊕ dv`
     /// moves with velocity `v`.
     fn tangent_rate_lanes<const L: usize>(
         &self,
@@ -72,7 +72,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`displacement_rate`](Rheonomic::displacement_rate) of each lane: the rate of `dv` such that
+    /// Returns [`displacement_rate`](Mechanism::displacement_rate) of each lane: the rate of `dv` such that
     /// `q ⊕ dv` moves with velocity `v`, from `q`.
     fn displacement_rate_lanes<const L: usize>(
         &self,
@@ -83,14 +83,14 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         self.tangent_rate_lanes(dv, v)
     }
 
-    /// Returns [`mass_matrix`](Rheonomic::mass_matrix) of each lane: `M(t, q)`; kg, kg·m, kg·m².
+    /// Returns [`mass_matrix`](Mechanism::mass_matrix) of each lane: `M(t, q)`; kg, kg·m, kg·m².
     fn mass_matrix_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
         q: &Column<Self::Scalar, L, NQ>,
     ) -> SMatrix<Lanes<Self::Scalar, L>, NV, NV>;
 
-    /// Returns [`bias_forces`](Rheonomic::bias_forces) of each lane: `h(t, q, v)`, N and N·m.
+    /// Returns [`bias_forces`](Mechanism::bias_forces) of each lane: `h(t, q, v)`, N and N·m.
     fn bias_forces_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -98,7 +98,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`inverse_dynamics`](Rheonomic::inverse_dynamics) of each lane: `τ = M a + h`, N and N·m.
+    /// Returns [`inverse_dynamics`](Mechanism::inverse_dynamics) of each lane: `τ = M a + h`, N and N·m.
     fn inverse_dynamics_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -107,7 +107,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         a: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`forward_dynamics`](Rheonomic::forward_dynamics) of each lane: `v̇ = M⁻¹ (τ − h)`, m/s² and
+    /// Returns [`forward_dynamics`](Mechanism::forward_dynamics) of each lane: `v̇ = M⁻¹ (τ − h)`, m/s² and
     /// rad/s².
     fn forward_dynamics_lanes<const L: usize>(
         &self,
@@ -117,7 +117,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         tau: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`generalized_forces`](Rheonomic::generalized_forces) of the inputs `u` of each lane, N and
+    /// Returns [`generalized_forces`](Mechanism::generalized_forces) of the inputs `u` of each lane, N and
     /// N·m.
     fn generalized_forces_lanes<const L: usize>(
         &self,
@@ -127,7 +127,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         u: &Column<Self::Scalar, L, NU>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`kinetic_energy`](Rheonomic::kinetic_energy) of each lane, J.
+    /// Returns [`kinetic_energy`](Mechanism::kinetic_energy) of each lane, J.
     fn kinetic_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -135,14 +135,14 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Lanes<Self::Scalar, L>;
 
-    /// Returns [`potential_energy`](Rheonomic::potential_energy) of each lane, J.
+    /// Returns [`potential_energy`](Mechanism::potential_energy) of each lane, J.
     fn potential_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
         q: &Column<Self::Scalar, L, NQ>,
     ) -> Lanes<Self::Scalar, L>;
 
-    /// Returns [`generalized_momentum`](Rheonomic::generalized_momentum) of each lane, `p`, kg·m/s and
+    /// Returns [`generalized_momentum`](Mechanism::generalized_momentum) of each lane, `p`, kg·m/s and
     /// kg·m²/s.
     fn generalized_momentum_lanes<const L: usize>(
         &self,
@@ -151,7 +151,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`momentum_rate`](Rheonomic::momentum_rate) of each lane: `ṗ` without inputs, N and N·m.
+    /// Returns [`momentum_rate`](Mechanism::momentum_rate) of each lane: `ṗ` without inputs, N and N·m.
     fn momentum_rate_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,

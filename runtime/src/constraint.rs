@@ -7,7 +7,7 @@
 //! the state on the constraints by projection, or lets violations decay if the mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
-use crate::{ByMotion, Real, Rheonomic};
+use crate::{ByMotion, Mechanism, Real};
 use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
@@ -222,7 +222,7 @@ macro_rules! loops {
     note = "joints that close loops and `#[constraint(…)]` make one `Constrained`"
 )]
 pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>:
-    Rheonomic<NQ, NV, NU>
+    Mechanism<NQ, NV, NU>
 {
     /// Names of the constraints.
     const CONSTRAINTS: [&'static str; NC];

@@ -70,7 +70,7 @@ use crate::integrate::{
     ContinuousInputs, Dynamics, Error, State, System, guided, holding, positive, settled,
 };
 use crate::private::{constant, epsilon, to_f64};
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 mod apart;
@@ -146,7 +146,7 @@ pub enum Touch {
     note = "`#[contact(ball.sphere(radius), ground.plane(z))] bounce: Contact` declares one"
 )]
 pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>:
-    Rheonomic<NQ, NV, NU>
+    Mechanism<NQ, NV, NU>
 {
     /// Name of every contact.
     const CONTACTS: [&'static str; NK];
@@ -217,7 +217,7 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
 }
 
-/// What is done with a mechanism whose contacts are of any number, by [`Rheonomic::visit_contacts`]: generic
+/// What is done with a mechanism whose contacts are of any number, by [`Mechanism::visit_contacts`]: generic
 /// code that knows nothing of these numbers comes to [`Contacts`] through it.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// What comes of it.

@@ -2,9 +2,9 @@
 
 use crate::blocks::{add_product, is_zero, product_with_few, zeros};
 use crate::constraint::{Frozen, Visitor};
-use crate::forward::each_function;
+use crate::forward::{constants, each_function};
 use crate::private::constant;
-use crate::{At, Mechanism, Real, Rheonomic};
+use crate::{At, Mechanism, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
 /// Matrix of `NV` by `NV`.
@@ -15,16 +15,14 @@ pub type ByMotion<T, const NV: usize, const N: usize> =
     (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, N>);
 
 /// First derivatives of a mechanism's functions, in blocks of `NV` by `NV` (and by `NU`). `#[mechanism(…,
-/// derivatives)]` implements the trait, with and without constraints. A mechanism that depends on time
-/// implements [`RheonomicDerivatives`], and this trait at an instant ([`at`](crate::at)).
+/// derivatives)]` implements the trait, with and without constraints. Arguments are those of [`Mechanism`].
 ///
 /// Derivatives with respect to `q` are along displacements of the configuration: column `i` is the derivative
 /// along `q ⊕ ε eᵢ` (see [`integrate`](Mechanism::integrate)), in body axes for ball and free joints. Changes
 /// of a configuration are expressed in the same way.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`",
-    note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`"
+    note = "the option asks for them: `#[mechanism(…, derivatives)]`"
 )]
 pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
     /// Whether [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
@@ -54,7 +52,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
     /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`. They do not depend on `q` unless generalized speeds are
-    /// declared ([`SPEEDS`](Mechanism::SPEEDS)): [`integrate_derivatives`](Self::integrate_derivatives) is
+    /// declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS)): [`integrate_derivatives`](Self::integrate_derivatives) is
     /// then NaN.
     fn integrate_derivatives_at(
         &self,
@@ -94,6 +92,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// Christoffel symbols*, 2021).
     fn coriolis_matrix(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV>;
@@ -103,6 +102,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
     fn inverse_dynamics_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         a: &SVector<Self::Scalar, NV>,
@@ -112,6 +112,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// included. Without constraints `∂v̇/∂τ` is the inverse of the mass matrix.
     fn forward_dynamics_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
@@ -121,8 +122,10 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// the accelerations, which are computed once together with them. On entry, the matrices must be zero or
     /// contain the results of an earlier call for the same mechanism: entries that are always zero are not
     /// written.
+    #[allow(clippy::too_many_arguments, reason = "one each")]
     fn forward_dynamics_derivatives_into(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
@@ -130,13 +133,14 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         by_v: &mut Square<Self::Scalar, NV>,
         by_tau: &mut Square<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
-        (*by_q, *by_v, *by_tau) = Derivatives::forward_dynamics_derivatives(self, q, v, tau);
-        Mechanism::forward_dynamics(self, q, v, tau)
+        (*by_q, *by_v, *by_tau) = self.forward_dynamics_derivatives(t, q, v, tau);
+        self.forward_dynamics(t, q, v, tau)
     }
 
     /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
     fn generalized_forces_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
@@ -146,6 +150,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// matrix. NaN without [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
     fn generalized_momentum_derivatives(
         &self,
+        _t: Self::Scalar,
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV> {
@@ -156,6 +161,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
     fn momentum_rate_derivatives(
         &self,
+        _t: Self::Scalar,
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
@@ -171,7 +177,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         None
     }
 
-    /// Returns the acceleration under the inputs `u`, linearised about a state.
+    /// Returns the acceleration under the inputs `u`, linearised about a state; for a mechanism whose
+    /// equations contain time at an instant ([`at`](crate::at)).
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -198,9 +205,12 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
-    ) -> LinearMotion<Self::Scalar, NV, NU> {
+    ) -> LinearMotion<Self::Scalar, NV, NU>
+    where
+        Self: Scleronomic,
+    {
         let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
-        let t = crate::private::constant(0.0);
+        let t = constant(0.0);
         let acceleration = accelerated_into(&self, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
         LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(self, q, v) }
     }
@@ -232,7 +242,7 @@ pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU:
 ) -> SVector<T, NV>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let tau = m.generalized_forces(t, q, v, u);
     let mut by_force = zeros();
@@ -256,157 +266,11 @@ pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: u
     u: &SVector<M::Scalar, NU>,
 ) -> Option<ByMotion<M::Scalar, NV, NU>>
 where
-    M: RheonomicDerivatives<NQ, NV, NU>,
+    M: Derivatives<NQ, NV, NU>,
 {
     let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
     accelerated_into(m, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
     Some((by_q, by_v, by_u))
-}
-
-/// First derivatives of a mechanism whose functions depend on time `t`, s; see [`Derivatives`]. Every
-/// mechanism with [`Derivatives`] implements this trait, too.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` has no derivatives",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`"
-)]
-pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
-    Rheonomic<NQ, NV, NU>
-{
-    /// Whether derivatives of momenta are available ([`Derivatives::MOMENTUM_DERIVATIVES`]).
-    const MOMENTUM_DERIVATIVES: bool = false;
-    /// Index of the velocity along which each input acts ([`Derivatives::DIRECT_INPUTS`]).
-    const DIRECT_INPUTS: Option<[usize; NU]> = None;
-    /// Range of the velocities of ball and free joints ([`Derivatives::TURNED`]).
-    const TURNED: Option<(usize, usize)> = None;
-
-    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
-    fn integrate_derivatives(
-        &self,
-        dv: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
-
-    /// Returns `(∂/∂dv, ∂/∂v)` of the rate of `dv` ([`Derivatives::tangent_rate_derivatives`]).
-    fn tangent_rate_derivatives(
-        &self,
-        dv: &SVector<Self::Scalar, NV>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
-
-    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q` ([`Derivatives::integrate_derivatives_at`]).
-    fn integrate_derivatives_at(
-        &self,
-        _q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
-        self.integrate_derivatives(dv)
-    }
-
-    /// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Rheonomic::displacement_rate)
-    /// ([`Derivatives::displacement_rate_derivatives`]).
-    fn displacement_rate_derivatives(
-        &self,
-        _q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> ByMotion<Self::Scalar, NV, NV> {
-        let (by_dv, by_v) = self.tangent_rate_derivatives(dv, v);
-        (SMatrix::zeros(), by_dv, by_v)
-    }
-
-    /// Returns the matrix `T` in the rate of the displacement between two neighbouring motions, `δq̇ = T δq +
-    /// δv` ([`Derivatives::turning`]).
-    fn turning(
-        &self,
-        _q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV> {
-        let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
-        // The tangent space moves with the configuration, so that the Lie bracket counts twice.
-        turning * constant::<Self::Scalar>(2.0)
-    }
-
-    /// Returns a matrix `C(t, q, v)` of Coriolis and centrifugal forces ([`Derivatives::coriolis_matrix`]).
-    fn coriolis_matrix(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV>;
-
-    /// Returns `(∂τ/∂q, ∂τ/∂v)` of inverse dynamics ([`Derivatives::inverse_dynamics_derivatives`]).
-    fn inverse_dynamics_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        a: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
-
-    /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of forward dynamics
-    /// ([`Derivatives::forward_dynamics_derivatives`]).
-    fn forward_dynamics_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-    ) -> ByMotion<Self::Scalar, NV, NV>;
-
-    /// Writes `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` to matrices and returns `v̇`
-    /// ([`Derivatives::forward_dynamics_derivatives_into`]).
-    #[allow(clippy::too_many_arguments, reason = "one each")]
-    fn forward_dynamics_derivatives_into(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-        by_q: &mut Square<Self::Scalar, NV>,
-        by_v: &mut Square<Self::Scalar, NV>,
-        by_tau: &mut Square<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
-        (*by_q, *by_v, *by_tau) = self.forward_dynamics_derivatives(t, q, v, tau);
-        self.forward_dynamics(t, q, v, tau)
-    }
-
-    /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces
-    /// ([`Derivatives::generalized_forces_derivatives`]).
-    fn generalized_forces_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        u: &SVector<Self::Scalar, NU>,
-    ) -> ByMotion<Self::Scalar, NV, NU>;
-
-    /// Returns `∂p/∂q` of the generalized momentum ([`Derivatives::generalized_momentum_derivatives`]).
-    fn generalized_momentum_derivatives(
-        &self,
-        _t: Self::Scalar,
-        _q: &SVector<Self::Scalar, NQ>,
-        _v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV> {
-        unknown()
-    }
-
-    /// Returns `(∂ṗ/∂q, ∂ṗ/∂v)` of the momentum's rate ([`Derivatives::momentum_rate_derivatives`]).
-    fn momentum_rate_derivatives(
-        &self,
-        _t: Self::Scalar,
-        _q: &SVector<Self::Scalar, NQ>,
-        _v: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
-        (unknown(), unknown())
-    }
-
-    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters
-    /// ([`Derivatives::visit_constraints`]).
-    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
-    where
-        V: Visitor<Self::Scalar, NQ, NV, NU>,
-    {
-        None
-    }
 }
 
 /// Returns a matrix of NaN, for derivatives that are not available.
@@ -469,12 +333,10 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, N
 where
     M: Derivatives<NQ, NV, NU> + ?Sized,
 {
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
+    constants!(derivatives, M);
 
     each_function!(tangent, plain Derivatives, self => *self);
-    each_function!(derivatives, plain Derivatives, self => *self);
+    each_function!(derivatives, pass Derivatives, self => *self);
 
     fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
     where
@@ -484,37 +346,15 @@ where
     }
 }
 
-#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
-impl<M, const NQ: usize, const NV: usize, const NU: usize> RheonomicDerivatives<NQ, NV, NU> for M
-where
-    M: Derivatives<NQ, NV, NU>,
-{
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
-
-    each_function!(tangent, plain Derivatives, self => self);
-    each_function!(derivatives, drop Derivatives, self => self);
-
-    fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
-    where
-        V: Visitor<Self::Scalar, NQ, NV, NU>,
-    {
-        Derivatives::visit_constraints(self, visitor)
-    }
-}
-
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU> for At<'_, M, T>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
+    constants!(derivatives, M);
 
-    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
-    each_function!(derivatives, at RheonomicDerivatives, self => self.mechanism, self.t);
+    each_function!(tangent, plain Derivatives, self => self.mechanism);
+    each_function!(derivatives, at Derivatives, self => self.mechanism);
 
     fn visit_constraints<V>(&self, visitor: V) -> Option<V::Output>
     where

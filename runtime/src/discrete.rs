@@ -36,12 +36,12 @@
 
 use crate::blocks::{NearlyIdentity, zeros};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
-use crate::derivatives::{RheonomicDerivatives, column, entry};
+use crate::derivatives::{Derivatives, column, entry};
 use crate::integrate::{
     ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System,
 };
 use crate::private::to_f64;
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 mod curvature;
@@ -77,7 +77,7 @@ pub fn step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<(SVector<T, NQ>, SVector<T, NV>), Error>
 where
     T: Real,
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
     method.check()?;
@@ -96,7 +96,7 @@ fn taken<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<Step<T, NQ, NV>, Error>
 where
     T: Real,
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
     // Time is counted from the start of the step, so that the length of the step is not rounded.
@@ -121,7 +121,7 @@ fn advanced<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<(Projected<T, NQ, NV>, SVector<T, NV>), Error>
 where
     T: Real,
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
     let step = taken(mechanism, method, t, q, v, u)?;
@@ -170,7 +170,7 @@ pub fn transition<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<Transition<T, NQ, NV, NU>, Error>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
     S: DifferentiableStep<T>,
 {
     let mut found = Transition::zeros();
@@ -195,7 +195,7 @@ pub fn transition_into<M, T, S, const NQ: usize, const NV: usize, const NU: usiz
 ) -> Result<(), Error>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
     S: DifferentiableStep<T>,
 {
     const {
@@ -312,7 +312,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
         u: &SVector<T, NU>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>;
+        M: Derivatives<NQ, NV, NU, Scalar = T>;
 
     /// Computes [`differentiate`](Self::differentiate) in place; called by [`transition_into`].
     ///
@@ -329,7 +329,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
         into: &mut Transition<T, NQ, NV, NU>,
     ) -> Result<(), Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         *into = self.differentiate(mechanism, t, q, v, u)?;
         Ok(())

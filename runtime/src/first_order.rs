@@ -1,7 +1,7 @@
 //! First-order states: lags of engines and actuators, filters.
 
 use crate::derivatives::ByMotion;
-use crate::{Real, Rheonomic, RheonomicDerivatives};
+use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 mod derivatives;
@@ -23,7 +23,7 @@ pub use outputs::OutputsByStates;
     note = "`#[state(rate = expression)] level: State` declares one"
 )]
 pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>:
-    Rheonomic<NQ, NV, NU> + Sized
+    Mechanism<NQ, NV, NU> + Sized
 {
     /// Name of every state.
     const STATES: [&'static str; NX];
@@ -108,7 +108,7 @@ pub trait FirstOrderDerivatives<
     const NU: usize,
     const NX: usize,
     const NE: usize,
->: FirstOrder<NQ, NV, NU, NX, NE> + RheonomicDerivatives<NQ, NV, NU>
+>: FirstOrder<NQ, NV, NU, NX, NE> + Derivatives<NQ, NV, NU>
 {
     /// Returns the derivatives of [`state_rates`](FirstOrder::state_rates).
     fn state_rate_derivatives(
@@ -119,7 +119,7 @@ pub trait FirstOrderDerivatives<
         u: &SVector<Self::Scalar, NU>,
     ) -> RateDerivatives<Self::Scalar, NV, NU, NX>;
 
-    /// Returns `∂τ/∂x` of [`inverse_dynamics`](Rheonomic::inverse_dynamics).
+    /// Returns `∂τ/∂x` of [`inverse_dynamics`](Mechanism::inverse_dynamics).
     fn inverse_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -128,7 +128,7 @@ pub trait FirstOrderDerivatives<
         a: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// Returns `∂v̇/∂x` of [`forward_dynamics`](Rheonomic::forward_dynamics).
+    /// Returns `∂v̇/∂x` of [`forward_dynamics`](Mechanism::forward_dynamics).
     fn forward_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -137,7 +137,7 @@ pub trait FirstOrderDerivatives<
         tau: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// Returns `∂τ/∂x` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces).
+    /// Returns `∂τ/∂x` of the inputs' [`generalized_forces`](Mechanism::generalized_forces).
     fn generalized_forces_by_states(
         &self,
         t: Self::Scalar,

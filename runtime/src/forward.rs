@@ -1,122 +1,114 @@
 //! Table of the functions of the mechanism traits. All forwarding implementations are generated from it:
-//! those for references, for a mechanism at an instant, for a mechanism without time as a rheonomic one, for
-//! stabilised mechanisms, and for lanes.
+//! those for references, for a mechanism at an instant, for stabilised mechanisms, and for lanes.
 //!
 //! A function added to the traits must be added to this table. Forwarding implementations enable the lint
 //! `clippy::missing_trait_methods`, so that a missing function does not silently become its default.
 
 /// Passes groups of rows `name(argument: kind, …) -> result` to a macro that defines a function for each row.
-/// `space` does not depend on time, `dynamics` does; constraints and feedback change `accelerations`;
-/// integrators call `methods`. `tangent` and `derivatives` belong to the derivative traits, without and with
-/// time (`given_derivatives` excludes derivatives of accelerations). `second` belongs to the
-/// second-derivative traits, of which `second_tangent` has no time. A kind is the length of a vector,
-/// `scalar`, `state`, or `square` for a matrix that receives a result.
+/// `space` has no argument of time, `dynamics` has; constraints and feedback change `accelerations`;
+/// `methods` are those of `Hooks`, after which the scalar type is named. `tangent` and `derivatives` belong
+/// to `Derivatives`, without and with an argument of time (`given_derivatives` excludes derivatives of
+/// accelerations). `second` belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A
+/// kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that receives a result.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            neutral() -> SVector<Self::Scalar, NQ>;
-            integrate(q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
-            difference(from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
-            tangent_rate(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
-            displacement_rate(q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            neutral() -> $crate::nalgebra::SVector<Self::Scalar, NQ>;
+            integrate(q: NQ, dv: NV) -> $crate::nalgebra::SVector<Self::Scalar, NQ>;
+            difference(from: NQ, to: NQ) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            tangent_rate(dv: NV, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            displacement_rate(q: NQ, dv: NV, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
         }
     };
     (dynamics, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            mass_matrix(q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
-            bias_forces(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-            inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
-            generalized_forces(q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            mass_matrix(q: NQ) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
+            bias_forces(q: NQ, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            inverse_dynamics(q: NQ, v: NV, a: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            generalized_forces(q: NQ, v: NV, u: NU) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
             kinetic_energy(q: NQ, v: NV) -> Self::Scalar;
             potential_energy(q: NQ) -> Self::Scalar;
-            generalized_momentum(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-            momentum_rate(q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+            generalized_momentum(q: NQ, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            momentum_rate(q: NQ, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
         }
     };
     (accelerations, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            forward_dynamics(q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
-            try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<SVector<Self::Scalar, NV>, $crate::ConstraintError>;
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            forward_dynamics(q: NQ, v: NV, tau: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+            try_forward_dynamics(q: NQ, v: NV, tau: NV) -> Result<$crate::nalgebra::SVector<Self::Scalar, NV>, $crate::ConstraintError>;
         }
     };
     (tangent, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            integrate_derivatives(dv: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            tangent_rate_derivatives(dv: NV, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            integrate_derivatives_at(q: NQ, dv: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            integrate_derivatives(dv: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
+            tangent_rate_derivatives(dv: NV, v: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
+            integrate_derivatives_at(q: NQ, dv: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
             displacement_rate_derivatives(q: NQ, dv: NV, v: NV) -> $crate::ByMotion<Self::Scalar, NV, NV>;
-            turning(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
+            turning(q: NQ, v: NV) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
         }
     };
     (derivatives, $($how:tt)+) => {
         $crate::forward::each_function!(given_derivatives, $($how)+);
-        $crate::forward::write! { $($how)+;
-            forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            forward_dynamics_derivatives_into(q: NQ, v: NV, tau: NV, by_q: square, by_v: square, by_tau: square) -> SVector<Self::Scalar, NV>;
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
+            forward_dynamics_derivatives_into(q: NQ, v: NV, tau: NV, by_q: square, by_v: square, by_tau: square) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
         }
     };
     (given_derivatives, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            coriolis_matrix(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
-            inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NU>);
-            generalized_momentum_derivatives(q: NQ, v: NV) -> SMatrix<Self::Scalar, NV, NV>;
-            momentum_rate_derivatives(q: NQ, v: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            coriolis_matrix(q: NQ, v: NV) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
+            inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
+            generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NU>);
+            generalized_momentum_derivatives(q: NQ, v: NV) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
+            momentum_rate_derivatives(q: NQ, v: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
         }
     };
     (second, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
+        $crate::forward::write! { [Self::Scalar] $($how)+;
             inverse_dynamics_second_derivatives(q: NQ, v: NV, a: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
             forward_dynamics_second_derivatives(q: NQ, v: NV, tau: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
             generalized_forces_second_derivatives(q: NQ, v: NV, u: NU, lambda: NV) -> $crate::InputSecondOrder<Self::Scalar, NV, NU>;
         }
     };
     (second_tangent, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            tangent_rate_second_derivatives(dv: NV, v: NV, lambda: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            tangent_rate_second_derivatives(dv: NV, v: NV, lambda: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
         }
     };
-    (methods, $($how:tt)+) => {
-        $crate::forward::write! { $($how)+;
-            project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
-            impulse(q: NQ, v: NV, h: scalar, p: NV) -> SVector<Self::Scalar, NV>;
+    (methods, [$scalar:ty] $($how:tt)+) => {
+        $crate::forward::write! { [$scalar] $($how)+;
+            project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<$scalar, NQ, NV>, $crate::ConstraintError>;
+            impulse(q: NQ, v: NV, h: scalar, p: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             is_nearly_singular(q: NQ, dv: NV) -> bool;
-            acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<Self::Scalar, NV, NU>>;
-            carry(q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
-            contact_start(q: NQ, parts: truth) -> Result<SVector<Self::Scalar, NQ>, $crate::ConstraintError>;
-            contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
+            acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<$scalar, NV, NU>>;
+            carry(q: NQ, dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
+            contact_start(q: NQ, parts: truth) -> Result<$crate::nalgebra::SVector<$scalar, NQ>, $crate::ConstraintError>;
+            contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<$scalar, NQ, NV>, $crate::ConstraintError>;
         }
     };
 }
 
-/// Defines functions that call those of a trait on an object: `plain` without time, `at` at a fixed time,
-/// `drop` with an ignored time argument, `pass` with a forwarded time argument.
+/// Defines functions that call those of a trait on an object: `plain` without time, `pass` with the argument
+/// of time, `at` with the time of the object's wrapper in place of the argument.
 macro_rules! write_functions {
-    (plain $trait:ident, $self:ident => $object:expr;
+    ([$scalar:ty] plain $trait:ident, $self:ident => $object:expr;
      $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
-        fn $name(&$self $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+        fn $name(&$self $(, $argument: $crate::forward::kind!($scalar, $kind))*) -> $result {
             $trait::$name($object $(, $argument)*)
         }
     )+};
-    (at $trait:ident, $self:ident => $object:expr, $t:expr;
+    ([$scalar:ty] at $trait:ident, $self:ident => $object:expr;
      $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
-        fn $name(&$self $(, $argument: $crate::forward::kind!($kind))*) -> $result {
-            $trait::$name($object, $t $(, $argument)*)
+        fn $name(&$self, _t: $scalar $(, $argument: $crate::forward::kind!($scalar, $kind))*) -> $result {
+            $trait::$name($object, $self.t $(, $argument)*)
         }
     )+};
-    (drop $trait:ident, $self:ident => $object:expr;
+    ([$scalar:ty] pass $trait:ident, $self:ident => $object:expr;
      $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
-        fn $name(&$self, _t: Self::Scalar $(, $argument: $crate::forward::kind!($kind))*) -> $result {
-            $trait::$name($object $(, $argument)*)
-        }
-    )+};
-    (pass $trait:ident, $self:ident => $object:expr;
-     $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
-        #[inline(always)]
-        fn $name(&$self, t: Self::Scalar $(, $argument: $crate::forward::kind!($kind))*) -> $result {
+        fn $name(&$self, t: $scalar $(, $argument: $crate::forward::kind!($scalar, $kind))*) -> $result {
             $trait::$name($object, t $(, $argument)*)
         }
     )+};
@@ -124,55 +116,81 @@ macro_rules! write_functions {
 
 /// Expands to the type of an argument.
 macro_rules! kind {
-    (scalar) => { Self::Scalar };
-    (truth) => { bool };
-    (square) => { &mut SMatrix<Self::Scalar, NV, NV> };
-    (state) => { (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>) };
-    ($n:ident) => { &SVector<Self::Scalar, $n> };
+    ($scalar:ty, scalar) => { $scalar };
+    ($scalar:ty, truth) => { bool };
+    ($scalar:ty, square) => { &mut $crate::nalgebra::SMatrix<$scalar, NV, NV> };
+    ($scalar:ty, state) => { (&$crate::nalgebra::SVector<$scalar, NQ>, &$crate::nalgebra::SVector<$scalar, NV>) };
+    ($scalar:ty, $n:ident) => { &$crate::nalgebra::SVector<$scalar, $n> };
 }
 
-/// Writes the functions of [`Rheonomic`](crate::Rheonomic) that programs call as functions of a type itself,
-/// which has them without that trait in scope: the prelude has the trait of mechanisms without time alone.
+/// Defines the constants of a wrapper as those of the mechanism type: `names` of `Mechanism`, `hooks` of
+/// `Hooks`, `derivatives` of `Derivatives`.
+macro_rules! constants {
+    (names, $m:ident) => {
+        const CONFIGURATION: [&'static str; NQ] = $m::CONFIGURATION;
+        const VELOCITIES: [&'static str; NV] = $m::VELOCITIES;
+        const INPUTS: [&'static str; NU] = $m::INPUTS;
+        const VELOCITY_UNITS: [&'static str; NV] = $m::VELOCITY_UNITS;
+        const INPUT_UNITS: [&'static str; NU] = $m::INPUT_UNITS;
+    };
+    (hooks, $m:ident) => {
+        const CONSTRAINED: bool = $m::CONSTRAINED;
+        const SLIPPING: bool = $m::SLIPPING;
+        const FEEDBACK: bool = $m::FEEDBACK;
+        const CONTACTING: bool = $m::CONTACTING;
+        const LOCATABLE: bool = $m::LOCATABLE;
+        const FIRST_ORDER: usize = $m::FIRST_ORDER;
+        const SPEEDS: bool = $m::SPEEDS;
+    };
+    (derivatives, $m:ident) => {
+        const MOMENTUM_DERIVATIVES: bool = $m::MOMENTUM_DERIVATIVES;
+        const DIRECT_INPUTS: Option<[usize; NU]> = $m::DIRECT_INPUTS;
+        const TURNED: Option<(usize, usize)> = $m::TURNED;
+    };
+}
+
+/// Defines functions of [`Mechanism`](crate::Mechanism) as inherent functions of a wrapper, which is used
+/// without the trait in scope.
 macro_rules! inherent_functions {
     (impl<$($lifetime:lifetime,)? $($parameter:ident),* $(; const $($size:ident),+)?> $type:ty) => {
         impl<$($lifetime,)? $($parameter,)* $($(const $size: usize,)+)?> $type {
             $crate::forward::inherent_functions! { @
                 /// Returns the acceleration under the forces `tau`
-                /// ([`Rheonomic::forward_dynamics`](crate::Rheonomic::forward_dynamics)).
+                /// ([`Mechanism::forward_dynamics`](crate::Mechanism::forward_dynamics)).
                 forward_dynamics(t: T, q: Q, v: V, tau: V) -> nalgebra::SVector<T, N>;
                 /// Returns the forces that give the acceleration `a`
-                /// ([`Rheonomic::inverse_dynamics`](crate::Rheonomic::inverse_dynamics)).
+                /// ([`Mechanism::inverse_dynamics`](crate::Mechanism::inverse_dynamics)).
                 inverse_dynamics(t: T, q: Q, v: V, a: V) -> nalgebra::SVector<T, N>;
-                /// Returns the mass matrix ([`Rheonomic::mass_matrix`](crate::Rheonomic::mass_matrix)).
+                /// Returns the mass matrix ([`Mechanism::mass_matrix`](crate::Mechanism::mass_matrix)).
                 mass_matrix(t: T, q: Q) -> nalgebra::SMatrix<T, N, N>;
-                /// Returns the bias forces ([`Rheonomic::bias_forces`](crate::Rheonomic::bias_forces)).
+                /// Returns the bias forces ([`Mechanism::bias_forces`](crate::Mechanism::bias_forces)).
                 bias_forces(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
                 /// Returns the generalized forces of inputs
-                /// ([`Rheonomic::generalized_forces`](crate::Rheonomic::generalized_forces)).
+                /// ([`Mechanism::generalized_forces`](crate::Mechanism::generalized_forces)).
                 generalized_forces(t: T, q: Q, v: V, u: U) -> nalgebra::SVector<T, N>;
                 /// Returns the kinetic energy
-                /// ([`Rheonomic::kinetic_energy`](crate::Rheonomic::kinetic_energy)).
+                /// ([`Mechanism::kinetic_energy`](crate::Mechanism::kinetic_energy)).
                 kinetic_energy(t: T, q: Q, v: V) -> T;
                 /// Returns the potential energy
-                /// ([`Rheonomic::potential_energy`](crate::Rheonomic::potential_energy)).
+                /// ([`Mechanism::potential_energy`](crate::Mechanism::potential_energy)).
                 potential_energy(t: T, q: Q) -> T;
                 /// Returns the generalized momentum
-                /// ([`Rheonomic::generalized_momentum`](crate::Rheonomic::generalized_momentum)).
+                /// ([`Mechanism::generalized_momentum`](crate::Mechanism::generalized_momentum)).
                 generalized_momentum(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
                 /// Returns the configuration after a displacement
-                /// ([`Rheonomic::integrate`](crate::Rheonomic::integrate)).
+                /// ([`Mechanism::integrate`](crate::Mechanism::integrate)).
                 integrate(q: Q, dv: V) -> nalgebra::SVector<T, NQ>;
                 /// Returns the displacement between configurations
-                /// ([`Rheonomic::difference`](crate::Rheonomic::difference)).
+                /// ([`Mechanism::difference`](crate::Mechanism::difference)).
                 difference(from: Q, to: Q) -> nalgebra::SVector<T, N>;
             }
 
             /// Returns the acceleration under the forces `tau`, or why they determine none
-            /// ([`Rheonomic::try_forward_dynamics`](crate::Rheonomic::try_forward_dynamics)).
+            /// ([`Mechanism::try_forward_dynamics`](crate::Mechanism::try_forward_dynamics)).
             ///
             /// # Errors
             ///
-            /// Those of [`Rheonomic::try_forward_dynamics`](crate::Rheonomic::try_forward_dynamics).
+            /// Those of [`Mechanism::try_forward_dynamics`](crate::Mechanism::try_forward_dynamics).
             pub fn try_forward_dynamics<T: $crate::Real, const NQ: usize, const N: usize, const NU: usize>(
                 &self,
                 t: T,
@@ -181,9 +199,9 @@ macro_rules! inherent_functions {
                 tau: &nalgebra::SVector<T, N>,
             ) -> Result<nalgebra::SVector<T, N>, $crate::ConstraintError>
             where
-                Self: $crate::Rheonomic<NQ, N, NU, Scalar = T>,
+                Self: $crate::Mechanism<NQ, N, NU, Scalar = T>,
             {
-                <Self as $crate::Rheonomic<NQ, N, NU>>::try_forward_dynamics(self, t, q, v, tau)
+                <Self as $crate::Mechanism<NQ, N, NU>>::try_forward_dynamics(self, t, q, v, tau)
             }
         }
     };
@@ -194,9 +212,9 @@ macro_rules! inherent_functions {
             &self $(, $argument: $crate::forward::inherent_functions!(# $kind))*
         ) -> $result
         where
-            Self: $crate::Rheonomic<NQ, N, NU, Scalar = T>,
+            Self: $crate::Mechanism<NQ, N, NU, Scalar = T>,
         {
-            <Self as $crate::Rheonomic<NQ, N, NU>>::$name(self $(, $argument)*)
+            <Self as $crate::Mechanism<NQ, N, NU>>::$name(self $(, $argument)*)
         }
     )+};
     (# T) => { T };
@@ -205,4 +223,4 @@ macro_rules! inherent_functions {
     (# U) => { &nalgebra::SVector<T, NU> };
 }
 
-pub(crate) use {each_function, inherent_functions, kind, write_functions as write};
+pub(crate) use {constants, each_function, inherent_functions, kind, write_functions as write};

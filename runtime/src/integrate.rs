@@ -28,6 +28,7 @@ mod dormand_prince;
 mod eighth;
 mod error;
 mod event_driven;
+mod hooks;
 mod implicit_midpoint;
 mod local;
 mod path;
@@ -43,6 +44,8 @@ pub use dormand_prince::DormandPrince;
 pub use eighth::DormandPrince8;
 pub use error::Error;
 pub use event_driven::{EventDriven, EventMemory, Section};
+#[doc(hidden)]
+pub use hooks::Hooks;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use path::{Path, Step};
 pub use rk4::Rk4;

@@ -31,7 +31,7 @@
 use crate::blocks::{add_product, factors, product, solve, transposed, zeros};
 use crate::limits::at_least;
 use crate::private::{constant, to_f64};
-use crate::{Frames, Limits, Real, Rheonomic, placement_difference};
+use crate::{Frames, Limits, Mechanism, Real, placement_difference};
 use nalgebra::{IsometryMatrix3, SMatrix, SVector};
 
 /// Target pose of a frame.
@@ -177,7 +177,7 @@ impl<T: Real> InverseKinematics<T> {
         start: &SVector<T, NQ>,
     ) -> Result<Reached<T, NQ>, Unreached<T, NQ>>
     where
-        M: Rheonomic<NQ, NV, NU, Scalar = T> + Frames<NQ, NV, Scalar = T> + Limits<NQ, NV, Scalar = T>,
+        M: Mechanism<NQ, NV, NU, Scalar = T> + Frames<NQ, NV, Scalar = T> + Limits<NQ, NV, Scalar = T>,
     {
         let mut q = mechanism.clamp_configuration(start);
         let mut left = self.left(mechanism, t, targets, &q)?;
@@ -266,7 +266,7 @@ fn step<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     posture: &SVector<T, NV>,
 ) -> SVector<T, NV>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = T> + Limits<NQ, NV, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T> + Limits<NQ, NV, Scalar = T>,
 {
     // Plain coordinates are displacements from zero; others have no limits.
     let (at, of_rates) = match mechanism.limited_coordinates(q) {

@@ -100,23 +100,23 @@ pub use batch::Batch;
 #[doc(inline)]
 pub use constraint::{Constrained, ConstrainedDerivatives, ConstrainedSecondDerivatives, ConstraintError};
 pub use contact::Contacts;
-pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives};
+pub use derivatives::{ByMotion, Derivatives, LinearMotion};
 #[doc(inline)]
 pub use drawing::Drawn;
 pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, OutputsByStates, RateDerivatives};
 pub use frame::{FrameIndex, FrameName, Frames, NamedFrame, index_of, placement_difference};
 pub use inertial::{Inertial, Placement};
+pub use instant::{At, at};
 #[doc(inline)]
 pub use lanes::Lanes;
 pub use limits::Limits;
 #[cfg(not(linkwork_expanded))]
 pub use linkwork_macros::mechanism;
-pub use mechanism::{Mechanism, Real};
+pub use mechanism::{Mechanism, Real, Scleronomic};
 pub use nalgebra;
 pub use outputs::{OutputDerivatives, OutputJacobians, Outputs};
 pub use parameters::{Fault, ParameterError};
-pub use rheonomic::{At, Rheonomic, at};
-pub use second::{InputSecondOrder, RheonomicSecondDerivatives, SecondDerivatives, SecondOrder};
+pub use second::{InputSecondOrder, SecondDerivatives, SecondOrder};
 pub use sensitivities::Sensitivities;
 #[doc(inline)]
 pub use simulate::simulate;
@@ -142,6 +142,7 @@ pub mod free_body;
 pub mod guide;
 pub mod identification;
 mod inertial;
+mod instant;
 pub mod integrate;
 pub mod inverse_kinematics;
 pub mod lanes;
@@ -153,7 +154,6 @@ pub mod optimal;
 mod outputs;
 mod parameters;
 mod private;
-mod rheonomic;
 pub mod rotation;
 mod second;
 mod sensitivities;

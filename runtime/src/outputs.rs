@@ -1,6 +1,6 @@
 //! Outputs of a mechanism for generic code: sensor measurements and their derivatives.
 
-use crate::rheonomic::At;
+use crate::At;
 use crate::{LinearMotion, Real};
 use nalgebra::{SMatrix, SVector};
 

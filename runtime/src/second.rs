@@ -5,7 +5,7 @@ use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
 use crate::constraint::{CurvatureVisitor, FrozenCurvature};
 use crate::forward::each_function;
 use crate::private::constant;
-use crate::{At, Derivatives, Real, RheonomicDerivatives};
+use crate::{At, Derivatives, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
 /// Matrix of `NV` by `NV`.
@@ -23,15 +23,13 @@ pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
 
 /// Second derivatives of a mechanism's functions, contracted with factors `λ`: Hessians of `λᵀ f`, in blocks
 /// of `NV` by `NV` (and by `NU`). `#[mechanism(…, second_derivatives)]` implements the trait, with and
-/// without constraints, unless contacts slide. A mechanism that depends on time implements
-/// [`RheonomicSecondDerivatives`], and this trait at an instant ([`at`](crate::at)).
+/// without constraints, unless contacts slide. Arguments are those of [`Mechanism`](crate::Mechanism).
 ///
 /// Along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond first order, with `H` the second derivatives
 /// with respect to the configuration; for ball and free joints `dq` is a motion in body axes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
-    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`",
-    note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`; with contacts that slip there are none"
+    note = "the option asks for them: `#[mechanism(…, second_derivatives)]`; a mechanism with sliding contacts has none"
 )]
 pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Derivatives<NQ, NV, NU>
@@ -42,6 +40,7 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     /// `a` twice, are zero.
     fn inverse_dynamics_second_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         a: &SVector<Self::Scalar, NV>,
@@ -53,6 +52,7 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     /// with respect to `v` and `τ`, and to `τ` twice, are zero.
     fn forward_dynamics_second_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
@@ -63,6 +63,7 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     /// [`generalized_forces`](crate::Mechanism::generalized_forces); zero if inputs act along joints.
     fn generalized_forces_second_derivatives(
         &self,
+        t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
@@ -116,14 +117,16 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
         lambda: &SVector<Self::Scalar, NV>,
-    ) -> InputSecondOrder<Self::Scalar, NV, NU> {
-        let tau = crate::Mechanism::generalized_forces(self, q, v, u);
-        let (_, _, inverse) = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
-        let (tau_by_q, tau_by_v, tau_by_u) = Derivatives::generalized_forces_derivatives(self, q, v, u);
-        let (qq, qv, vv, by_force) =
-            SecondDerivatives::forward_dynamics_second_derivatives(self, q, v, &tau, lambda);
-        let more =
-            SecondDerivatives::generalized_forces_second_derivatives(self, q, v, u, &inverse.tr_mul(lambda));
+    ) -> InputSecondOrder<Self::Scalar, NV, NU>
+    where
+        Self: Scleronomic,
+    {
+        let t = constant(0.0);
+        let tau = self.generalized_forces(t, q, v, u);
+        let (_, _, inverse) = self.forward_dynamics_derivatives(t, q, v, &tau);
+        let (tau_by_q, tau_by_v, tau_by_u) = self.generalized_forces_derivatives(t, q, v, u);
+        let (qq, qv, vv, by_force) = self.forward_dynamics_second_derivatives(t, q, v, &tau, lambda);
+        let more = self.generalized_forces_second_derivatives(t, q, v, u, &inverse.tr_mul(lambda));
         let (mut all_qq, mut all_qv) = (qq + more.0, qv + more.1);
         if !is_zero(&tau_by_q) {
             let turned = product(&by_force, &tau_by_q);
@@ -136,69 +139,6 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         let mut qu = more.3;
         add_product(&mut qu, &by_force, &tau_by_u);
         (all_qq, all_qv, vv + more.2, qu, more.4, more.5)
-    }
-}
-
-/// Second derivatives of a mechanism whose functions depend on time `t`, s; see [`SecondDerivatives`]. Every
-/// mechanism with [`SecondDerivatives`] implements this trait, too.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` has no second derivatives",
-    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; with contacts that slip there are none"
-)]
-pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
-    RheonomicDerivatives<NQ, NV, NU>
-{
-    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`
-    /// ([`SecondDerivatives::inverse_dynamics_second_derivatives`]).
-    fn inverse_dynamics_second_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        a: &SVector<Self::Scalar, NV>,
-        lambda: &SVector<Self::Scalar, NV>,
-    ) -> SecondOrder<Self::Scalar, NV>;
-
-    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`
-    /// ([`SecondDerivatives::forward_dynamics_second_derivatives`]).
-    fn forward_dynamics_second_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-        lambda: &SVector<Self::Scalar, NV>,
-    ) -> SecondOrder<Self::Scalar, NV>;
-
-    /// Returns the second derivatives of `λᵀ τ` with the forces `τ` of the inputs
-    /// ([`SecondDerivatives::generalized_forces_second_derivatives`]).
-    fn generalized_forces_second_derivatives(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        u: &SVector<Self::Scalar, NU>,
-        lambda: &SVector<Self::Scalar, NV>,
-    ) -> InputSecondOrder<Self::Scalar, NV, NU>;
-
-    /// Returns `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Rheonomic::tangent_rate); the rows of
-    /// the mixed derivatives are `dv`. Zero for plain coordinates.
-    fn tangent_rate_second_derivatives(
-        &self,
-        _dv: &SVector<Self::Scalar, NV>,
-        _v: &SVector<Self::Scalar, NV>,
-        _lambda: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
-        (SMatrix::zeros(), SMatrix::zeros())
-    }
-
-    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters
-    /// ([`SecondDerivatives::visit_constraint_curvature`]).
-    fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
-    where
-        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
-    {
-        None
     }
 }
 
@@ -224,7 +164,7 @@ where
     M: SecondDerivatives<NQ, NV, NU> + ?Sized,
 {
     each_function!(second_tangent, plain SecondDerivatives, self => *self);
-    each_function!(second, plain SecondDerivatives, self => *self);
+    each_function!(second, pass SecondDerivatives, self => *self);
 
     fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
     where
@@ -234,29 +174,13 @@ where
     }
 }
 
-#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
-impl<M, const NQ: usize, const NV: usize, const NU: usize> RheonomicSecondDerivatives<NQ, NV, NU> for M
-where
-    M: SecondDerivatives<NQ, NV, NU>,
-{
-    each_function!(second_tangent, plain SecondDerivatives, self => self);
-    each_function!(second, drop SecondDerivatives, self => self);
-
-    fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
-    where
-        V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
-    {
-        SecondDerivatives::visit_constraint_curvature(self, visitor)
-    }
-}
-
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> SecondDerivatives<NQ, NV, NU> for At<'_, M, T>
 where
     T: Real,
-    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+    M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    each_function!(second_tangent, plain RheonomicSecondDerivatives, self => self.mechanism);
-    each_function!(second, at RheonomicSecondDerivatives, self => self.mechanism, self.t);
+    each_function!(second_tangent, plain SecondDerivatives, self => self.mechanism);
+    each_function!(second, at SecondDerivatives, self => self.mechanism);
 
     fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
     where

@@ -1,7 +1,7 @@
 //! Derivatives of the dynamics with respect to the parameters of the struct, for generic code:
 //! identification, design, robust control.
 
-use crate::{At, Real, Rheonomic};
+use crate::{At, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Derivatives of a mechanism's functions with respect to its `NP` parameters, one column for each.
@@ -12,12 +12,12 @@ use nalgebra::{SMatrix, SVector};
     note = "the word asks for them: `#[mechanism(…, sensitivities)]`; mechanisms without parameters and those with constraints have none"
 )]
 pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
-    Rheonomic<NQ, NV, NU>
+    Mechanism<NQ, NV, NU>
 {
     /// Name of every parameter.
     const PARAMETERS: [&'static str; NP];
 
-    /// Returns `∂τ/∂p` of [`inverse_dynamics`](Rheonomic::inverse_dynamics), N and N·m per unit of the
+    /// Returns `∂τ/∂p` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per unit of the
     /// parameter.
     fn inverse_dynamics_by_parameters(
         &self,
@@ -27,7 +27,7 @@ pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const
         a: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NP>;
 
-    /// Returns `∂v̇/∂p` of [`forward_dynamics`](Rheonomic::forward_dynamics), m/s² and rad/s² per unit of the
+    /// Returns `∂v̇/∂p` of [`forward_dynamics`](Mechanism::forward_dynamics), m/s² and rad/s² per unit of the
     /// parameter.
     fn forward_dynamics_by_parameters(
         &self,
@@ -37,7 +37,7 @@ pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const
         tau: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NP>;
 
-    /// Returns `∂τ/∂p` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces), N and N·m per
+    /// Returns `∂τ/∂p` of the inputs' [`generalized_forces`](Mechanism::generalized_forces), N and N·m per
     /// unit of the parameter.
     fn generalized_forces_by_parameters(
         &self,

@@ -18,7 +18,7 @@ use crate::integrate::{
     not_negative, positive,
 };
 use crate::private::to_f64;
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use core::fmt;
 use nalgebra::SVector;
 use run::Progress;
@@ -47,7 +47,7 @@ pub fn simulate<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
 ) -> Simulation<'_, M, M::Scalar, NoInputs, DormandPrince<M::Scalar>, NoEvents, NQ, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     let start = State { t: nalgebra::zero(), q: mechanism.neutral(), v: SVector::zeros() };
     let system = System::new(mechanism, NoInputs);
@@ -124,7 +124,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
         u: impl Start<T, NU>,
     ) -> Result<Self, Error>
     where
-        M: Rheonomic<NQ, NV, NU, Scalar = T>,
+        M: Mechanism<NQ, NV, NU, Scalar = T>,
     {
         let (q, v, u) = (q.vector(), v.vector(), u.vector());
         if !q.iter().chain(&v).chain(&u).chain([&t]).all(|x| x.is_finite()) {
@@ -190,7 +190,7 @@ where
 impl<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
     Simulation<'m, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     T: Real,
     S: Method<T>,
 {
@@ -461,7 +461,7 @@ where
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize> Iterator
     for Simulation<'_, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
     S: Method<T>,

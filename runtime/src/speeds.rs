@@ -6,7 +6,7 @@
 
 use crate::discrete::eliminated;
 use crate::private::{constant, epsilon};
-use crate::{Real, Rheonomic, RheonomicDerivatives};
+use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 type Square<T, const N: usize> = SMatrix<T, N, N>;
@@ -50,7 +50,7 @@ pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> SVector<T, NV>
 where
     T: Real,
-    M: Rheonomic<NQ, NV, NU, Scalar = T> + ?Sized,
+    M: Mechanism<NQ, NV, NU, Scalar = T> + ?Sized,
 {
     if M::SPEEDS { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
 }
@@ -65,7 +65,7 @@ pub(crate) fn at_midpoint<M, T, const NQ: usize, const NV: usize, const NU: usiz
 ) -> SVector<T, NV>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     if !M::SPEEDS {
         return mean;
@@ -86,7 +86,7 @@ pub(crate) fn led<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> [(Square<T, NV>, Square<T, NV>); 2]
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let two = constant::<T>(2.0);
     let way = way_of(m, q, v, s);

@@ -1,7 +1,8 @@
 //! Hand-written mechanisms with closed-form solutions, for the tests of this crate.
 
 use crate::__private::{ball_integrate, ball_tangent_rate, constant, free_integrate, free_tangent_rate};
-use crate::{Mechanism, Real};
+use crate::integrate::Hooks;
+use crate::{Mechanism, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// One plain coordinate with inertia `inertia` under the damped force `force(q)`; the input is a force on it.
@@ -30,6 +31,10 @@ pub(crate) fn falling() -> OneDof<f64> {
 
 type V<T, const N: usize> = SVector<T, N>;
 
+impl<T: Real> Hooks<T, 1, 1, 1> for OneDof<T> {}
+
+impl<T: Real> Scleronomic for OneDof<T> {}
+
 impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
     type Scalar = T;
     const CONFIGURATION: [&'static str; 1] = ["q"];
@@ -49,31 +54,31 @@ impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
     fn tangent_rate(&self, _dv: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
         *v
     }
-    fn mass_matrix(&self, _q: &V<T, 1>) -> SMatrix<T, 1, 1> {
+    fn mass_matrix(&self, _t: T, _q: &V<T, 1>) -> SMatrix<T, 1, 1> {
         SMatrix::from([self.inertia])
     }
-    fn bias_forces(&self, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
-        -self.momentum_rate(q, v)
+    fn bias_forces(&self, t: T, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+        -self.momentum_rate(t, q, v)
     }
-    fn inverse_dynamics(&self, q: &V<T, 1>, v: &V<T, 1>, a: &V<T, 1>) -> V<T, 1> {
-        a * self.inertia + self.bias_forces(q, v)
+    fn inverse_dynamics(&self, t: T, q: &V<T, 1>, v: &V<T, 1>, a: &V<T, 1>) -> V<T, 1> {
+        a * self.inertia + self.bias_forces(t, q, v)
     }
-    fn forward_dynamics(&self, q: &V<T, 1>, v: &V<T, 1>, tau: &V<T, 1>) -> V<T, 1> {
-        (tau - self.bias_forces(q, v)) / self.inertia
+    fn forward_dynamics(&self, t: T, q: &V<T, 1>, v: &V<T, 1>, tau: &V<T, 1>) -> V<T, 1> {
+        (tau - self.bias_forces(t, q, v)) / self.inertia
     }
-    fn generalized_forces(&self, _q: &V<T, 1>, _v: &V<T, 1>, u: &V<T, 1>) -> V<T, 1> {
+    fn generalized_forces(&self, _t: T, _q: &V<T, 1>, _v: &V<T, 1>, u: &V<T, 1>) -> V<T, 1> {
         *u
     }
-    fn kinetic_energy(&self, _q: &V<T, 1>, v: &V<T, 1>) -> T {
+    fn kinetic_energy(&self, _t: T, _q: &V<T, 1>, v: &V<T, 1>) -> T {
         self.inertia * v[0] * v[0] * constant(0.5)
     }
-    fn potential_energy(&self, q: &V<T, 1>) -> T {
+    fn potential_energy(&self, _t: T, q: &V<T, 1>) -> T {
         (self.energy)(q[0])
     }
-    fn generalized_momentum(&self, _q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+    fn generalized_momentum(&self, _t: T, _q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
         v * self.inertia
     }
-    fn momentum_rate(&self, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
+    fn momentum_rate(&self, _t: T, q: &V<T, 1>, v: &V<T, 1>) -> V<T, 1> {
         SVector::from([(self.force)(q[0]) - self.damping * v[0]])
     }
 }
@@ -82,6 +87,10 @@ impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
 pub(crate) struct Top<T> {
     pub(crate) inertia: Vector3<T>,
 }
+
+impl<T: Real> Hooks<T, 4, 3, 3> for Top<T> {}
+
+impl<T: Real> Scleronomic for Top<T> {}
 
 impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
     type Scalar = T;
@@ -102,32 +111,32 @@ impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
     fn tangent_rate(&self, dv: &V<T, 3>, v: &V<T, 3>) -> V<T, 3> {
         ball_tangent_rate((*dv).into(), (*v).into()).into()
     }
-    fn mass_matrix(&self, _q: &V<T, 4>) -> SMatrix<T, 3, 3> {
+    fn mass_matrix(&self, _t: T, _q: &V<T, 4>) -> SMatrix<T, 3, 3> {
         SMatrix::from_diagonal(&self.inertia)
     }
-    fn bias_forces(&self, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+    fn bias_forces(&self, _t: T, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
         v.cross(&self.inertia.component_mul(v))
     }
-    fn inverse_dynamics(&self, q: &V<T, 4>, v: &V<T, 3>, a: &V<T, 3>) -> V<T, 3> {
-        self.inertia.component_mul(a) + self.bias_forces(q, v)
+    fn inverse_dynamics(&self, t: T, q: &V<T, 4>, v: &V<T, 3>, a: &V<T, 3>) -> V<T, 3> {
+        self.inertia.component_mul(a) + self.bias_forces(t, q, v)
     }
-    fn forward_dynamics(&self, q: &V<T, 4>, v: &V<T, 3>, tau: &V<T, 3>) -> V<T, 3> {
-        (tau - self.bias_forces(q, v)).component_div(&self.inertia)
+    fn forward_dynamics(&self, t: T, q: &V<T, 4>, v: &V<T, 3>, tau: &V<T, 3>) -> V<T, 3> {
+        (tau - self.bias_forces(t, q, v)).component_div(&self.inertia)
     }
-    fn generalized_forces(&self, _q: &V<T, 4>, _v: &V<T, 3>, u: &V<T, 3>) -> V<T, 3> {
+    fn generalized_forces(&self, _t: T, _q: &V<T, 4>, _v: &V<T, 3>, u: &V<T, 3>) -> V<T, 3> {
         *u
     }
-    fn kinetic_energy(&self, _q: &V<T, 4>, v: &V<T, 3>) -> T {
+    fn kinetic_energy(&self, _t: T, _q: &V<T, 4>, v: &V<T, 3>) -> T {
         self.inertia.component_mul(v).dot(v) * constant(0.5)
     }
-    fn potential_energy(&self, _q: &V<T, 4>) -> T {
+    fn potential_energy(&self, _t: T, _q: &V<T, 4>) -> T {
         T::zero()
     }
-    fn generalized_momentum(&self, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+    fn generalized_momentum(&self, _t: T, _q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
         self.inertia.component_mul(v)
     }
-    fn momentum_rate(&self, q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
-        -self.bias_forces(q, v)
+    fn momentum_rate(&self, t: T, q: &V<T, 4>, v: &V<T, 3>) -> V<T, 3> {
+        -self.bias_forces(t, q, v)
     }
 }
 
@@ -154,6 +163,10 @@ fn join(a: Vector3<f64>, b: Vector3<f64>) -> V<f64, 6> {
     SVector::from([a.x, a.y, a.z, b.x, b.y, b.z])
 }
 
+impl Hooks<f64, 7, 6, 0> for FreeBody {}
+
+impl Scleronomic for FreeBody {}
+
 impl Mechanism<7, 6, 0> for FreeBody {
     type Scalar = f64;
     const CONFIGURATION: [&'static str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
@@ -173,31 +186,31 @@ impl Mechanism<7, 6, 0> for FreeBody {
     fn tangent_rate(&self, dv: &V<f64, 6>, v: &V<f64, 6>) -> V<f64, 6> {
         free_tangent_rate((*dv).into(), (*v).into()).into()
     }
-    fn mass_matrix(&self, _q: &V<f64, 7>) -> SMatrix<f64, 6, 6> {
+    fn mass_matrix(&self, _t: f64, _q: &V<f64, 7>) -> SMatrix<f64, 6, 6> {
         SMatrix::from_diagonal(&join(Vector3::repeat(self.mass), self.inertia))
     }
-    fn bias_forces(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
-        -self.momentum_rate(q, v)
+    fn bias_forces(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+        -self.momentum_rate(t, q, v)
     }
-    fn inverse_dynamics(&self, q: &V<f64, 7>, v: &V<f64, 6>, a: &V<f64, 6>) -> V<f64, 6> {
-        self.mass_matrix(q) * a + self.bias_forces(q, v)
+    fn inverse_dynamics(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>, a: &V<f64, 6>) -> V<f64, 6> {
+        self.mass_matrix(t, q) * a + self.bias_forces(t, q, v)
     }
-    fn forward_dynamics(&self, q: &V<f64, 7>, v: &V<f64, 6>, tau: &V<f64, 6>) -> V<f64, 6> {
-        (tau - self.bias_forces(q, v)).component_div(&self.mass_matrix(q).diagonal())
+    fn forward_dynamics(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>, tau: &V<f64, 6>) -> V<f64, 6> {
+        (tau - self.bias_forces(t, q, v)).component_div(&self.mass_matrix(t, q).diagonal())
     }
-    fn generalized_forces(&self, _q: &V<f64, 7>, _v: &V<f64, 6>, _u: &V<f64, 0>) -> V<f64, 6> {
+    fn generalized_forces(&self, _t: f64, _q: &V<f64, 7>, _v: &V<f64, 6>, _u: &V<f64, 0>) -> V<f64, 6> {
         SVector::zeros()
     }
-    fn kinetic_energy(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> f64 {
-        (self.mass_matrix(q) * v).dot(v) * 0.5
+    fn kinetic_energy(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> f64 {
+        (self.mass_matrix(t, q) * v).dot(v) * 0.5
     }
-    fn potential_energy(&self, q: &V<f64, 7>) -> f64 {
+    fn potential_energy(&self, _t: f64, q: &V<f64, 7>) -> f64 {
         self.mass * self.gravity * q[2]
     }
-    fn generalized_momentum(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
-        self.mass_matrix(q) * v
+    fn generalized_momentum(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+        self.mass_matrix(t, q) * v
     }
-    fn momentum_rate(&self, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
+    fn momentum_rate(&self, _t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
         let (linear, angular) = split(v);
         let weight = Vector3::new(0.0, 0.0, -self.mass * self.gravity);
         let weight = turned([-q[3], -q[4], -q[5], q[6]], weight);

@@ -28,7 +28,7 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         let j = m.constraint_jacobian(0.0, &q);
         let scale = a.amax().max(1.0);
         assert!((j * a + m.constraint_bias(0.0, &q, &v)).amax() < 1e-9 * scale);
-        let missing = Mechanism::inverse_dynamics(m, &q, &v, &a) - tau - j.transpose() * lambda;
+        let missing = Mechanism::inverse_dynamics(m, 0.0, &q, &v, &a) - tau - j.transpose() * lambda;
         assert!(missing.amax() < 1e-9 * scale.max(lambda.amax()), "{missing}");
         // The constraints do no work: the power of the forces is the rate of the energy.
         let (before, after) = (moved(m, &q, &v, &a, -1e-5), moved(m, &q, &v, &a, 1e-5));
@@ -64,7 +64,7 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
         let size = found.amax().max(1.0);
         assert!(m.constraint_rates(0.0, q, &found).amax() < 1e-10 * size);
         // The change is orthogonal, in the metric of the mass matrix, to all admissible variations.
-        let change = Mechanism::mass_matrix(m, q) * (found - start);
+        let change = Mechanism::mass_matrix(m, 0.0, q) * (found - start);
         let mut other = random.vector(1.0);
         held.iter().for_each(|k| other[*k] = v[*k]);
         if held.len() > 1 {
@@ -92,7 +92,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let (q, v) = (m.integrate(q, &(v * h + a * (h * h / 2.0))), v + a * h);
-    m.kinetic_energy(&q, &v) + m.potential_energy(&q)
+    m.kinetic_energy(0.0, &q, &v) + m.potential_energy(0.0, &q)
 }
 
 /// Checks by differences that constraint velocities are the rates of the residuals, and biases those of the

@@ -82,7 +82,7 @@ fn simulations_look_at_their_start() {
     // One of four lanes has an overlap.
     let lanes = SVector::from_fn(|i, _| Lanes([apart[i], apart[i], q[i], apart[i]]));
     let four = m.lanes::<4>();
-    let start = |parts| linkwork::Rheonomic::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
+    let start = |parts| linkwork::integrate::Hooks::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
     assert_eq!(start(false).unwrap_err(), overlap);
     assert_eq!(start(true).unwrap(), SVector::<_, 14>::from_fn(|i, _| Lanes([apart[i]; 4])));
 }

@@ -3,7 +3,7 @@
 use super::{Carrier, Driven, Linkage, assert_columns, check_step, check_steps, slopes};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{ConstrainedDerivatives, Rheonomic, discrete};
+use linkwork::{ConstrainedDerivatives, Mechanism, discrete};
 use support::random::Random;
 
 /// Ball that rolls on a tilted plane, with an input force and torque and a pendulum inside. It has
@@ -142,7 +142,7 @@ fn constrained_steps_change_as_their_jacobians_say() {
         let arms = Arms { span: near(1.9), mass: near(0.8), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
         check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
-        let bent = arms.integrate(&Rheonomic::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
+        let bent = arms.integrate(&Mechanism::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
         check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
         let mut lifted = Mechanism::neutral(&ball);
         lifted[2] = ball.radius;

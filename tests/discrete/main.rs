@@ -3,7 +3,7 @@
 
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::prelude::*;
-use linkwork::{Frames, Rheonomic, RheonomicDerivatives, frame, index_of};
+use linkwork::{Derivatives, Frames, Mechanism, frame, index_of};
 use support::random::Random;
 
 mod implicit;
@@ -103,7 +103,7 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     speed: f64,
     push: f64,
 ) where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
     S: DifferentiableStep<f64>,
 {
     for seed in 0..3 {
@@ -123,7 +123,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     t: f64,
     (q, v, u): (&SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>),
 ) where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
     S: DifferentiableStep<f64>,
 {
     let mut random = Random::new(5);
@@ -177,10 +177,10 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     v: &SVector<f64, NV>,
     u: &SVector<f64, NU>,
 ) where
-    M: Derivatives<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
     let acceleration = |q: &_, v: &_, u: &_| {
-        Mechanism::forward_dynamics(m, q, v, &Mechanism::generalized_forces(m, q, v, u))
+        Mechanism::forward_dynamics(m, 0.0, q, v, &Mechanism::generalized_forces(m, 0.0, q, v, u))
     };
     let found = m.linear_motion(q, v, u);
     assert!((found.acceleration - acceleration(q, v, u)).amax() < 1e-12);
@@ -223,7 +223,7 @@ fn single_steps_are_those_of_simulations() {
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
     ) where
-        M: Rheonomic<NQ, NV, 1, Scalar = f64>,
+        M: Mechanism<NQ, NV, 1, Scalar = f64>,
         S: discrete::FixedStep<f64> + Copy,
     {
         let (t, u) = (0.7, SVector::from([0.8]));

@@ -146,7 +146,7 @@ fn constrained_steps_in_speeds_change_as_their_jacobians_say() {
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
         let closed = bars.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
         check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
-        let bent = arms.integrate(&linkwork::Rheonomic::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
+        let bent = arms.integrate(&linkwork::Mechanism::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
         check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
         let mut lifted: SVector<f64, 8> = Mechanism::neutral(&ball);
         lifted[2] = ball.radius;

@@ -53,21 +53,22 @@ fn check_equation_of_motion<M, const NQ: usize, const NV: usize, const NU: usize
 ) where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let mass_matrix = m.mass_matrix(q);
+    let mass_matrix = m.mass_matrix(0.0, q);
     assert_eq!(mass_matrix, mass_matrix.transpose(), "both triangles of the mass matrix");
     assert!(mass_matrix.cholesky().is_some(), "the mass matrix is positive definite");
-    let momentum = m.generalized_momentum(q, v);
+    let momentum = m.generalized_momentum(0.0, q, v);
     assert_close("p = M v", momentum.as_slice(), (mass_matrix * v).as_slice(), IDENTITY);
-    let kinetic = m.kinetic_energy(q, v);
+    let kinetic = m.kinetic_energy(0.0, q, v);
     assert_close("T = ½ vᵀ M v", &[kinetic], &[v.dot(&momentum) / 2.0], IDENTITY);
-    let forces = mass_matrix * tau + m.bias_forces(q, v);
-    assert_close("τ = M a + h", m.inverse_dynamics(q, v, tau).as_slice(), forces.as_slice(), IDENTITY);
-    let acceleration = m.forward_dynamics(q, v, tau);
-    let back = m.inverse_dynamics(q, v, &acceleration);
+    let forces = mass_matrix * tau + m.bias_forces(0.0, q, v);
+    assert_close("τ = M a + h", m.inverse_dynamics(0.0, q, v, tau).as_slice(), forces.as_slice(), IDENTITY);
+    let acceleration = m.forward_dynamics(0.0, q, v, tau);
+    let back = m.inverse_dynamics(0.0, q, v, &acceleration);
     assert_close("inverse of forward dynamics", back.as_slice(), tau.as_slice(), 1e-9);
 
-    let momentum_at = |s: f64| m.generalized_momentum(&m.integrate(q, &(v * s)), &(v + acceleration * s));
-    let expected = m.momentum_rate(q, v) + tau;
+    let momentum_at =
+        |s: f64| m.generalized_momentum(0.0, &m.integrate(q, &(v * s)), &(v + acceleration * s));
+    let expected = m.momentum_rate(0.0, q, v) + tau;
     assert_close("ṗ", expected.as_slice(), rate(momentum_at).as_slice(), RATE);
 }
 
@@ -83,15 +84,15 @@ fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
     let gradient = SVector::<f64, NV>::from_fn(|i, _| {
         let mut direction = SVector::<f64, NV>::zeros();
         direction[i] = 1.0;
-        slope(|s| m.potential_energy(&m.integrate(q, &(direction * s))))
+        slope(|s| m.potential_energy(0.0, &m.integrate(q, &(direction * s))))
     });
-    let still = m.bias_forces(q, &SVector::zeros());
+    let still = m.bias_forces(0.0, q, &SVector::zeros());
     assert_close("h(q, 0) = ∂U/∂q", still.as_slice(), gradient.as_slice(), RATE);
 
-    let acceleration = m.forward_dynamics(q, v, tau);
+    let acceleration = m.forward_dynamics(0.0, q, v, tau);
     let power = slope(|s| {
         let q = m.integrate(q, &(v * s));
-        m.kinetic_energy(&q, &(v + acceleration * s)) + m.potential_energy(&q)
+        m.kinetic_energy(0.0, &q, &(v + acceleration * s)) + m.potential_energy(0.0, &q)
     });
     assert_close("d(T + U)/dt", &[power], &[v.dot(tau) - dissipation], RATE);
 }
@@ -125,8 +126,8 @@ where
     let mut random = Random::new(4);
     let q = random.configuration(m);
     let v = random.vector(1.0);
-    let still = m.bias_forces(&q, &SVector::zeros());
-    let (single, double) = (m.bias_forces(&q, &v) - still, m.bias_forces(&q, &(v * 2.0)) - still);
+    let still = m.bias_forces(0.0, &q, &SVector::zeros());
+    let (single, double) = (m.bias_forces(0.0, &q, &v) - still, m.bias_forces(0.0, &q, &(v * 2.0)) - still);
     assert_close("h(q, 2 v)", double.as_slice(), (single * 4.0).as_slice(), IDENTITY);
 }
 

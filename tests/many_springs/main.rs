@@ -27,6 +27,7 @@ fn gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let along = |i: usize| slope(|s| [m.potential_energy(&m.integrate(q, &(unit::<NV>(i) * s)))].into())[0];
+    let along =
+        |i: usize| slope(|s| [m.potential_energy(0.0, &m.integrate(q, &(unit::<NV>(i) * s)))].into())[0];
     SVector::from_fn(|i, _| along(i))
 }

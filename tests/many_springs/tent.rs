@@ -3,7 +3,7 @@
 use super::gradient;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{Rheonomic, at};
+use linkwork::{Mechanism, at};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
@@ -224,6 +224,6 @@ fn constraints_hold_against_many_springs_at_any_time() {
         let forces = tent.mass_matrix(t, &q) * a + tent.bias_forces(t, &q, &v);
         let given = tau + tent.constraint_jacobian(t, &q).transpose() * lambda;
         assert_close("M a + h", forces.as_slice(), given.as_slice(), 1e-9);
-        assert_eq!(Rheonomic::bias_forces(&tent, t, &q, &v), tent.bias_forces(t, &q, &v));
+        assert_eq!(Mechanism::bias_forces(&tent, t, &q, &v), tent.bias_forces(t, &q, &v));
     }
 }

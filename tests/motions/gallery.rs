@@ -24,7 +24,8 @@ pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usi
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let energy = |q: &_, v: &_| Mechanism::kinetic_energy(m, q, v) + Mechanism::potential_energy(m, q);
+    let energy =
+        |q: &_, v: &_| Mechanism::kinetic_energy(m, 0.0, q, v) + Mechanism::potential_energy(m, 0.0, q);
     let start = energy(q, v);
     let run = simulate(m).from(*q, *v).method(Rk4::step(h)).duration(h * steps as f64).sample_every(h);
     let (mut changes, mut count) = ([0.0_f64; 2], 0);

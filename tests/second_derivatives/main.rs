@@ -9,7 +9,7 @@ mod speeds;
 mod turning;
 
 use linkwork::prelude::*;
-use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives, discrete};
+use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::{compile, read};
@@ -102,7 +102,7 @@ fn assert_block<const R: usize, const C: usize>(
 
 fn check<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M, push: f64)
 where
-    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = f64>,
+    M: SecondDerivatives<NQ, NV, NU, Scalar = f64>,
 {
     for seed in 0..2 {
         let mut random = Random::new(seed);
@@ -117,7 +117,7 @@ where
         let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
         let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
-        let first = |q: &_, v: &_, a: &_| RheonomicDerivatives::inverse_dynamics_derivatives(m, t, q, v, a);
+        let first = |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
             contracted(&lambda, |d| first(&at_q(d), &v, &a).0 * moved(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).0),
@@ -132,8 +132,7 @@ where
         }
 
         let (qq, qv, vv, qf) = m.forward_dynamics_second_derivatives(t, &q, &v, &tau, &lambda);
-        let first =
-            |q: &_, v: &_, tau: &_| RheonomicDerivatives::forward_dynamics_derivatives(m, t, q, v, tau);
+        let first = |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
             contracted(&lambda, |d| first(&at_q(d), &v, &tau).0 * moved(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).0),
@@ -188,7 +187,7 @@ fn first_derivatives_change_as_second_ones_say() {
 /// Checks second derivatives of steps against differences of their Jacobians.
 fn check_steps<M, S, const NV: usize, const NU: usize>(name: &str, m: &M, method: &S, push: f64)
 where
-    M: RheonomicSecondDerivatives<NV, NV, NU, Scalar = f64>,
+    M: SecondDerivatives<NV, NV, NU, Scalar = f64>,
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let mut random = Random::new(11);
@@ -205,7 +204,7 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     q: SVector<f64, NV>,
     v: SVector<f64, NV>,
 ) where
-    M: RheonomicSecondDerivatives<NV, NV, NU, Scalar = f64>,
+    M: SecondDerivatives<NV, NV, NU, Scalar = f64>,
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let mut random = Random::new(12);

@@ -5,7 +5,7 @@
 use super::constrained::{Marble, Tied};
 use super::{Carrier, Solo};
 use linkwork::prelude::*;
-use linkwork::{RheonomicSecondDerivatives, discrete};
+use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
 
 /// Weights of the central second difference of tenth order at the multiples 1, 2, … of the step to both
@@ -20,7 +20,7 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     method: &S,
     state: (&SVector<f64, NQ>, &SVector<f64, NV>),
 ) where
-    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = f64>,
+    M: SecondDerivatives<NQ, NV, NU, Scalar = f64>,
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let (mut random, t, (q, v)) = (Random::new(5), 0.3, state);

@@ -214,7 +214,7 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
 ) where
-    M: Derivatives<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
     let u: SVector<f64, NU> = Random::new(9).vector(1.0);
     let end = |method: Step<'_, NQ, NV>| {

@@ -2,7 +2,7 @@
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::SVector;
-use linkwork::{Rheonomic, simulate};
+use linkwork::{Mechanism, simulate};
 
 /// Returns the state after `duration` from t = 0, integrated to the precision of `f64`.
 pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -12,7 +12,7 @@ pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
     duration: f64,
 ) -> (SVector<f64, NQ>, SVector<f64, NV>)
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     advance_from(mechanism, 0.0, q, v, duration)
 }
@@ -26,7 +26,7 @@ pub fn advance_from<M, const NQ: usize, const NV: usize, const NU: usize>(
     duration: f64,
 ) -> (SVector<f64, NQ>, SVector<f64, NV>)
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let method = DormandPrince::new().tolerance(1e-14, 1e-14);
     let run = simulate(mechanism).from(*q, *v).start_at(start).duration(duration).method(method);

@@ -7,7 +7,7 @@
 //! A second table has states in arrays that exceed the caches near the processor, on one thread.
 //! `runtime/python/benches/calls.py` measures the same from Python.
 
-use linkwork::Rheonomic;
+use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Batch, Lanes, mechanism};
 use linkwork_benches::random::Random;
@@ -74,7 +74,7 @@ where
     macro_rules! row {
         ($text:literal, $function:ident($($x:ident),*)) => {
             let times = measure([
-                &mut |k| { black_box(&Rheonomic::$function(m, 0.0, $(black_box(&$x.0[k])),*)); },
+                &mut |k| { black_box(&Mechanism::$function(m, 0.0, $(black_box(&$x.0[k])),*)); },
                 &mut |k| { black_box(&m4.$function(t4, $(black_box(&$x.1[k])),*)); },
                 &mut |k| { black_box(&m8.$function(t8, $(black_box(&$x.2[k])),*)); },
             ]);

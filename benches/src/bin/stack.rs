@@ -4,7 +4,7 @@
 //! call is made on a thread's stack that is filled with a pattern; the overwritten part is measured in KiB,
 //! rounded up, for one state and for eight.
 
-use linkwork::Rheonomic;
+use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Batch, Lanes, mechanism};
 use linkwork_benches::random::Random;
@@ -78,7 +78,7 @@ where
     let t8 = Lanes([0.0; 8]);
     macro_rules! row {
         ($text:literal, $one:ident, $eight:ident, $($x:ident $x8:ident),*) => {
-            let one = stack(&mut || { black_box(Rheonomic::$one(m, 0.0, $(&$x),*)); });
+            let one = stack(&mut || { black_box(Mechanism::$one(m, 0.0, $(&$x),*)); });
             let eight = stack(&mut || { black_box(m.$eight(t8, $(&$x8),*)); });
             println!("| {name} | {} | {} | {} |", $text, kib(one), kib(eight));
         };

@@ -3,7 +3,7 @@
 
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
-use linkwork::{RheonomicDerivatives, SecondDerivatives, discrete};
+use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, Rows};
@@ -34,7 +34,7 @@ struct PandaArm;
 /// Returns `[A B]` of a step under joint torques: the columns of `q`, `v` and `τ`.
 fn step<M, const N: usize>(m: &M, s: &State<N, N>) -> [[SMatrix<f64, N, N>; 2]; 3]
 where
-    M: RheonomicDerivatives<N, N, N, Scalar = f64>,
+    M: Derivatives<N, N, N, Scalar = f64>,
 {
     let found = discrete::transition(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau).expect("it moves");
     [[found.q_by_q, found.v_by_q], [found.q_by_v, found.v_by_v], [found.q_by_u, found.v_by_u]]
@@ -103,10 +103,10 @@ where
         );
     }
     let found = nanoseconds(vec![
-        own(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(&s.q, &s.v, &s.a))),
-        own(m, &states, |m, s| Unread(m.inverse_dynamics_second_derivatives(&s.q, &s.v, &s.a, &s.tau))),
-        own(m, &states, |m, s| Unread(m.forward_dynamics_derivatives(&s.q, &s.v, &s.tau))),
-        own(m, &states, |m, s| Unread(m.forward_dynamics_second_derivatives(&s.q, &s.v, &s.tau, &s.a))),
+        own(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))),
+        own(m, &states, |m, s| Unread(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))),
+        own(m, &states, |m, s| Unread(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))),
+        own(m, &states, |m, s| Unread(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))),
         own(m, &states, |m, s| Unread(step(m, s))),
         own(m, &states, |m, s| {
             let factors = (&s.a, &s.tau);

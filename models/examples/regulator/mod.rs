@@ -1,7 +1,7 @@
 //! Linear-quadratic regulator for any mechanism, in blocks of `NV` by `NV`. Several examples include this
 //! module.
 
-use linkwork::RheonomicDerivatives;
+use linkwork::Derivatives;
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::nalgebra::SVector;
 use linkwork::optimal::{Policy, Quadratic, Value, backward};
@@ -20,7 +20,7 @@ pub fn regulator<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     costs: &Quadratic<f64, NV, NU>,
 ) -> Option<(Policy<f64, NV, NU>, Value<f64, NV>)>
 where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
     S: DifferentiableStep<f64>,
 {
     let step = discrete::transition(m, method, 0.0, q, &SVector::zeros(), u).ok()?;

@@ -3,7 +3,7 @@
 use crate::{close, is_at};
 use linkwork::nalgebra::{Complex, Quaternion, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
-use linkwork::{Outputs, Rheonomic};
+use linkwork::{Mechanism, Outputs};
 use linkwork_design::flight::{self, Derivatives, FlightModes};
 use linkwork_design::mechanism::{linear_system, measured_system};
 use linkwork_design::steady::{SteadyState, equilibrium};
@@ -272,8 +272,8 @@ fn over(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQua
 
 /// Returns the rate of the velocity relative to the Earth, in axes of the Earth.
 fn acceleration(t: f64, q: &SVector<f64, 7>, v: &SVector<f64, 6>, u: [f64; 3]) -> Vector3<f64> {
-    let tau = Rheonomic::generalized_forces(&CRAFT, t, q, v, &u.into());
-    let rates = Rheonomic::forward_dynamics(&CRAFT, t, q, v, &tau);
+    let tau = Mechanism::generalized_forces(&CRAFT, t, q, v, &u.into());
+    let rates = Mechanism::forward_dynamics(&CRAFT, t, q, v, &tau);
     let (linear, angular) = (v.fixed_rows::<3>(0).into_owned(), v.fixed_rows::<3>(3).into_owned());
     let turn = UnitQuaternion::new_normalize(Quaternion::new(q[6], q[3], q[4], q[5]));
     turn * (rates.fixed_rows::<3>(0) + angular.cross(&linear))

@@ -28,7 +28,7 @@
 
 use crate::{Error, SecondOrderForm, Signal, StateSpace};
 use linkwork::constraint::Linearization;
-use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJacobians, Rheonomic};
+use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJacobians, Scleronomic};
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Converts a statically sized matrix to a dynamically sized one.
@@ -69,7 +69,7 @@ pub(crate) fn displacements<M, const NQ: usize, const NV: usize, const NU: usize
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     let speeds = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
     which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
@@ -82,7 +82,7 @@ pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
     speeds: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     let all = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
     let changes = speeds.into_iter().filter_map(|k| {
@@ -97,7 +97,7 @@ where
 /// rates of states of first order.
 pub(crate) fn acceleration_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<String>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     let primes = |k: usize| if k + M::FIRST_ORDER >= NV { "'" } else { "''" };
     M::VELOCITIES.iter().enumerate().map(|(k, name)| format!("{name}{}", primes(k))).collect()
@@ -106,7 +106,7 @@ where
 /// Returns the names and units of the inputs of a mechanism.
 pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     named(&M::INPUTS, &M::INPUT_UNITS)
 }
@@ -163,7 +163,7 @@ pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     u: &SVector<f64, NU>,
 ) -> Result<StateSpace, Error>
 where
-    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
     let motion = m.linear_motion(q, v, u);
     let n = M::FIRST_ORDER;
@@ -226,9 +226,7 @@ pub fn measured_system<M, const NQ: usize, const NV: usize, const NU: usize, con
     u: &SVector<f64, NU>,
 ) -> Result<StateSpace, Error>
 where
-    M: Derivatives<NQ, NV, NU>
-        + Mechanism<NQ, NV, NU, Scalar = f64>
-        + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64> + Scleronomic,
 {
     let motion = m.linear_motion(q, v, u);
     let seen = m.output_derivatives(t, q, v, &motion.acceleration, u).in_motion(&motion);
@@ -290,7 +288,7 @@ pub fn constrained_system<
     linear: &Linearization<f64, NX, NU, NP, NS>,
 ) -> Result<StateSpace, Error>
 where
-    M: linkwork::Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: linkwork::Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let (a, b) = (dynamic(&linear.a), dynamic(&linear.b));
     let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
@@ -308,16 +306,16 @@ pub(crate) fn effective_mass<M, const NQ: usize, const NV: usize, const NU: usiz
     v: &SVector<f64, NV>,
 ) -> DMatrix<f64>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     if !M::FEEDBACK || M::CONSTRAINED {
-        return dynamic(&Rheonomic::mass_matrix(m, t, q));
+        return dynamic(&Mechanism::mass_matrix(m, t, q));
     }
-    let at_rest = Rheonomic::inverse_dynamics(m, t, q, v, &SVector::zeros());
+    let at_rest = Mechanism::inverse_dynamics(m, t, q, v, &SVector::zeros());
     let mut mass = DMatrix::zeros(NV, NV);
     for k in 0..NV {
         let unit = SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
-        let column = Rheonomic::inverse_dynamics(m, t, q, v, &unit) - at_rest;
+        let column = Mechanism::inverse_dynamics(m, t, q, v, &unit) - at_rest;
         mass.column_mut(k).copy_from(&column);
     }
     mass
@@ -340,7 +338,7 @@ pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
     u: &SVector<f64, NU>,
 ) -> Result<SecondOrderForm, Error>
 where
-    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
     const { assert!(!M::CONSTRAINED, "a mechanism with constraints: call `second_order_form` of its trim") };
     if M::FIRST_ORDER > 0 {

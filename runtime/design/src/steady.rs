@@ -35,7 +35,7 @@
 //! derivatives, in a bounded number of iterations.
 
 use crate::Error;
-use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
+use linkwork::{Constrained, Derivatives, OutputDerivatives};
 use nalgebra::SVector;
 use problem::{Bounds, Measured};
 
@@ -134,7 +134,7 @@ pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
 /// hoop that rotates at constant speed, the results are the relative equilibria.
 pub fn equilibrium<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> Trim<'_, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     const { assert!(!M::CONSTRAINED, "a mechanism with constraints: call `constrained_equilibrium`") };
     Trim::new(m)
@@ -177,7 +177,7 @@ pub fn constrained_equilibrium<
     m: &M,
 ) -> Trim<'_, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU> + Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
     let multipliers: MultipliersOf<M, NQ, NV> = |m, t, q, v, tau| {
         let (_, lambda) = m.constrained_dynamics(t, q, v, tau);
@@ -192,7 +192,7 @@ fn owned<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Vec<String> {
 
 impl<'m, M, const NQ: usize, const NV: usize, const NU: usize> Trim<'m, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     fn new(m: &'m M) -> Self {
         Self {

@@ -1,7 +1,7 @@
 //! Simulations with settings and controllers from callers in other languages.
 
 use crate::{Failure, Number};
-use linkwork::Rheonomic;
+use linkwork::Mechanism;
 use linkwork::integrate::{
     DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Method, Rk4, Rodas, TimeStepping,
 };
@@ -77,7 +77,7 @@ pub fn simulate<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     motion: &mut Motion<'_, N>,
 ) -> Result<(), Failure>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = N>,
+    M: Mechanism<NQ, NV, NU, Scalar = N>,
     N: Number,
 {
     match motion.way {
@@ -102,7 +102,7 @@ pub fn simulate_with_contacts<M, N, const NQ: usize, const NV: usize, const NU: 
     motion: &mut Motion<'_, N>,
 ) -> Result<(), Failure>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = N>,
+    M: Mechanism<NQ, NV, NU, Scalar = N>,
     N: Number,
 {
     match motion.way {
@@ -121,7 +121,7 @@ fn go<M, N, S, const NQ: usize, const NV: usize, const NU: usize>(
     method: S,
 ) -> Result<(), Failure>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = N>,
+    M: Mechanism<NQ, NV, NU, Scalar = N>,
     N: Number,
     S: Method<N>,
 {

@@ -5,7 +5,7 @@ use crate::{Entry, Failure, LANES, Number};
 use linkwork::batch::{self, unwatched};
 use linkwork::integrate::Rk4;
 use linkwork::nalgebra::SVector;
-use linkwork::{Batch, Lanes, Rheonomic, discrete};
+use linkwork::{Batch, Lanes, Mechanism, discrete};
 
 /// Rollout of many states with the same number of steps.
 pub struct Rollout<'a, N> {
@@ -60,7 +60,7 @@ pub fn roll_out<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     rollout: Rollout<'_, N>,
 ) -> Result<(), Failure>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = N> + Sync,
+    M: Mechanism<NQ, NV, NU, Scalar = N> + Sync,
     N: Number + Entry<N>,
 {
     shared_out(rollout, [NQ, NV, NU], 1, |plan, part| one_by_one::<M, N, NQ, NV, NU>(m, plan, part))
@@ -169,7 +169,7 @@ fn one_by_one<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     part: Part<'_, N>,
 ) -> Failed
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = N>,
+    M: Mechanism<NQ, NV, NU, Scalar = N>,
     N: Number + Entry<N>,
 {
     let method = Rk4::step(plan.step);

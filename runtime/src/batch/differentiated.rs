@@ -2,7 +2,8 @@
 
 use super::{Batch, Lanewise};
 use crate::blocks::zeros;
-use crate::derivatives::{ByMotion, RheonomicDerivatives};
+use crate::derivatives::{ByMotion, Derivatives};
+use crate::forward::constants;
 use crate::lanes::{lane, set_lane};
 use crate::{Lanes, Real};
 use nalgebra::{SMatrix, SVector};
@@ -70,7 +71,7 @@ fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::
 macro_rules! of_each {
     ($($name:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         fn $name(&self, $($time: Self::Scalar,)? $($argument: &SVector<Self::Scalar, $of>),*) -> $result {
-            each(|k| RheonomicDerivatives::$name(self.mechanism, $($time.0[k],)? $(&lane($argument, k)),*))
+            each(|k| Derivatives::$name(self.mechanism, $($time.0[k],)? $(&lane($argument, k)),*))
         }
     )+};
 }
@@ -79,14 +80,12 @@ type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 type Pair<T, const NV: usize> = (Square<T, NV>, Square<T, NV>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
-impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> RheonomicDerivatives<NQ, NV, NU>
+impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU>
     for Lanewise<'_, M, L>
 where
-    M: Batch<NQ, NV, NU> + RheonomicDerivatives<NQ, NV, NU>,
+    M: Batch<NQ, NV, NU> + Derivatives<NQ, NV, NU>,
 {
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
+    constants!(derivatives, M);
 
     of_each! {
         integrate_derivatives[](dv: NV) -> Pair<Self::Scalar, NV>;

@@ -2,7 +2,7 @@
 
 use super::columns::{Input, Line, Output, count};
 use super::{Batch, Error, Lanewise};
-use crate::{Lanes, Rheonomic};
+use crate::{Lanes, Mechanism};
 use nalgebra::SMatrix;
 
 /// Defines the method of one function, given the names and numbers of entries of its arguments and result.
@@ -30,7 +30,7 @@ macro_rules! evaluations {
             for state in (0..count).step_by(L.max(1)) {
                 let $first = $first.load::<L>(state);
                 $(let $argument = $argument.load::<L>(state);)*
-                let values = Line($turn(Rheonomic::$function(self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*)));
+                let values = Line($turn(Mechanism::$function(self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*)));
                 to.store(state, &values.0);
             }
             Ok(())
@@ -40,7 +40,7 @@ macro_rules! evaluations {
 
 /// Evaluation of many states, `L` at a time, from and to slices of the caller. Entry `i` of state `k` of
 /// `count` is at index `i * count + k` (structure of arrays; matrices column by column). The length of the
-/// first argument determines the number of states. Shapes, units and frames are as in [`Rheonomic`]; `t` is
+/// first argument determines the number of states. Shapes, units and frames are as in [`Mechanism`]; `t` is
 /// the same for all states. Results do not depend on `L` or on the number of states; the functions allocate
 /// no memory.
 ///
@@ -49,21 +49,21 @@ macro_rules! evaluations {
 /// [`Error::Length`] for a slice of the wrong length; nothing is written then.
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
-        /// Computes `q ⊕ dv` ([`Rheonomic::integrate`]).
+        /// Computes `q ⊕ dv` ([`Mechanism::integrate`]).
         integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector;
-        /// Computes mass matrices ([`Rheonomic::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
+        /// Computes mass matrices ([`Mechanism::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
         mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector;
-        /// Computes bias forces ([`Rheonomic::bias_forces`]).
+        /// Computes bias forces ([`Mechanism::bias_forces`]).
         bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector;
-        /// Computes inverse dynamics ([`Rheonomic::inverse_dynamics`]).
+        /// Computes inverse dynamics ([`Mechanism::inverse_dynamics`]).
         inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector;
-        /// Computes forward dynamics ([`Rheonomic::forward_dynamics`]).
+        /// Computes forward dynamics ([`Mechanism::forward_dynamics`]).
         forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector;
-        /// Computes generalized forces of inputs ([`Rheonomic::generalized_forces`]).
+        /// Computes generalized forces of inputs ([`Mechanism::generalized_forces`]).
         generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector;
-        /// Computes kinetic energies ([`Rheonomic::kinetic_energy`]), one number per state.
+        /// Computes kinetic energies ([`Mechanism::kinetic_energy`]), one number per state.
         kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar;
-        /// Computes potential energies ([`Rheonomic::potential_energy`]), one number per state.
+        /// Computes potential energies ([`Mechanism::potential_energy`]), one number per state.
         potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar;
     }
 }

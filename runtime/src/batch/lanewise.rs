@@ -1,16 +1,17 @@
 //! Mechanisms with lanes as their scalar type.
 
-use super::Batch;
+use super::{Batch, Column};
+use crate::forward::constants;
+use crate::integrate::Hooks;
 use crate::blocks::zeros;
 use crate::contact::Touched;
 use crate::lanes::{lane, lane_by_lane, set_lane};
-use crate::{ByMotion, ConstraintError, Lanes, Rheonomic};
+use crate::{ByMotion, ConstraintError, Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 /// Mechanism with `L` lanes as its scalar type, made by [`Batch::lanes`], which evaluates several states in
-/// one call. It is itself a [`Rheonomic`] mechanism, and at an instant ([`at`](crate::at())) a
-/// [`Mechanism`](crate::Mechanism).
+/// one call. It is itself a [`Mechanism`].
 #[derive(Debug)]
 pub struct Lanewise<'m, M, const L: usize> {
     pub(super) mechanism: &'m M,
@@ -42,35 +43,66 @@ macro_rules! lanewise {
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
-impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU>
+impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU>
     for Lanewise<'_, M, L>
 where
     M: Batch<NQ, NV, NU>,
 {
     type Scalar = Lanes<M::Scalar, L>;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
-    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
-    const CONSTRAINED: bool = M::CONSTRAINED;
-    const SLIPPING: bool = M::SLIPPING;
-    const CONTACTING: bool = M::CONTACTING;
-    const LOCATABLE: bool = false;
-    const SPEEDS: bool = M::SPEEDS;
+    constants!(names, M);
 
     #[inline(always)]
     fn neutral(&self) -> SVector<Self::Scalar, NQ> {
         self.mechanism.neutral().map(Lanes::splat)
     }
 
-    /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
-    fn project(
+    /// Returns NaN in lanes in which the forces determine no acceleration, as `forward_dynamics` does.
+    fn try_forward_dynamics(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Result<(SVector<Self::Scalar, NQ>, SVector<Self::Scalar, NV>), ConstraintError> {
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        Ok(self.forward_dynamics(t, q, v, tau))
+    }
+
+    lanewise! {
+        integrate = integrate_lanes[](q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
+        difference = difference_lanes[](from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
+        tangent_rate = tangent_rate_lanes[](dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        displacement_rate = displacement_rate_lanes[](q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+        mass_matrix = mass_matrix_lanes[t](q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
+        bias_forces = bias_forces_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+        inverse_dynamics = inverse_dynamics_lanes[t](q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
+        forward_dynamics = forward_dynamics_lanes[t](q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
+        generalized_forces = generalized_forces_lanes[t](q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
+        kinetic_energy = kinetic_energy_lanes[t](q: NQ, v: NV) -> Self::Scalar;
+        potential_energy = potential_energy_lanes[t](q: NQ) -> Self::Scalar;
+        generalized_momentum = generalized_momentum_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+        momentum_rate = momentum_rate_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
+    }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize>
+    Hooks<Lanes<M::Scalar, L>, NQ, NV, NU> for Lanewise<'_, M, L>
+where
+    M: Batch<NQ, NV, NU>,
+{
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const SPEEDS: bool = M::SPEEDS;
+
+    /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
+    fn project(
+        &self,
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
+        v: &Column<M::Scalar, L, NV>,
+    ) -> Result<(Column<M::Scalar, L, NQ>, Column<M::Scalar, L, NV>), ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.project(t.0[k], &lane(q, k), &lane(v, k)));
         if let Some(Err(error)) = results.first()
@@ -89,9 +121,9 @@ where
     /// Whether the state of any lane is nearly singular; all lanes then use accelerations.
     fn is_nearly_singular(
         &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
+        dv: &Column<M::Scalar, L, NV>,
     ) -> bool {
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
@@ -99,12 +131,12 @@ where
     /// Computes the derivatives lane by lane.
     fn acceleration_derivatives(
         &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        u: &SVector<Self::Scalar, NU>,
-    ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
-        let mut all: ByMotion<Self::Scalar, NV, NU> = (zeros(), zeros(), zeros());
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
+        v: &Column<M::Scalar, L, NV>,
+        u: &Column<M::Scalar, L, NU>,
+    ) -> Option<ByMotion<Lanes<M::Scalar, L>, NV, NU>> {
+        let mut all: ByMotion<Lanes<M::Scalar, L>, NV, NU> = (zeros(), zeros(), zeros());
         for k in 0..L {
             let (by_q, by_v, by_u) =
                 self.mechanism.acceleration_derivatives(t.0[k], &lane(q, k), &lane(v, k), &lane(u, k))?;
@@ -118,11 +150,11 @@ where
     /// Transports the velocity lane by lane.
     fn carry(
         &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        dv: &SVector<Self::Scalar, NV>,
-        v: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
+        dv: &Column<M::Scalar, L, NV>,
+        v: &Column<M::Scalar, L, NV>,
+    ) -> Column<M::Scalar, L, NV> {
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
@@ -130,10 +162,10 @@ where
     /// all.
     fn contact_start(
         &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
         parts: bool,
-    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+    ) -> Result<Column<M::Scalar, L, NQ>, ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.contact_start(t.0[k], &lane(q, k), parts));
         if let Some(Err(error)) = results.iter().find(|result| result.is_err()) {
@@ -146,12 +178,12 @@ where
     /// if all lanes fail.
     fn contact_step(
         &self,
-        t: Self::Scalar,
-        start: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
-        end: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
-        given: &SVector<Self::Scalar, NV>,
-        h: Self::Scalar,
-    ) -> Result<Touched<Self::Scalar, NQ, NV>, ConstraintError> {
+        t: Lanes<M::Scalar, L>,
+        start: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
+        end: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
+        given: &Column<M::Scalar, L, NV>,
+        h: Lanes<M::Scalar, L>,
+    ) -> Result<Touched<Lanes<M::Scalar, L>, NQ, NV>, ConstraintError> {
         let results: [_; L] = core::array::from_fn(|k| {
             let [(start, v), (q, free)] = [start, end].map(|(q, v)| (lane(q, k), lane(v, k)));
             self.mechanism.contact_step(t.0[k], (&start, &v), (&q, &free), &lane(given, k), h.0[k])
@@ -171,52 +203,25 @@ where
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
-        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+        V: crate::contact::Visitor<Lanes<M::Scalar, L>, NQ, NV, NU>,
     {
         None
-    }
-
-    /// Returns NaN in lanes in which the forces determine no acceleration, as `forward_dynamics` does.
-    fn try_forward_dynamics(
-        &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        tau: &SVector<Self::Scalar, NV>,
-    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
-        Ok(self.forward_dynamics(t, q, v, tau))
     }
 
     /// Computes the impulse lane by lane if there are constraints.
     fn impulse(
         &self,
-        t: Self::Scalar,
-        q: &SVector<Self::Scalar, NQ>,
-        v: &SVector<Self::Scalar, NV>,
-        h: Self::Scalar,
-        p: &SVector<Self::Scalar, NV>,
-    ) -> SVector<Self::Scalar, NV> {
+        t: Lanes<M::Scalar, L>,
+        q: &Column<M::Scalar, L, NQ>,
+        v: &Column<M::Scalar, L, NV>,
+        h: Lanes<M::Scalar, L>,
+        p: &Column<M::Scalar, L, NV>,
+    ) -> Column<M::Scalar, L, NV> {
         if M::CONSTRAINED {
             let one =
                 |k: usize| self.mechanism.impulse(t.0[k], &lane(q, k), &lane(v, k), h.0[k], &lane(p, k));
             return lane_by_lane(one);
         }
         self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
-    }
-
-    lanewise! {
-        integrate = integrate_lanes[](q: NQ, dv: NV) -> SVector<Self::Scalar, NQ>;
-        difference = difference_lanes[](from: NQ, to: NQ) -> SVector<Self::Scalar, NV>;
-        tangent_rate = tangent_rate_lanes[](dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
-        displacement_rate = displacement_rate_lanes[](q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
-        mass_matrix = mass_matrix_lanes[t](q: NQ) -> SMatrix<Self::Scalar, NV, NV>;
-        bias_forces = bias_forces_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-        inverse_dynamics = inverse_dynamics_lanes[t](q: NQ, v: NV, a: NV) -> SVector<Self::Scalar, NV>;
-        forward_dynamics = forward_dynamics_lanes[t](q: NQ, v: NV, tau: NV) -> SVector<Self::Scalar, NV>;
-        generalized_forces = generalized_forces_lanes[t](q: NQ, v: NV, u: NU) -> SVector<Self::Scalar, NV>;
-        kinetic_energy = kinetic_energy_lanes[t](q: NQ, v: NV) -> Self::Scalar;
-        potential_energy = potential_energy_lanes[t](q: NQ) -> Self::Scalar;
-        generalized_momentum = generalized_momentum_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
-        momentum_rate = momentum_rate_lanes[t](q: NQ, v: NV) -> SVector<Self::Scalar, NV>;
     }
 }

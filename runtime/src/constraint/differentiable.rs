@@ -4,7 +4,7 @@
 use super::layout::MotionDerivatives;
 use super::{Constrained, Solution};
 use crate::blocks::zeros;
-use crate::{At, ByMotion, Real, RheonomicDerivatives};
+use crate::{At, ByMotion, Derivatives, Real};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Derivatives `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers, one row for each of the `NC` constraints.
@@ -27,7 +27,7 @@ pub trait ConstrainedDerivatives<
     const NU: usize,
     const NH: usize,
     const NC: usize,
->: Constrained<NQ, NV, NU, NH, NC> + RheonomicDerivatives<NQ, NV, NU>
+>: Constrained<NQ, NV, NU, NH, NC> + Derivatives<NQ, NV, NU>
 {
     /// Returns the derivatives of `M a + h − Jᵀ λ`, of `J a + b` and of the constraint rates, for any `a` and
     /// `λ`.

@@ -4,7 +4,7 @@ use super::ConstrainedDerivatives;
 use super::differentiable::{multipliers, solved_derivatives};
 use super::layout::ConstraintCurvature;
 use crate::blocks::{add_multiple, add_product, product, transposed};
-use crate::{At, Real, RheonomicSecondDerivatives, SecondOrder};
+use crate::{At, Real, SecondDerivatives, SecondOrder};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Second derivatives of a mechanism's constrained equations. `#[mechanism(…, second_derivatives)]`
@@ -23,7 +23,7 @@ pub trait ConstrainedSecondDerivatives<
     const NU: usize,
     const NH: usize,
     const NC: usize,
->: ConstrainedDerivatives<NQ, NV, NU, NH, NC> + RheonomicSecondDerivatives<NQ, NV, NU>
+>: ConstrainedDerivatives<NQ, NV, NU, NH, NC> + SecondDerivatives<NQ, NV, NU>
 {
     /// Returns the second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` for any `a` and
     /// `λ`: the equations of motion, the acceleration constraints and the constraint rates, contracted with

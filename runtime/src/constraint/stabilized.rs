@@ -3,10 +3,11 @@
 use super::differentiable::{column, each_column, multipliers};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::Touched;
-use crate::derivatives::{ByMotion, RheonomicDerivatives, under_inputs};
-use crate::forward::{each_function, inherent_functions};
+use crate::derivatives::{ByMotion, Derivatives, under_inputs};
+use crate::forward::{constants, each_function, inherent_functions};
+use crate::integrate::Hooks;
 use crate::private::constant;
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Mechanism whose constraint violations decay exponentially.
@@ -143,24 +144,15 @@ inherent_functions!(impl<'m, M, S; const NH, NC> Stabilized<'m, M, S, NH, NC>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
-    Rheonomic<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
+    Mechanism<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
 where
     M: Constrained<NQ, NV, NU, NH, NC>,
 {
     type Scalar = M::Scalar;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
-    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
-    const FEEDBACK: bool = true;
-    const CONTACTING: bool = M::CONTACTING;
-    const LOCATABLE: bool = false;
-    const FIRST_ORDER: usize = M::FIRST_ORDER;
-    const SPEEDS: bool = M::SPEEDS;
+    constants!(names, M);
 
-    each_function!(space, plain Rheonomic, self => self.mechanism);
-    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
+    each_function!(space, plain Mechanism, self => self.mechanism);
+    each_function!(dynamics, pass Mechanism, self => self.mechanism);
 
     fn forward_dynamics(
         &self,
@@ -181,6 +173,19 @@ where
     ) -> Result<SVector<M::Scalar, NV>, ConstraintError> {
         Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction(t, q, v))
     }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    Hooks<M::Scalar, NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
+where
+    M: Constrained<NQ, NV, NU, NH, NC>,
+{
+    const FEEDBACK: bool = true;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     /// Returns the state unchanged, because it need not satisfy the constraints.
     fn project(
@@ -264,16 +269,14 @@ where
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
-    RheonomicDerivatives<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
+    Derivatives<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
 where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
+    constants!(derivatives, M);
 
-    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
-    each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
+    each_function!(tangent, plain Derivatives, self => self.mechanism);
+    each_function!(given_derivatives, pass Derivatives, self => self.mechanism);
 
     fn forward_dynamics_derivatives(
         &self,

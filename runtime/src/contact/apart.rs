@@ -1,8 +1,8 @@
 //! A mechanism whose contacts are left out.
 
-use crate::Rheonomic;
-use crate::forward::{each_function, inherent_functions};
-use nalgebra::{SMatrix, SVector};
+use crate::Mechanism;
+use crate::forward::{constants, each_function, inherent_functions};
+use crate::integrate::Hooks;
 
 /// A mechanism whose contacts do nothing; made by [`apart`].
 #[derive(Clone, Copy, Debug)]
@@ -19,30 +19,34 @@ pub fn apart<M>(mechanism: &M) -> Apart<'_, M> {
 inherent_functions!(impl<'m, M> Apart<'m, M>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
-impl<M, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU> for Apart<'_, M>
+impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for Apart<'_, M>
 where
-    M: Rheonomic<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU>,
 {
     type Scalar = M::Scalar;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
-    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
+    constants!(names, M);
+
+    each_function!(space, plain Mechanism, self => self.mechanism);
+    each_function!(dynamics, pass Mechanism, self => self.mechanism);
+    each_function!(accelerations, pass Mechanism, self => self.mechanism);
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize> Hooks<M::Scalar, NQ, NV, NU> for Apart<'_, M>
+where
+    M: Mechanism<NQ, NV, NU>,
+{
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
     const FEEDBACK: bool = M::FEEDBACK;
     const CONTACTING: bool = false;
     const LOCATABLE: bool = false;
 
-    each_function!(space, plain Rheonomic, self => self.mechanism);
-    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
-    each_function!(accelerations, pass Rheonomic, self => self.mechanism);
-    each_function!(methods, pass Rheonomic, self => self.mechanism);
+    each_function!(methods, [M::Scalar] pass Hooks, self => self.mechanism);
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
-        V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
+        V: crate::contact::Visitor<M::Scalar, NQ, NV, NU>,
     {
         None
     }

@@ -9,7 +9,7 @@ use crate::blocks::{
 };
 use crate::constraint::ConstraintError;
 use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
-use crate::{Real, RheonomicDerivatives};
+use crate::{Derivatives, Real};
 use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
@@ -28,7 +28,7 @@ pub trait ContactDerivatives<
     const NU: usize,
     const NK: usize,
     const NR: usize,
->: Contacts<NQ, NV, NU, NK, NR> + RheonomicDerivatives<NQ, NV, NU>
+>: Contacts<NQ, NV, NU, NK, NR> + Derivatives<NQ, NV, NU>
 {
     /// Derivatives of `Gᵀ f`, of `G a + b` and of the rates, at any accelerations `a` and forces `f` of the
     /// contacts, N and N·m.

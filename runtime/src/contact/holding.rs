@@ -4,10 +4,11 @@ use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives, deriv
 use super::held::{Held, held};
 use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
-use crate::derivatives::{ByMotion, RheonomicDerivatives, unknown};
-use crate::forward::{each_function, inherent_functions};
+use crate::derivatives::{ByMotion, Derivatives, unknown};
+use crate::forward::{constants, each_function, inherent_functions};
+use crate::integrate::Hooks;
 use crate::private::constant;
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// A mechanism while given contacts stay closed and all others open; made by [`hold`].
@@ -166,27 +167,16 @@ inherent_functions!(impl<'m, M, S; const NK, NR> Holding<'m, M, S, NK, NR>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    Rheonomic<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
+    Mechanism<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     type Scalar = T;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
-    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
-    const CONSTRAINED: bool = false;
-    const SLIPPING: bool = M::SLIPPING;
-    const FEEDBACK: bool = true;
-    const CONTACTING: bool = false;
-    const LOCATABLE: bool = false;
-    const FIRST_ORDER: usize = M::FIRST_ORDER;
-    const SPEEDS: bool = M::SPEEDS;
+    constants!(names, M);
 
-    each_function!(space, plain Rheonomic, self => self.mechanism);
-    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
+    each_function!(space, plain Mechanism, self => self.mechanism);
+    each_function!(dynamics, pass Mechanism, self => self.mechanism);
 
     fn forward_dynamics(
         &self,
@@ -208,6 +198,22 @@ where
         let rates = self.mechanism.contact_rates(t, q, v);
         held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held.a)
     }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
+    Hooks<T, NQ, NV, NU> for Holding<'_, M, T, NK, NR>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    const CONSTRAINED: bool = false;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = true;
+    const CONTACTING: bool = false;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     /// Nothing is brought onto contacts or constraints.
     fn project(
@@ -285,17 +291,15 @@ where
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    RheonomicDerivatives<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
+    Derivatives<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
 where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
-    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
-    const TURNED: Option<(usize, usize)> = M::TURNED;
+    constants!(derivatives, M);
 
-    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
-    each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
+    each_function!(tangent, plain Derivatives, self => self.mechanism);
+    each_function!(given_derivatives, pass Derivatives, self => self.mechanism);
 
     fn forward_dynamics_derivatives(
         &self,

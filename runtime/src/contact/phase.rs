@@ -8,11 +8,12 @@ use super::problem::{Problem, entry, put};
 use super::total::Total;
 use super::{Contacts, Law, Touch, impact, near};
 use crate::constraint::ConstraintError;
-use crate::forward::each_function;
+use crate::forward::{constants, each_function};
+use crate::integrate::Hooks;
 use crate::private::{constant, epsilon};
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use core::ops::Range;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// Of a mechanism with `NK` contacts and `NR` rates, what each does until the next event.
 #[derive(Clone, Copy, Debug)]
@@ -254,28 +255,16 @@ pub(crate) struct Phased<'m, M, T, const NK: usize, const NR: usize> {
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    Rheonomic<NQ, NV, NU> for Phased<'_, M, T, NK, NR>
+    Mechanism<NQ, NV, NU> for Phased<'_, M, T, NK, NR>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     type Scalar = T;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NV] = M::VELOCITY_UNITS;
-    const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
-    const CONSTRAINED: bool = M::CONSTRAINED;
-    const SLIPPING: bool = M::SLIPPING;
-    const FEEDBACK: bool = M::FEEDBACK;
-    const CONTACTING: bool = false;
-    const LOCATABLE: bool = false;
-    const FIRST_ORDER: usize = M::FIRST_ORDER;
-    const SPEEDS: bool = M::SPEEDS;
+    constants!(names, M);
 
-    each_function!(space, plain Rheonomic, self => self.mechanism);
-    each_function!(dynamics, pass Rheonomic, self => self.mechanism);
-    each_function!(methods, pass Rheonomic, self => self.mechanism);
+    each_function!(space, plain Mechanism, self => self.mechanism);
+    each_function!(dynamics, pass Mechanism, self => self.mechanism);
 
     fn forward_dynamics(
         &self,
@@ -299,6 +288,24 @@ where
         let along = phase.braked(&mechanism.contact_rates(t, q, v), layout);
         held(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2])).map(|(held, _)| held.a)
     }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
+    Hooks<T, NQ, NV, NU> for Phased<'_, M, T, NK, NR>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = false;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
+
+    each_function!(methods, [T] pass Hooks, self => self.mechanism);
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where

@@ -4,7 +4,7 @@
 use super::explicit::Sensitive;
 use crate::blocks::{add_multiple, add_product, product, transposed};
 use crate::private::constant;
-use crate::{InputSecondOrder, Real, RheonomicSecondDerivatives};
+use crate::{InputSecondOrder, Real, SecondDerivatives};
 use nalgebra::{SMatrix, SVector};
 
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
@@ -81,7 +81,7 @@ pub(super) struct Displacement<T, const NV: usize> {
 impl<T: Real, const NV: usize> Displacement<T, NV> {
     pub(super) fn of<M, const NQ: usize, const NU: usize>(m: &M, dv: &SVector<T, NV>) -> Self
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let (by_q, by_dv) = m.integrate_derivatives(dv);
         Self { by_q, by_dv, dv: *dv }
@@ -100,7 +100,7 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
         lambda: &SVector<T, NV>,
     ) -> Curvature<T, NV>
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let still = SVector::zeros();
         // Derivatives of v + ½ [dv, v] + … at dv = 0.

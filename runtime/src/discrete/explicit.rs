@@ -4,7 +4,7 @@ use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected}
 use crate::Real;
 use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, zeros};
 use crate::constraint::ConstrainedDerivatives;
-use crate::derivatives::{RheonomicDerivatives, accelerated_into};
+use crate::derivatives::{Derivatives, accelerated_into};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
@@ -74,7 +74,7 @@ pub(super) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: us
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Start<'_, M, T, NQ, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     /// Returns the configuration `q ⊕ displacement` and the derivatives of its motion.
     pub(super) fn moved(
@@ -167,7 +167,7 @@ pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usiz
     into: &mut Transition<T, NQ, NV, NU>,
 ) where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     multiple_into(h, by_q, &mut into.v_by_q);
     multiple_into(h, by_v, &mut into.v_by_v);
@@ -184,7 +184,7 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     step: &mut Transition<T, NQ, NV, NU>,
 ) where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     for (j, column) in step.v_by_v.data.0.iter_mut().enumerate() {
         column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
@@ -223,7 +223,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         u: &SVector<T, NU>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let mut step = Transition::zeros();
         self.differentiate_into(mechanism, t, q, v, u, &mut step)?;
@@ -240,7 +240,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         step: &mut Transition<T, NQ, NV, NU>,
     ) -> Result<(), Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
         let Transition { v_by_q, v_by_v, v_by_u, .. } = &mut *step;
@@ -287,7 +287,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         u: &SVector<T, NU>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         if NQ == NV && !M::SPEEDS {

@@ -9,7 +9,7 @@
 use super::projected::Corrections;
 use super::{DifferentiableStep, Transition, advanced};
 use crate::constraint::{ConstrainedDerivatives, column, each_column, multipliers};
-use crate::derivatives::{ByMotion, Derivatives, RheonomicDerivatives};
+use crate::derivatives::{ByMotion, Derivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
 use crate::speeds::{at_midpoint, led, way_of};
@@ -25,7 +25,7 @@ fn momentum<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     // With feedback the velocity replaces the momentum.
     if M::FEEDBACK {
@@ -44,7 +44,7 @@ fn rate<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> ByMotion<T, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     if M::FEEDBACK {
         let motion = at(m, t).linear_motion(q, v, u);
@@ -64,7 +64,7 @@ fn inertial<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> ByMotion<T, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let (by_q, by_v) = m.momentum_rate_derivatives(t, q, v);
     (by_q - m.momentum_rate_derivatives(t, q, &SVector::zeros()).0, by_v, SMatrix::zeros())
@@ -183,7 +183,7 @@ where
 impl<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> Made<'a, M, T, NQ, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     fn half(&self) -> T {
         self.h * constant(0.5)
@@ -294,7 +294,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
         u: &SVector<T, NU>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         Ok(self.made(m, t, q, v, u)?.free())
     }
@@ -334,7 +334,7 @@ impl<T: Real> ImplicitMidpoint<T> {
         u: &SVector<T, NU>,
     ) -> Result<Made<'a, M, T, NQ, NV, NU>, Error>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
         let (end, mean) = advanced(m, self, t, q, v, u, h)?;

@@ -4,7 +4,7 @@ use super::FixedStep;
 use crate::blocks::{add_product, product};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::{constant, to_f64};
-use crate::{Derivatives, Real, RheonomicDerivatives, Sensitivities, at};
+use crate::{Derivatives, Real, Sensitivities, at};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the derivatives of configuration and velocity after a step with respect to the parameters,
@@ -54,7 +54,7 @@ pub fn by_parameters<M, T, S, const NQ: usize, const NV: usize, const NU: usize,
 ) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     S: StepByParameters<T>,
 {
     const {
@@ -89,7 +89,7 @@ pub trait StepByParameters<T: Real>: FixedStep<T> {
         u: &SVector<T, NU>,
     ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>;
+        M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>;
 }
 
 /// Vector of the tangent space with its derivatives with respect to the parameters.
@@ -125,7 +125,7 @@ fn acceleration<M, T, const NQ: usize, const NV: usize, const NU: usize, const N
 ) -> Changing<T, NV, NP>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
 {
     let here = m.integrate(q, &displacement.value);
     let moved = moved(m, q, displacement);
@@ -150,7 +150,7 @@ fn moved<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usiz
 ) -> SMatrix<T, NV, NP>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     if NQ == NV && !M::SPEEDS {
         displacement.by
@@ -168,7 +168,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
         u: &SVector<T, NU>,
     ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
         let (h, v) = (self.length(), Changing::fixed(v));
         let after = v.plus(h, &acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
@@ -185,7 +185,7 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         u: &SVector<T, NU>,
     ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+        M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
         let (h, v) = (self.length(), Changing::fixed(v));
         let half = h * constant(0.5);

@@ -11,7 +11,7 @@ use super::Transition;
 use super::explicit::{Sensitive, Start};
 use crate::Real;
 use crate::blocks::{add_multiple, add_product, combined};
-use crate::derivatives::RheonomicDerivatives;
+use crate::derivatives::Derivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
@@ -38,7 +38,7 @@ fn stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Sensitive<T, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let (mut displacement, mut velocity) = (v * after, *v);
     if let Some((s, near)) = near {
@@ -71,7 +71,7 @@ pub(super) fn runge_kutta<M, T, const NQ: usize, const NV: usize, const NU: usiz
 ) -> Transition<T, NQ, NV, NU>
 where
     T: Real,
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let half = h * constant(0.5);
     let k1 = stage(start, v, T::zero(), None, None);

@@ -8,7 +8,7 @@ use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, Curvature
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::{constant, to_f64};
-use crate::{At, Derivatives, InputSecondOrder, Real, RheonomicSecondDerivatives, SecondDerivatives, at};
+use crate::{At, Derivatives, InputSecondOrder, Real, SecondDerivatives, at};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the second derivatives of `λᵀ x⁺` with respect to state and inputs, with `x⁺` the state after a
@@ -60,7 +60,7 @@ pub fn second_order<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<InputSecondOrder<T, NV, NU>, Error>
 where
     T: Real,
-    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+    M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     S: TwiceDifferentiableStep<T>,
 {
     const {
@@ -147,7 +147,7 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
         factors: (&SVector<T, NV>, &SVector<T, NV>),
     ) -> InputSecondOrder<T, NV, NU>
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>;
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>;
 }
 
 impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
@@ -167,7 +167,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
         (by_q, by_v): (&SVector<T, NV>, &SVector<T, NV>),
     ) -> InputSecondOrder<T, NV, NU>
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         // q⁺ = q ⊕ h v⁺, v⁺ = v + h v̇.
         let (h, now) = (self.length(), at(mechanism, t));
@@ -214,7 +214,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         (by_q, by_v): (&SVector<T, NV>, &SVector<T, NV>),
     ) -> InputSecondOrder<T, NV, NU>
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         let half = h * constant(0.5);
@@ -275,7 +275,7 @@ fn add_displacement<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> SVector<T, NV>
 where
     T: Real,
-    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+    M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
     let moved = Displacement::of(mechanism, &displacement.value);
     moved.curvature(mechanism, lambda).add_to(sum, &Sensitive::displacement(), displacement);
@@ -295,7 +295,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         v: Sensitive<T, NV, NU>,
     ) -> Self
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let (now, q): (At<'_, M, T>, _) = (at(start.mechanism, start.t + after), start.moved(&displacement));
         let motion = now.linear_motion(&q.0, &v.value, start.u);
@@ -306,7 +306,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
     /// the step.
     fn rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
     where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         if NQ == NV {
             return self.v;
@@ -331,7 +331,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         lambda: &SVector<T, NV>,
         sum: &mut InputSecondOrder<T, NV, NU>,
     ) where
-        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+        M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let now: At<'_, M, T> = at(start.mechanism, start.t + self.after);
         let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&self.q.0, &self.v.value, start.u, lambda);

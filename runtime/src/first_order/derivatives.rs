@@ -3,7 +3,7 @@
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, apart, with_diagonal};
 use crate::derivatives::{ByMotion, unknown};
-use crate::{Real, RheonomicDerivatives};
+use crate::{Derivatives, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the block matrix of `block` (velocities) with rows for the states below it and columns for the
@@ -23,7 +23,7 @@ fn bordered<T: Real, const NV: usize, const NX: usize, const NE: usize>(
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
-    RheonomicDerivatives<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
+    Derivatives<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
 where
     M: FirstOrderDerivatives<NQ, NV, NU, NX, NE>,
 {

@@ -5,8 +5,9 @@ use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::ByMotion;
 use crate::forward::inherent_functions;
+use crate::integrate::Hooks;
 use crate::private::put_block;
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Mechanism with its first-order states among its velocities ([`FirstOrder::extended`]): `v` is `[v, x]`.
@@ -14,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 /// A state is a velocity without a coordinate: it has no entry in `q`, and `q ⊕ dv` does not depend on its
 /// displacement. Its diagonal entry of the mass matrix is one, and its bias force is its negative rate
 /// without inputs. `M v̇ + h = τ`, the inverse of this equation and their derivatives are valid as for any
-/// mechanism. Energies are those of the mechanism alone. The number of states is [`Rheonomic::FIRST_ORDER`].
+/// mechanism. Energies are those of the mechanism alone. The number of states is [`Mechanism::FIRST_ORDER`].
 #[derive(Clone, Copy, Debug)]
 pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
     pub(super) mechanism: &'m M,
@@ -86,7 +87,7 @@ inherent_functions!(impl<'m, M; const NV, NX, NE> Extended<'m, M, NV, NX, NE>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
-    Rheonomic<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
+    Mechanism<NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
 where
     M: FirstOrder<NQ, NV, NU, NX, NE>,
 {
@@ -96,13 +97,6 @@ where
     const INPUTS: [&'static str; NU] = M::INPUTS;
     const VELOCITY_UNITS: [&'static str; NE] = names(M::VELOCITY_UNITS, M::STATE_UNITS);
     const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
-    const CONSTRAINED: bool = M::CONSTRAINED;
-    const SLIPPING: bool = M::SLIPPING;
-    const FEEDBACK: bool = M::FEEDBACK;
-    const CONTACTING: bool = M::CONTACTING;
-    const LOCATABLE: bool = false;
-    const FIRST_ORDER: usize = NX;
-    const SPEEDS: bool = M::SPEEDS;
 
     fn neutral(&self) -> SVector<M::Scalar, NQ> {
         self.mechanism.neutral()
@@ -237,6 +231,21 @@ where
         let (m, v) = self.at(v);
         together(&m.momentum_rate(t, q, &v), &m.state_rates(t, q, &v, &SVector::zeros()))
     }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
+    Hooks<M::Scalar, NQ, NE, NU> for Extended<'_, M, NV, NX, NE>
+where
+    M: FirstOrder<NQ, NV, NU, NX, NE>,
+{
+    const CONSTRAINED: bool = M::CONSTRAINED;
+    const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
+    const CONTACTING: bool = M::CONTACTING;
+    const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = NX;
+    const SPEEDS: bool = M::SPEEDS;
 
     fn project(
         &self,

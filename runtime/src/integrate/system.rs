@@ -6,7 +6,7 @@ use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::private::{constant, epsilon, to_f64};
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Inputs `u` of a mechanism over time, implemented for all input types that `simulate` accepts.
@@ -258,7 +258,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error>
     where
-        M: Rheonomic<NQ, NV, NU, Scalar = T>,
+        M: Mechanism<NQ, NV, NU, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
         const {
@@ -290,7 +290,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         v: &SVector<T, NV>,
     ) -> SVector<T, NV>
     where
-        M: Rheonomic<NQ, NV, NU, Scalar = T>,
+        M: Mechanism<NQ, NV, NU, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
         if NU == 0 {
@@ -303,7 +303,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
 impl<T, M, I, const NQ: usize, const NV: usize, const NU: usize> Dynamics<T, NQ, NV> for System<'_, M, I, NU>
 where
     T: Real,
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     I: Inputs<T, NQ, NV, NU>,
 {
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ> {

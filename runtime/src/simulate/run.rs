@@ -5,7 +5,7 @@ use super::event::together;
 use super::{Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, not_negative, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
-use crate::{Real, Rheonomic};
+use crate::{Mechanism, Real};
 use nalgebra::SVector;
 
 /// Number of parts into which each step is divided in the search for events.
@@ -28,7 +28,7 @@ pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, co
     unit: &SVector<T, NQ>,
 ) -> Result<(), Error>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
     let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
     // From the end: NaN in a quaternion may spread to the position before it.
@@ -114,7 +114,7 @@ type Due<T, const NQ: usize, const NV: usize, const NU: usize> = Result<Option<S
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
     Simulation<'_, M, T, I, S, E, NQ, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
     S: Method<T>,

@@ -301,7 +301,8 @@ fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: us
     q: SVector<M::Scalar, NQ>,
     v: SVector<M::Scalar, NV>,
 ) -> M::Scalar {
-    let energy = |q, v| mechanism.kinetic_energy(q, v) + mechanism.potential_energy(q);
+    let t = nalgebra::zero();
+    let energy = |q, v| mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q);
     let end = simulate(mechanism).from(q, v).duration(nalgebra::one()).finish().unwrap();
     energy(&end.q, &end.v) - energy(&q, &v)
 }

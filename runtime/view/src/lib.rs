@@ -26,7 +26,7 @@ pub use motion::Motion;
 pub use page::Page;
 
 use linkwork::simulate::Sample;
-use linkwork::{Drawn, Rheonomic};
+use linkwork::{Drawn, Mechanism};
 
 /// Returns a page that shows the motion of a mechanism: [`Motion::of`] on a [`Page`].
 ///
@@ -39,10 +39,10 @@ use linkwork::{Drawn, Rheonomic};
 pub fn page<M, const NQ: usize, const NV: usize, const NU: usize>(
     title: &str,
     mechanism: &M,
-    samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+    samples: &[Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
 ) -> Result<String, Error>
 where
-    M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+    M: Mechanism<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
     Ok(Page::new(title).motion(Motion::of("", mechanism, samples)?).html())
 }

@@ -6,7 +6,7 @@ use crate::server::Server;
 use crate::{Error, Figure, Motion, Page};
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::simulate::Sample;
-use linkwork::{Drawn, Rheonomic};
+use linkwork::{Drawn, Mechanism};
 
 /// Live view: a page, served on this machine, that shows the samples which a running program
 /// [sends](Live::show).
@@ -52,7 +52,7 @@ pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
 
 impl<'m, M, const NQ: usize, const NV: usize, const NU: usize> Live<'m, M, NQ, NV, NU>
 where
-    M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+    M: Mechanism<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
     /// Opens the view at a port of this machine, `http://127.0.0.1:PORT/`; at any free port for port 0.
     ///
@@ -104,7 +104,7 @@ where
     /// shown.
     pub fn show(
         &mut self,
-        sample: &Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>,
+        sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>,
     ) -> Result<(), Error> {
         self.message.clear();
         self.message.extend(plain(sample.t).to_le_bytes());

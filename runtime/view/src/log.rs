@@ -4,7 +4,7 @@ use crate::Error;
 use crate::figure::plain;
 use crate::motion::check_times;
 use linkwork::simulate::Sample;
-use linkwork::{Real, Rheonomic};
+use linkwork::{Mechanism, Real};
 use std::fmt::{Display, Write};
 
 /// Writes a motion as comma-separated values: a line of names, then one line per sample with time, s,
@@ -41,7 +41,7 @@ pub fn csv<M, T, const NQ: usize, const NV: usize, const NU: usize>(
 ) -> Result<String, Error>
 where
     T: Real + Display,
-    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
     check_times("csv", samples.iter().map(|sample| plain(sample.t)))?;
     let names =

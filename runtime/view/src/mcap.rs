@@ -9,7 +9,7 @@ use crate::motion::as_plain;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion};
 use linkwork::simulate::Sample;
-use linkwork::{Frames, Rheonomic};
+use linkwork::{Frames, Mechanism};
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HEADER: u8 = 0x01;
@@ -72,10 +72,10 @@ const TOPICS: [(&str, &str, &str); 3] = [
 /// value is not finite.
 pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
-    samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+    samples: &[Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
 ) -> Result<Vec<u8>, Error>
 where
-    M: Rheonomic<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+    M: Mechanism<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
     let plain_list = |list: &[_]| list.iter().map(|x| plain(*x)).collect();
     let names = Names {
@@ -84,7 +84,7 @@ where
         velocities: &M::VELOCITIES,
         inputs: &M::INPUTS,
     };
-    let instant = |sample: &Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
+    let instant = |sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
         let frames = 0..M::FRAMES.len();
         Instant {
             t: plain(sample.t),

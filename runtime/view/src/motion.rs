@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use linkwork::simulate::Sample;
-use linkwork::{Drawn, Rheonomic};
+use linkwork::{Drawn, Mechanism};
 
 /// Quantisation step of quaternions.
 const TURN: f64 = 1.0 / 16384.0;
@@ -71,10 +71,10 @@ impl Motion {
     pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
         title: &str,
         mechanism: &M,
-        samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
+        samples: &[Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
     ) -> Result<Motion, Error>
     where
-        M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
+        M: Mechanism<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
     {
         let placements = samples.iter().map(|s| {
             let frames = 0..M::FRAMES.len();

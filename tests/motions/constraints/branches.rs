@@ -18,7 +18,7 @@ where
     M: Mechanism<NV, NV, 0, Scalar = f64>,
 {
     let v = branch.velocity();
-    let found = m.forward_dynamics(&branch.q, &v, &SVector::zeros());
+    let found = m.forward_dynamics(0.0, &branch.q, &v, &SVector::zeros());
     let (want, most) = branch.acceleration(m);
     let expected = 1e-6 * (want.amax() + v.norm_squared()) + 1e-9 * most;
     let off = (found - want).amax() / expected;
@@ -196,7 +196,7 @@ where
     M: Mechanism<NV, NV, 0, Scalar = f64>,
     S: Method<f64>,
 {
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
     let start = energy(&q, &v);
     let end = simulate(m).from(q, v).method(method).duration(end).finish()?;
     Ok((energy(&end.q, &end.v) - start).abs())

@@ -101,8 +101,9 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
     {
-        let energy =
-            |q: &_, v: &_| Mechanism::kinetic_energy(self.m, q, v) + Mechanism::potential_energy(self.m, q);
+        let energy = |q: &_, v: &_| {
+            Mechanism::kinetic_energy(self.m, 0.0, q, v) + Mechanism::potential_energy(self.m, 0.0, q)
+        };
         let start = energy(&self.q, &self.v);
         let (mut worst, mut mean) = ([0.0_f64; 2], [0.0; 2]);
         let run = simulate(self.m).from(self.q, self.v).method(method).duration(h * steps as f64);

@@ -214,7 +214,7 @@ flat!(ChangePoint, [2, 1, 3, 2]);
 fn cranks_turn_through_flat_positions() {
     fn check<M: Mechanism<3, 3, 0, Scalar = f64>>(m: &M, q: SVector<f64, 3>, v: SVector<f64, 3>, name: &str) {
         let run = || simulate(m).from(q, v).duration(2.0);
-        let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+        let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
         let whole = energy(&q, &v);
         let exact = run().method(DormandPrince::new().tolerance(1e-11, 1e-11)).finish().expect("it turns");
         assert!((energy(&exact.q, &exact.v) - whole).abs() < 1e-7 * whole);

@@ -33,7 +33,7 @@ fn torques(robot: &Robot, q: &SVector<f64, { Robot::NQ }>) -> SVector<f64, { Rob
 }
 
 fn energy<M: Mechanism<6, 6, 6, Scalar = f64>>(m: &M, q: &SVector<f64, 6>) -> f64 {
-    m.potential_energy(q)
+    m.potential_energy(0.0, q)
 }
 
 fn main() -> Result<(), Error> {

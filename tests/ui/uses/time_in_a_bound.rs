@@ -11,7 +11,7 @@ struct Driven {
 
 fn any<M, const NQ: usize, const NV: usize, const NU: usize>(_: &M)
 where
-    M: Mechanism<NQ, NV, NU>,
+    M: Mechanism<NQ, NV, NU> + linkwork::Scleronomic,
 {
 }
 

@@ -5,7 +5,7 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
 use linkwork::prelude::*;
-use linkwork::{RheonomicDerivatives, discrete};
+use linkwork::{Derivatives, discrete};
 use rustix::time::{ClockId, clock_gettime};
 use std::hint::black_box;
 
@@ -70,7 +70,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     /// velocity.
     fn of_state<const NV: usize, const NU: usize>(&self, (q, v): &State<NQ, NV>, weights: [f64; 2]) -> f64
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let off = self.mechanism.difference(&self.goal, q);
         0.5 * (weights[0] * off.norm_squared() + weights[1] * v.norm_squared())
@@ -85,7 +85,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         [by_q, by_v]: [&mut SVector<f64, NV>; 2],
         qq: &mut SMatrix<f64, NV, NV>,
     ) where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let off = self.mechanism.difference(&self.goal, q);
         (*by_v, *by_q) = (v * of_v, off * of_q);
@@ -102,7 +102,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     /// Returns the cost of the last state and its derivatives.
     fn last<const NV: usize, const NU: usize>(&self, state: &State<NQ, NV>) -> Value<f64, NV>
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let mut all = Value::zeros();
         let Value { q, v, qq, vv, .. } = &mut all;
@@ -119,7 +119,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         u: &SVector<f64, NU>,
         (step, cost): &mut Node<NQ, NV, NU>,
     ) where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         discrete::transition_into(self.mechanism, &self.method, 0.0, &state.0, &state.1, u, step)
             .expect("it moves");
@@ -135,7 +135,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         inputs: &[SVector<f64, NU>],
         mut then: impl FnMut(usize, &Node<NQ, NV, NU>),
     ) where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let (qq, vv) = (SMatrix::identity() * RUNNING[0], SMatrix::identity() * RUNNING[1]);
         let costs = Quadratic { qq, vv, uu: SMatrix::identity() * EFFORT, ..Quadratic::zeros() };
@@ -149,7 +149,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     /// Linearises and runs the backward recursion; of each node only the policy is stored.
     fn sweep<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>)
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let Trajectory { states, inputs, policies } = all;
         let mut to_go = self.last(&states[NODES]);
@@ -165,7 +165,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         next: &mut (Vec<State<NQ, NV>>, Vec<SVector<f64, NU>>),
     ) -> f64
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let (mut state, mut costs) = (all.states[0], 0.0);
         next.0.clear();
@@ -190,7 +190,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         inputs: Vec<SVector<f64, NU>>,
     ) -> String
     where
-        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+        M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let mut all = Trajectory {
             states: vec![(start, SVector::zeros()); NODES + 1],

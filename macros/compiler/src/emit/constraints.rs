@@ -416,35 +416,44 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Overrides of the trait's projection, and of the dynamics that can fail.
+/// Writes the hooks of integrators by which states satisfy the constraints.
 pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, t, pass, any, .. } = Words::new(c, s);
+    let Words { q, v, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
         "const CONSTRAINED: bool = true;
-        #[inline]\nfn project(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), ::linkwork::ConstraintError> {{
-            ::linkwork::Constrained::project_state(self, {any}, q, v)
+        #[inline]\nfn project(&self, t: {scalar}, q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::project_state(self, t, q, v)
         }}
-        #[inline]\nfn impulse(&self, {t}q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
-            ::linkwork::Constrained::constrained_impulse(self, {any}, q, v, h, p)
+        #[inline]\nfn impulse(&self, t: {scalar}, q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
+            ::linkwork::Constrained::constrained_impulse(self, t, q, v, h, p)
         }}
-        fn is_nearly_singular(&self, {t}q: &{q}, dv: &{v}) -> bool {{
-            ::linkwork::__private::nearly_singular(self, &Self::__STRUCTURE, {any}, q, dv)
+        fn is_nearly_singular(&self, t: {scalar}, q: &{q}, dv: &{v}) -> bool {{
+            ::linkwork::__private::nearly_singular(self, &Self::__STRUCTURE, t, q, dv)
         }}",
         scalar = s.scalar.name(),
     );
     if !c.slipping.is_empty() {
-        let _ = writeln!(
-            out,
-            "const SLIPPING: bool = true;
-            #[inline]\nfn try_forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
-                self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
-            }}"
-        );
+        out.push_str("const SLIPPING: bool = true;\n");
     }
+}
+
+/// Writes the trait's forward dynamics that reports an error, for mechanisms with sliding contacts.
+pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if c.slipping.is_empty() {
+        return;
+    }
+    let Words { q, v, pass, .. } = Words::new(c, s);
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn try_forward_dynamics(&self, t: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+            self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
+        }}",
+        scalar = s.scalar.name(),
+    );
 }
 
 /// The trait of constrained mechanisms, in terms of the inherent functions.

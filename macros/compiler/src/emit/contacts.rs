@@ -153,31 +153,27 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         return;
     }
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
-    let (t, any) = match s.time {
-        true => (format!("t: {scalar}, "), "t".to_string()),
-        false => (String::new(), format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
-    };
     let _ = writeln!(
         out,
         "const CONTACTING: bool = true;
         const LOCATABLE: bool = true;
         {}
-        fn contact_start(&self, {t}q: &{q}, parts: bool) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
-            ::linkwork::contact::start(self, {any}, q, parts)
+        fn contact_start(&self, t: {scalar}, q: &{q}, parts: bool) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+            ::linkwork::contact::start(self, t, q, parts)
         }}
-        fn contact_step(&self, {t}start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
-            ::linkwork::contact::step(self, {any}, start, end, given, h)
+        fn contact_step(&self, t: {scalar}, start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
+            ::linkwork::contact::step(self, t, start, end, given, h)
         }}
         #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
-        carry(i, &t, s), s.nq, s.nv, s.nq, s.nv, s.nu
+        carry(i, s), s.nq, s.nv, s.nq, s.nv, s.nu
     );
 }
 
 /// The velocity of one configuration in the axes, and the speeds, of another.
-fn carry(i: &Interface<'_>, t: &str, s: &Signature<'_>) -> String {
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+fn carry(i: &Interface<'_>, s: &Signature<'_>) -> String {
+    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let (name, body) = match i.facts.speeds {
         false => ("_q", "self.__carry(dv, v)"),
         true => (
@@ -187,7 +183,7 @@ fn carry(i: &Interface<'_>, t: &str, s: &Signature<'_>) -> String {
             self.speeds_of_rates(&there, &self.__carry(&way, &self.rates_of_speeds(q, v)))",
         ),
     };
-    format!("#[inline]\nfn carry(&self, {t}{name}: &{q}, dv: &{v}, v: &{v}) -> {v} {{ {body} }}")
+    format!("#[inline]\nfn carry(&self, t: {scalar}, {name}: &{q}, dv: &{v}, v: &{v}) -> {v} {{ {body} }}")
 }
 
 /// A table for the struct's documentation.

@@ -264,12 +264,12 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
         ("forward_dynamics_second_derivatives", Tau, Shape::Hessian(n)),
         ("generalized_forces_second_derivatives", U, Shape::InputHessian(n, s.nu)),
     ] {
-        let arguments = s.timed(&[Q, V, third, Argument::Factors(n)]);
-        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let arguments = [Q, V, third, Argument::Factors(n)];
+        let names: Vec<&str> = s.timed(&arguments).iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {} {{ Self::{name}(self, {}) }}",
-            s.parameters(&arguments),
+            s.parameters(&[&[Argument::T], &arguments[..]].concat()),
             s.shape(shape),
             names.join(", ")
         );
@@ -313,12 +313,11 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         functions.push(("forward_dynamics_derivatives_into", [vec![Q, V, Tau], into.to_vec()].concat(), v));
     }
     for (name, arguments, result) in functions {
-        let arguments = s.timed(&arguments);
-        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let names: Vec<&str> = s.timed(&arguments).iter().map(|a| a.name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
-            s.parameters(&arguments),
+            s.parameters(&[vec![Argument::T], arguments].concat()),
             names.join(", ")
         );
     }
@@ -327,14 +326,12 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 /// How accelerations change under inputs, for methods of integration.
 pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
     use Argument::{Q, U, V};
-    let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
-    let t = if s.time { Argument::T.name() } else { &zero };
     let _ = writeln!(
         out,
         "#[inline]\nfn acceleration_derivatives({}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
-            ::linkwork::__private::acceleration_derivatives(self, {t}, q, v, u)
+            ::linkwork::__private::acceleration_derivatives(self, t, q, v, u)
         }}",
-        s.parameters(&s.timed(&[Q, V, U])),
+        s.parameters(&[Argument::T, Q, V, U]),
         square = s.shape(Shape::Square(s.nv)),
         inputs = s.shape(Shape::Matrix(s.nv, s.nu)),
     );

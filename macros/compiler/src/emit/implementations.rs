@@ -3,7 +3,7 @@
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, limits};
-use crate::catalogue::{self, ContactSizes};
+use crate::catalogue::{self, Argument, ContactSizes};
 use std::fmt::Write;
 
 /// The inherent functions of a type of this name, and the trait's.
@@ -34,17 +34,30 @@ pub fn write_impls(
             s.nq, s.nv, s.nu
         );
     };
-    begin(out, if s.time { "Rheonomic" } else { "Mechanism" });
+    begin(out, "Mechanism");
     write_trait(out, i, s);
     out.push_str("}\n");
+    let _ = writeln!(
+        out,
+        "{ALLOW}impl{generics} ::linkwork::integrate::Hooks<{}, {}, {}, {}> for {name}{arguments} {bounds} {{",
+        s.scalar.name(),
+        s.nq,
+        s.nv,
+        s.nu
+    );
+    write_hooks(out, i, s);
+    out.push_str("}\n");
+    if !s.time {
+        let _ = writeln!(out, "impl{generics} ::linkwork::Scleronomic for {name}{arguments} {bounds} {{}}");
+    }
     if i.facts.requests.derivatives {
-        begin(out, if s.time { "RheonomicDerivatives" } else { "Derivatives" });
+        begin(out, "Derivatives");
         differentiable::write_trait(out, i, s);
         constraints::write_visit(out, &i.constraints, s);
         out.push_str("}\n");
     }
     if differentiable::has_second(i) {
-        begin(out, if s.time { "RheonomicSecondDerivatives" } else { "SecondDerivatives" });
+        begin(out, "SecondDerivatives");
         differentiable::write_second_trait(out, i, s);
         out.push_str("}\n");
     }
@@ -132,7 +145,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
-            s.parameters(&s.timed(arguments)),
+            s.parameters(&[&[Argument::T], arguments].concat()),
             names.join(", ")
         );
     }
@@ -149,6 +162,14 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             out,
             "#[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
         );
+    }
+    constraints::write_forward_dynamics(out, &i.constraints, s);
+}
+
+/// Writes the properties and functions that integrators use.
+fn write_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    if i.facts.speeds {
+        out.push_str("const SPEEDS: bool = true;\n");
     }
     if i.facts.acceleration_forces {
         out.push_str("const FEEDBACK: bool = true;\n");

@@ -48,8 +48,7 @@ pub fn write_trait(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
         out,
-        "const SPEEDS: bool = true;
-        #[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
+        "#[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
         #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ Self::displacement_rate(self, q, dv, v) }}",
         v = turbofish(&v),
         nan = nan(s),

@@ -3,7 +3,7 @@
 use super::states::check_free;
 use crate::Error;
 use crate::mechanism::effective_mass;
-use linkwork::{Derivatives as Generated, Mechanism};
+use linkwork::{Derivatives as Generated, Mechanism, Scleronomic};
 use nalgebra::{DMatrix, DVector, SVector};
 
 /// Forces along, and moments about, the forward, right and down axes.
@@ -72,13 +72,13 @@ impl Derivatives {
         u: &SVector<f64, NU>,
     ) -> Result<Self, Error>
     where
-        M: Generated<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+        M: Generated<NQ, NV, NU, Scalar = f64> + Scleronomic,
     {
         check_free(&M::VELOCITIES)?;
         let motion = m.linear_motion(q, v, u);
-        let (_, by_v) = m.inverse_dynamics_derivatives(q, v, &motion.acceleration);
+        let (_, by_v) = m.inverse_dynamics_derivatives(0.0, q, v, &motion.acceleration);
         let all = effective_mass(m, 0.0, q, v);
-        let own = Mechanism::mass_matrix(m, q);
+        let own = Mechanism::mass_matrix(m, 0.0, q);
         let mass = DMatrix::from_fn(6, 6, |i, j| own[(i, j)]);
         let velocity = DVector::from_fn(6, |i, _| v[i]);
         let acceleration = DVector::from_fn(6, |i, _| motion.acceleration[i]);
@@ -203,7 +203,7 @@ where
         let step = if k < 3 { 1.0 } else { 1e-3 };
         let by = SVector::from_fn(|i, _| if i == k { step } else { 0.0 });
         let (up, down) = (Mechanism::integrate(m, q, &by), Mechanism::integrate(m, q, &-by));
-        (Mechanism::potential_energy(m, &down) - Mechanism::potential_energy(m, &up)) / (2.0 * step)
+        (Mechanism::potential_energy(m, 0.0, &down) - Mechanism::potential_energy(m, 0.0, &up)) / (2.0 * step)
     })
 }
 

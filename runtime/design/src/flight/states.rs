@@ -1,7 +1,7 @@
 //! Transformation from displacements in body axes to the usual states of an aircraft.
 
 use crate::{Error, Signal, StateSpace, mechanism};
-use linkwork::{Derivatives, Mechanism};
+use linkwork::{Derivatives, Mechanism, Scleronomic};
 use nalgebra::{DMatrix, Matrix3, Quaternion, SVector, UnitQuaternion};
 
 /// States of longitudinal motion: forward and downward velocity, pitch rate, pitch angle, height.
@@ -91,12 +91,12 @@ pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     u: &SVector<f64, NU>,
 ) -> Result<StateSpace, Error>
 where
-    M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
     check_free(&M::VELOCITIES)?;
     let attitude = Attitude::of(q.as_slice())?;
-    let forces = Mechanism::generalized_forces(m, q, v, u);
-    let acceleration = Mechanism::forward_dynamics(m, q, v, &forces);
+    let forces = Mechanism::generalized_forces(m, 0.0, q, v, u);
+    let acceleration = Mechanism::forward_dynamics(m, 0.0, q, v, &forces);
     let turning = attitude.rates * v.fixed_rows::<3>(3);
     let angles = [("bank'".to_owned(), turning[0]), ("pitch angle'".to_owned(), turning[1])];
     let names = mechanism::acceleration_names::<M, NQ, NV, NU>();

@@ -5,7 +5,7 @@ use super::solve::check_steady;
 use super::{SteadyState, Trim};
 use crate::mechanism::{displacements, effective_mass, input_names, named, state_names};
 use crate::{Error, SecondOrderForm, StateSpace};
-use linkwork::{OutputDerivatives, Rheonomic, RheonomicDerivatives};
+use linkwork::{Derivatives, OutputDerivatives};
 use nalgebra::{DMatrix, SVector};
 
 /// Relative threshold for entries of a constraint matrix: smaller entries are rounding errors.
@@ -105,7 +105,7 @@ pub fn linear<M, const NQ: usize, const NV: usize, const NU: usize>(
     found: &SteadyState<NQ, NV, NU>,
 ) -> Result<Linear, Error>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let problem = Problem::new(trim)?;
     let mut place = Place { q: found.q, v: found.v, u: found.u, ..problem.start() };
@@ -114,7 +114,7 @@ where
     check_steady(&problem, &place)?;
     let motion = problem.motion(&place)?;
     let (mass, turning) = trim.with(&place.parameters, |m| {
-        let turning = RheonomicDerivatives::turning(m, &place.q, &place.v);
+        let turning = Derivatives::turning(m, &place.q, &place.v);
         (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning))
     });
     let held = &problem.held;
@@ -178,7 +178,7 @@ fn locked(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     /// Linearises the motion about a steady state as `ẋ = A x + B δu`, in independent coordinates and
     /// velocities. The outputs are the states. Held coordinates remain locked. The [modes](StateSpace::modes)

@@ -3,7 +3,7 @@
 use super::Trim;
 use crate::Error;
 use crate::mechanism::acceleration_names;
-use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
+use linkwork::{Constrained, Derivatives, Mechanism, OutputDerivatives};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// Constraints and their derivatives.
@@ -179,7 +179,7 @@ fn names<T>(list: &[(String, T)]) -> Vec<String> {
 
 impl<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> Problem<'a, 'm, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
         check_repeated("parameter", &names(&trim.parameters))?;
@@ -288,18 +288,18 @@ where
     pub fn motion(&self, place: &Place<NQ, NV, NU>) -> Result<Accelerated<NV, NU>, Error> {
         let (t, Place { q, v, u, holding, parameters }) = (self.trim.t, place);
         self.trim.with(parameters, |m| {
-            let tau = Rheonomic::generalized_forces(m, t, q, v, u) + holding;
-            let value = Rheonomic::try_forward_dynamics(m, t, q, v, &tau)?;
-            let (by_q, by_v, by_force) = RheonomicDerivatives::forward_dynamics_derivatives(m, t, q, v, &tau);
+            let tau = Mechanism::generalized_forces(m, t, q, v, u) + holding;
+            let value = Mechanism::try_forward_dynamics(m, t, q, v, &tau)?;
+            let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(m, t, q, v, &tau);
             let (force_by_q, force_by_v, force_by_u) =
-                RheonomicDerivatives::generalized_forces_derivatives(m, t, q, v, u);
+                Derivatives::generalized_forces_derivatives(m, t, q, v, u);
             let (by_q, by_v) = (by_q + by_force * force_by_q, by_v + by_force * force_by_v);
             let by_u = by_force * force_by_u;
             // Accelerations without constraints. Zero if the unconstrained mass matrix is not positive
             // definite.
-            let push = vector(&(tau - Rheonomic::bias_forces(m, t, q, v)));
+            let push = vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
             let free =
-                dynamic(&Rheonomic::mass_matrix(m, t, q)).cholesky().map_or(0.0, |c| c.solve(&push).amax());
+                dynamic(&Mechanism::mass_matrix(m, t, q)).cholesky().map_or(0.0, |c| c.solve(&push).amax());
             let free = if M::CONSTRAINED && free.is_finite() { free } else { 0.0 };
             let scale = TAKEN * free + BESIDE * by_q.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             Ok(Accelerated { tau, value, by_q, by_v, by_force, by_u, scale })

@@ -3,7 +3,7 @@
 use super::problem::{Equations, Place, Problem, Unknown};
 use super::{SteadyState, Trim};
 use crate::Error;
-use linkwork::{Rheonomic, RheonomicDerivatives};
+use linkwork::Derivatives;
 use nalgebra::{DMatrix, DVector};
 
 /// Relative step of the unknowns below which a step is rounding error and the iteration ends.
@@ -99,7 +99,7 @@ pub fn find<M, const NQ: usize, const NV: usize, const NU: usize>(
     trim: &Trim<'_, M, NQ, NV, NU>,
 ) -> Result<SteadyState<NQ, NV, NU>, Error>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let problem = Problem::new(trim)?;
     let ended = descend(&problem)?;
@@ -135,7 +135,7 @@ fn named<M, const NQ: usize, const NV: usize, const NU: usize>(
     place: &Place<NQ, NV, NU>,
 ) -> Vec<(String, f64)>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let mut all: Vec<(String, f64)> =
         M::CONFIGURATION.iter().zip(place.q.iter()).map(|(name, x)| (name.to_string(), *x)).collect();
@@ -156,7 +156,7 @@ fn descend<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &Problem<'_, '_, M, NQ, NV, NU>,
 ) -> Result<Ended<NQ, NV, NU>, Error>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let mut place = problem.start();
     let mut equations = problem.equations(&place)?;
@@ -212,7 +212,7 @@ pub fn check_steady<M, const NQ: usize, const NV: usize, const NU: usize>(
     place: &Place<NQ, NV, NU>,
 ) -> Result<(), Error>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let equations = problem.equations(place)?;
     let (rows, columns) = equations.jacobian.shape();
@@ -236,7 +236,7 @@ fn open_directions<M, const NQ: usize, const NV: usize, const NU: usize>(
     scaled: &DMatrix<f64>,
 ) -> Vec<String>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     /// Components of a unit direction above this count as significant.
     const PART: f64 = 0.1;

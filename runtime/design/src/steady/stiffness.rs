@@ -4,7 +4,7 @@ use super::linear::{Linear, linear};
 use super::{SteadyState, Trim};
 use crate::Error;
 use crate::matrices::symmetric;
-use linkwork::{Rheonomic, RheonomicDerivatives};
+use linkwork::Derivatives;
 use nalgebra::DMatrix;
 
 /// Curvatures below this fraction of the largest count as zero.
@@ -65,7 +65,7 @@ impl Stiffness {
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, NU>
 where
-    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+    M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     /// Computes the stiffness about an equilibrium at constant inputs, which decides on stability by energy.
     /// For a mechanism that is driven to rotate at constant speed, it is the stiffness of the amended

@@ -113,8 +113,8 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
     where
         M: Mechanism<NV, NV, 0, Scalar = f64>,
     {
-        let (v, mass) = (self.velocity(), m.mass_matrix(&self.q));
-        let bias = m.bias_forces(&self.q, &v);
+        let (v, mass) = (self.velocity(), m.mass_matrix(0.0, &self.q));
+        let bias = m.bias_forces(0.0, &self.q, &v);
         let own = self.by.transpose() * mass * self.by;
         let force = bias + mass * self.bend;
         let solve = |f: SVector<f64, N>| {
