@@ -6,7 +6,14 @@
 pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
     let lines: Vec<&str> = text.lines().take(line).collect();
     let Some((own, above)) = lines.split_last() else { return false };
-    let own: String = own.chars().take(column.saturating_sub(1)).collect();
+    // In tests of documentation, lines are those of the comment, not of the text.
+    let (own, attribute): (String, String) = {
+        let column = column.saturating_sub(1);
+        (own.chars().take(column).collect(), own.chars().skip(column).collect())
+    };
+    if !attribute.starts_with("#[") {
+        return false;
+    }
     for line in [own.as_str()].into_iter().chain(above.iter().rev().copied()).map(str::trim) {
         if line.starts_with("#[derive(") {
             return true;
@@ -47,5 +54,6 @@ mod tests {
             assert!(!stands_below_a_derive(&text, line, 1), "{text}");
         }
         assert!(!stands_below_a_derive("", 1, 1));
+        assert!(!stands_below_a_derive("#[derive(Clone)]\n/// #[mechanism]", 2, 1));
     }
 }

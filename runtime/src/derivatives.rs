@@ -194,7 +194,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// }
     ///
     /// /// Frequency of small oscillations of any mechanism of one coordinate, from the eigenvalue.
-    /// fn frequency<M: Derivatives<1, 1, 1, Scalar = f64>>(m: &M) -> f64 {
+    /// fn frequency<M: Derivatives<1, 1, 1, Scalar = f64> + linkwork::Scleronomic>(m: &M) -> f64 {
     ///     let linear = m.linear_motion(&m.neutral(), &[0.0].into(), &[0.0].into());
     ///     (-linear.by_q[0]).sqrt()
     /// }
