@@ -1,10 +1,10 @@
 //! Mechanisms with lanes as their scalar type.
 
 use super::{Batch, Column};
-use crate::forward::constants;
-use crate::integrate::Hooks;
 use crate::blocks::zeros;
 use crate::contact::Touched;
+use crate::forward::constants;
+use crate::integrate::Hooks;
 use crate::lanes::{lane, lane_by_lane, set_lane};
 use crate::{ByMotion, ConstraintError, Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
