@@ -13,7 +13,9 @@ use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::kinematics;
 use linkwork_compiler::lower::{Op, Program, lower};
-use linkwork_compiler::mechanics::derivatives::{self, Method, Trunk, analytic, invariance, symbolic};
+use linkwork_compiler::mechanics::derivatives::{
+    self, DerivationMethod, Trunk, analytic, invariance, symbolic,
+};
 use linkwork_compiler::mechanics::{self, crba, ldl, rnea};
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 use linkwork_compiler::{compile, read};
@@ -104,7 +106,7 @@ fn check_recursion(model: &Model<'_>, seed: u64) {
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     let expected = symbolic::derivatives(model, &tau);
     for lanes in [1, 2, 4, 8] {
-        let found = derivatives::inverse_dynamics(model, &joints, &a, Method::Recursion(lanes));
+        let found = derivatives::inverse_dynamics(model, &joints, &a, DerivationMethod::Recursion(lanes));
         assert_same("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
         assert_same("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
         let at = symbols(model, seed);
@@ -215,7 +217,8 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     let bias = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), None);
     let rest: Vec<Expr<'_>> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let motion = ldl::solve(mass.clone(), rest, &joints);
-    let mut found = derivatives::forward_dynamics(model, &joints, &mass, &tau, Method::Recursion(1));
+    let mut found =
+        derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
     let known = invariance::known(model, &joints);
     known.replace(&mut found.forces);
     let at = symbols(model, seed);

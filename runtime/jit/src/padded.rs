@@ -2,8 +2,9 @@
 
 use crate::error::Error;
 use crate::robot::Robot;
-use linkwork::Mechanism;
+use linkwork::integrate::Hooks;
 use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{Mechanism, Scleronomic};
 
 /// A robot as a [`Mechanism`] of constant dimensions, for integrators and all other code for any mechanism.
 ///
@@ -98,6 +99,10 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Padded<NQ, NV, NU> {
     }
 }
 
+impl<const NQ: usize, const NV: usize, const NU: usize> Scleronomic for Padded<NQ, NV, NU> {}
+
+impl<const NQ: usize, const NV: usize, const NU: usize> Hooks<f64, NQ, NV, NU> for Padded<NQ, NV, NU> {}
+
 impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for Padded<NQ, NV, NU> {
     type Scalar = f64;
 
@@ -131,7 +136,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
         Self::fill(*v, self.robot.nv(), |to| self.robot.tangent_rate_into(self.v(dv), self.v(v), to))
     }
 
-    fn mass_matrix(&self, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
+    fn mass_matrix(&self, _t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot.nv();
         let mut all = SMatrix::<f64, NV, NV>::identity();
         if n == NV {
@@ -144,7 +149,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
         all
     }
 
-    fn bias_forces(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+    fn bias_forces(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         Self::fill(SVector::zeros(), self.robot.nv(), |to| {
             self.robot.bias_forces_into(self.q(q), self.v(v), to)
         })
@@ -152,6 +157,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
 
     fn inverse_dynamics(
         &self,
+        _t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
@@ -163,6 +169,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
 
     fn forward_dynamics(
         &self,
+        _t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
@@ -174,6 +181,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
 
     fn generalized_forces(
         &self,
+        _t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         u: &SVector<f64, NU>,
@@ -184,20 +192,20 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
         })
     }
 
-    fn kinetic_energy(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
+    fn kinetic_energy(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
         let further: f64 = v.iter().skip(self.robot.nv()).map(|v| 0.5 * v * v).sum();
         self.robot.kinetic_energy(self.q(q), self.v(v)).unwrap_or(f64::NAN) + further
     }
 
-    fn potential_energy(&self, q: &SVector<f64, NQ>) -> f64 {
+    fn potential_energy(&self, _t: f64, q: &SVector<f64, NQ>) -> f64 {
         self.robot.potential_energy(self.q(q)).unwrap_or(f64::NAN)
     }
 
-    fn generalized_momentum(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+    fn generalized_momentum(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         Self::fill(*v, self.robot.nv(), |to| self.robot.generalized_momentum_into(self.q(q), self.v(v), to))
     }
 
-    fn momentum_rate(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+    fn momentum_rate(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         Self::fill(SVector::zeros(), self.robot.nv(), |to| {
             self.robot.momentum_rate_into(self.q(q), self.v(v), to)
         })

@@ -248,7 +248,7 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn forward_dynamics(&self) -> Program {
         let tau = mechanics::efforts(self.model);
-        let program = |mass: &crba::Matrix<'g>, method: Method| {
+        let program = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace(&mut found.forces);
             self.specialisation.program(&[all_columns(&found), found.accelerations].concat())
