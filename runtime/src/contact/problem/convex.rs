@@ -46,7 +46,7 @@ const PARTS: usize = 3;
 
 /// Friction of a contact, or one of its moments.
 #[derive(Clone, Copy)]
-struct Part<T> {
+struct TangentRows<T> {
     first: usize,
     count: usize,
     friction: T,
@@ -56,7 +56,7 @@ struct Part<T> {
 #[derive(Clone, Copy)]
 struct Cone<T> {
     normal: usize,
-    parts: [Part<T>; PARTS],
+    parts: [TangentRows<T>; PARTS],
     /// Normal impulse that acts in addition and bounds friction as well.
     floor: T,
     /// Smallest normal rate.
@@ -79,7 +79,7 @@ struct Projection<T> {
 
 impl<T: Real> Cone<T> {
     /// Parts that exist, with their indices.
-    fn parts(&self) -> impl Iterator<Item = (usize, Part<T>)> {
+    fn parts(&self) -> impl Iterator<Item = (usize, TangentRows<T>)> {
         self.parts.into_iter().enumerate().filter(|(_, part)| part.count > 0)
     }
 
@@ -549,7 +549,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         // Not needed any more.
         let matrix = columns.as_flattened_mut();
-        let none = Part { first: 0, count: 0, friction: T::zero() };
+        let none = TangentRows { first: 0, count: 0, friction: T::zero() };
         let cone =
             Cone { normal: 0, parts: [none; PARTS], floor: T::zero(), least: T::zero(), raised: T::zero() };
         let (mut cones, mut count) = (Total::<_, NK>::repeat(cone), 0);
@@ -558,7 +558,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let others = (k..self.count).filter(|other| self.pressed_by[*other] == k);
             for (part, other) in parts.iter_mut().zip(others) {
                 let tangents = self.of(other).1;
-                *part = Part { first: tangents.start, count: tangents.len(), friction: self.friction[other] };
+                *part = TangentRows {
+                    first: tangents.start,
+                    count: tangents.len(),
+                    friction: self.friction[other],
+                };
             }
             cones[count] = Cone {
                 normal: self.rows[k].first,
