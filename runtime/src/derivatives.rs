@@ -209,11 +209,23 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     where
         Self: Scleronomic,
     {
-        let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
-        let t = constant(0.0);
-        let acceleration = accelerated_into(&self, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
-        LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(self, q, v) }
+        linear_motion(self, q, v, u)
     }
+}
+
+/// Implements [`Derivatives::linear_motion`].
+pub(crate) fn linear_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<M::Scalar, NQ>,
+    v: &SVector<M::Scalar, NV>,
+    u: &SVector<M::Scalar, NU>,
+) -> LinearMotion<M::Scalar, NV, NU>
+where
+    M: Derivatives<NQ, NV, NU> + ?Sized,
+{
+    let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
+    let acceleration = accelerated_into(&m, constant(0.0), (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
+    LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(m, q, v) }
 }
 
 /// Returns the derivatives of the accelerations with respect to state and inputs, given those with respect to

@@ -123,6 +123,23 @@ macro_rules! kind {
     ($scalar:ty, $n:ident) => { &$crate::nalgebra::SVector<$scalar, $n> };
 }
 
+/// Defines `linear_motion` of a wrapper with its default, since only wrappers without time have it.
+macro_rules! linear_motion {
+    ($nq:ident, $nv:ident, $nu:ident) => {
+        fn linear_motion(
+            &self,
+            q: &$crate::nalgebra::SVector<Self::Scalar, $nq>,
+            v: &$crate::nalgebra::SVector<Self::Scalar, $nv>,
+            u: &$crate::nalgebra::SVector<Self::Scalar, $nu>,
+        ) -> $crate::LinearMotion<Self::Scalar, $nv, $nu>
+        where
+            Self: $crate::Scleronomic,
+        {
+            $crate::derivatives::linear_motion(self, q, v, u)
+        }
+    };
+}
+
 /// Defines the constants of a wrapper as those of the mechanism type: `names` of `Mechanism`, `hooks` of
 /// `Hooks`, `derivatives` of `Derivatives`.
 macro_rules! constants {
@@ -223,4 +240,6 @@ macro_rules! inherent_functions {
     (# U) => { &nalgebra::SVector<T, NU> };
 }
 
-pub(crate) use {constants, each_function, inherent_functions, kind, write_functions as write};
+pub(crate) use {
+    constants, each_function, inherent_functions, kind, linear_motion, write_functions as write,
+};

@@ -48,7 +48,7 @@ pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
 }
 
-/// Like [`derive`], with optional functions and a choice of optimisation passes.
+/// Like [`derive()`], with optional functions and a choice of optimisation passes.
 pub fn derive_with<'g>(
     model: &Model<'g>,
     requests: Requests,

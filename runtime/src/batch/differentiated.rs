@@ -85,6 +85,7 @@ impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Deriv
 where
     M: Batch<NQ, NV, NU> + Derivatives<NQ, NV, NU>,
 {
+    crate::forward::linear_motion!(NQ, NV, NU);
     constants!(derivatives, M);
 
     of_each! {

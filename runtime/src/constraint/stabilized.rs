@@ -273,6 +273,7 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, cons
 where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
+    crate::forward::linear_motion!(NQ, NV, NU);
     constants!(derivatives, M);
 
     each_function!(tangent, plain Derivatives, self => self.mechanism);

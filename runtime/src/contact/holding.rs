@@ -296,6 +296,7 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
+    crate::forward::linear_motion!(NQ, NV, NU);
     constants!(derivatives, M);
 
     each_function!(tangent, plain Derivatives, self => self.mechanism);

@@ -27,6 +27,7 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, cons
 where
     M: FirstOrderDerivatives<NQ, NV, NU, NX, NE>,
 {
+    crate::forward::linear_motion!(NQ, NE, NU);
     fn integrate_derivatives(
         &self,
         dv: &SVector<M::Scalar, NE>,
