@@ -291,7 +291,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Returns [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the
+    /// Returns [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) of the
     /// mechanism [`stabilized`] with the decay rate `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
     fn stabilized_derivatives(
         &self,
@@ -303,7 +303,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         None
     }
 
-    /// Returns [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Holonomic
+    /// Returns [`impulse`](crate::integrate::Hooks::impulse) of a mechanism with constraints. Holonomic
     /// constraints are evaluated at the configuration that `v` reaches in `h` seconds, velocity constraints
     /// half-way to it (a discrete constraint that is symmetric in time: McLachlan and Perlmutter,
     /// *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16, 2006).

@@ -40,9 +40,9 @@
 //! 3. A sequence of at most 16 convex problems, with at most 60 iterations of Newton's method in all. The
 //!    conditions with friction are neither convex nor always solvable. They become a convex problem with
 //!    exactly one solution if normal impulses are coupled to slip (Anitescu, Math. Program. 105, 2006), which
-//!    Drake and MuJoCo solve; but then sliding surfaces separate. The sequence keeps the convexity and removes
-//!    this error: each problem subtracts the separation that the slip of the problem before would cause
-//!    (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011), and the regularisation is removed by
+//!    Drake and MuJoCo solve; but then sliding surfaces separate. The sequence keeps the convexity and
+//!    removes this error: each problem subtracts the separation that the slip of the problem before would
+//!    cause (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011), and the regularisation is removed by
 //!    multipliers, so that contacts stay rigid and redundant contacts do no harm. A pivoting method (Lemke)
 //!    would need friction cones with edges, projected Gauss–Seidel (Siconos, ODE) depends on the order of
 //!    contacts and converges slowly for large mass ratios, and ADMM (Pinocchio) needs tuned penalties.
@@ -199,7 +199,7 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         response::responses(self, t, q, closed)
     }
 
-    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) while contacts do
+    /// [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) while contacts do
     /// what `touches` says, with gaps and rates of what is held decaying by the gains of position and
     /// velocity, 1/s² and 1/s; `None` without [`ContactDerivatives`].
     fn held_derivatives(
@@ -217,8 +217,9 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
 }
 
-/// What is done with a mechanism whose contacts are of any number, by [`Mechanism::visit_contacts`]: generic
-/// code that knows nothing of these numbers comes to [`Contacts`] through it.
+/// What is done with a mechanism whose contacts are of any number, by
+/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts): generic code that knows nothing of these
+/// numbers comes to [`Contacts`] through it.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// What comes of it.
     type Output;

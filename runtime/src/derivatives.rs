@@ -52,8 +52,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
     /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`. They do not depend on `q` unless generalized speeds are
-    /// declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS)): [`integrate_derivatives`](Self::integrate_derivatives) is
-    /// then NaN.
+    /// declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS)):
+    /// [`integrate_derivatives`](Self::integrate_derivatives) is then NaN.
     fn integrate_derivatives_at(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -269,7 +269,8 @@ where
     acceleration
 }
 
-/// Implements [`Mechanism::acceleration_derivatives`] for mechanisms with derivatives.
+/// Implements [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) for mechanisms
+/// with derivatives.
 pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: M::Scalar,

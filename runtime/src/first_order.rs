@@ -46,7 +46,7 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NX>;
 
-    /// Returns [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the
+    /// Returns [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) of the
     /// mechanism with its states as the last velocities; the states stored in the struct have no effect.
     /// `None` without [`FirstOrderDerivatives`].
     fn extended_derivatives(

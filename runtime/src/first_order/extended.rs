@@ -15,7 +15,8 @@ use nalgebra::{SMatrix, SVector};
 /// A state is a velocity without a coordinate: it has no entry in `q`, and `q ⊕ dv` does not depend on its
 /// displacement. Its diagonal entry of the mass matrix is one, and its bias force is its negative rate
 /// without inputs. `M v̇ + h = τ`, the inverse of this equation and their derivatives are valid as for any
-/// mechanism. Energies are those of the mechanism alone. The number of states is [`Mechanism::FIRST_ORDER`].
+/// mechanism. Energies are those of the mechanism alone. The number of states is
+/// [`FIRST_ORDER`](crate::integrate::Hooks::FIRST_ORDER).
 #[derive(Clone, Copy, Debug)]
 pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
     pub(super) mechanism: &'m M,

@@ -110,7 +110,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         self.tangent_rate(dv, v)
     }
 
-    /// Whether generalized speeds are declared ([`Mechanism::SPEEDS`](crate::Mechanism::SPEEDS)); a
+    /// Whether generalized speeds are declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS)); a
     /// displacement with a constant velocity `v` then differs from `h v`.
     fn has_speeds(&self) -> bool {
         false
@@ -151,7 +151,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// Returns the change of the velocity `v` due to the generalized impulse `p` and the constraint impulses.
     /// The constraints are satisfied to first order after the new velocity has lasted for `h` seconds
-    /// ([`Mechanism::impulse`](crate::Mechanism::impulse)).
+    /// ([`impulse`](crate::integrate::Hooks::impulse)).
     fn impulse(
         &self,
         t: T,
@@ -200,7 +200,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     }
 
     /// Whether constraints nearly lose rank at `q`, relative to their change over a displacement by `dv`
-    /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
+    /// ([`is_nearly_singular`](crate::integrate::Hooks::is_nearly_singular)).
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
         false
     }
