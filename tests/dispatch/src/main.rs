@@ -156,11 +156,12 @@ where
         );
         for (k, (q, v, x)) in states.iter().enumerate() {
             let found = (
-                Mechanism::mass_matrix(a, q),
-                Mechanism::inverse_dynamics(a, q, v, x),
-                Mechanism::forward_dynamics(a, q, v, x),
+                Mechanism::mass_matrix(a, 0.0, q),
+                Mechanism::inverse_dynamics(a, 0.0, q, v, x),
+                Mechanism::forward_dynamics(a, 0.0, q, v, x),
             );
-            let expected = (b.mass_matrix(q), b.inverse_dynamics(q, v, x), b.forward_dynamics(q, v, x));
+            let expected =
+                (b.mass_matrix(0.0, q), b.inverse_dynamics(0.0, q, v, x), b.forward_dynamics(0.0, q, v, x));
             assert!(difference(&found.0, &expected.0) < 1e-13, "mass matrix");
             assert!(difference(&found.1, &expected.1) < 1e-12, "inverse dynamics");
             assert!(difference(&found.2, &expected.2) < 1e-9, "forward dynamics");
