@@ -18,7 +18,6 @@ mod orders;
 mod piles;
 mod poisson;
 mod ratchet;
-mod scenes;
 mod soft;
 mod starts;
 mod stiction;
