@@ -47,12 +47,12 @@ fn mistakes_are_listed_with_their_places() {
     let here = folder("mistakes");
     let text = PENDULUM.replace("cos(theta)", "cos(thta)").replace("mass = 1", "mass = -1");
     std::fs::write(here.join("bad.rs"), &text).unwrap();
-    let (status, _, told) = linkwork(&here, &["check", "bad.rs"]);
+    let (status, _, stderr) = linkwork(&here, &["check", "bad.rs"]);
     assert_eq!(status, 1);
     let line = 1 + text.lines().position(|line| line.contains("thta")).unwrap();
     let column = 1 + text.lines().find_map(|line| line.find("thta")).unwrap();
-    assert!(told.contains(&format!("bad.rs:{line}:{column}: error:")), "{told}");
-    assert!(told.contains("did you mean `theta`?") && told.contains("mass"), "{told}");
+    assert!(stderr.contains(&format!("bad.rs:{line}:{column}: error:")), "{stderr}");
+    assert!(stderr.contains("did you mean `theta`?") && stderr.contains("mass"), "{stderr}");
     let (status, json, _) = linkwork(&here, &["check", "bad.rs", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let places: Vec<_> = json["messages"].as_array().unwrap().iter().map(|m| m["line"].as_u64()).collect();
@@ -70,10 +70,10 @@ fn a_derive_above_the_attribute_is_an_error() {
     let derive = "#[derive(Clone, Debug)]\n";
     let above = format!("{derive}{}", PENDULUM.trim_start());
     std::fs::write(here.join("above.rs"), &above).unwrap();
-    let (status, _, told) = linkwork(&here, &["check", "above.rs"]);
+    let (status, _, stderr) = linkwork(&here, &["check", "above.rs"]);
     assert_eq!(status, 1);
-    assert!(told.contains("above.rs:2:1: error: `#[derive(…)]` stands above `#[mechanism]`"), "{told}");
-    assert!(told.contains("= help: write it below"), "{told}");
+    assert!(stderr.contains("above.rs:2:1: error: `#[derive(…)]` stands above `#[mechanism]`"), "{stderr}");
+    assert!(stderr.contains("= help: write it below"), "{stderr}");
     std::fs::write(here.join("below.rs"), PENDULUM.replace("pub struct", &format!("{derive}pub struct")))
         .unwrap();
     assert_eq!(linkwork(&here, &["check", "below.rs"]).0, 0);
@@ -94,7 +94,7 @@ fn what_cannot_be_done_is_said() {
     std::fs::write(here.join("leg.urdf"), "<robot name='leg'><link name='a'/></robot>").unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
-    for (arguments, status, told) in [
+    for (arguments, status, stderr) in [
         (&["check", "robot.urdf"][..], 2, "there is no such file"),
         (&["check", "mujoco.urdf"], 1, "mujoco"),
         (&["check", "nothing.rs"], 2, "no struct with `#[mechanism]`"),
@@ -135,7 +135,7 @@ fn what_cannot_be_done_is_said() {
         (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write those that ask for functions"),
     ] {
         let (found, _, error) = linkwork(&here, arguments);
-        assert!(found == status && error.contains(told), "{arguments:?}: {found}, {error}");
+        assert!(found == status && error.contains(stderr), "{arguments:?}: {found}, {error}");
     }
 }
 
@@ -148,15 +148,15 @@ fn advice_names_options_of_the_command() {
                  <inertia ixx='1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
                  <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
     std::fs::write(here.join("r.urdf"), robot).unwrap();
-    let (status, _, told) = linkwork(&here, &["check", "r.urdf"]);
+    let (status, _, stderr) = linkwork(&here, &["check", "r.urdf"]);
     assert!(
-        status == 1 && told.contains("`--with \"inertia = trust\"`") && !told.contains("#[mech"),
-        "{told}"
+        status == 1 && stderr.contains("`--with \"inertia = trust\"`") && !stderr.contains("#[mech"),
+        "{stderr}"
     );
     assert_eq!(linkwork(&here, &["check", "r.urdf", "--with", "inertia = trust"]).0, 0);
     std::fs::write(here.join("s.urdf"), "<sdf version='1.9'><model name='m'/></sdf>").unwrap();
-    let (status, _, told) = linkwork(&here, &["check", "s.urdf"]);
-    assert!(status == 1 && told.contains("give it a name that ends in `.sdf`"), "{told}");
+    let (status, _, stderr) = linkwork(&here, &["check", "s.urdf"]);
+    assert!(status == 1 && stderr.contains("give it a name that ends in `.sdf`"), "{stderr}");
 }
 
 /// Checks that missing meshes are listed, and that a missing folder is an error.
@@ -168,15 +168,17 @@ fn missing_meshes_are_listed() {
                  <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
     std::fs::write(here.join("r.urdf"), robot).unwrap();
     for more in [&[][..], &["--meshes", "."]] {
-        let (status, _, told) =
+        let (status, _, stderr) =
             linkwork(&here, &[&["view", "r.urdf", "--duration", "0.1"][..], more].concat());
         assert!(
-            status == 0 && told.contains("these meshes are not found") && told.contains("package://r/a.stl"),
-            "{told}"
+            status == 0
+                && stderr.contains("these meshes are not found")
+                && stderr.contains("package://r/a.stl"),
+            "{stderr}"
         );
     }
-    let (status, _, told) = linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
-    assert!(status == 2 && told.contains("`--meshes`: nowhere: "), "{told}");
+    let (status, _, stderr) = linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
+    assert!(status == 2 && stderr.contains("`--meshes`: nowhere: "), "{stderr}");
 }
 
 /// Checks that syntax errors are reported in the format of other errors.
@@ -187,13 +189,13 @@ fn syntax_errors_are_mistakes_among_others() {
     std::fs::write(here.join("broken.urdf"), "<robot name='r'>\n<link></robot>").unwrap();
     std::fs::write(here.join("bad.rs"), PENDULUM.replace("cos(theta)", "cos(thta)")).unwrap();
     for (file, line, column) in [("broken.rs", 2, 12), ("broken.urdf", 2, 7), ("bad.rs", 5, 62)] {
-        let (status, _, told) = linkwork(&here, &["check", file]);
+        let (status, _, stderr) = linkwork(&here, &["check", file]);
         let begin = format!("{file}:{line}:{column}: error: ");
-        assert!(status == 1 && told.starts_with(&begin), "{told}");
-        let (status, json, told) = linkwork(&here, &["check", file, "--json"]);
+        assert!(status == 1 && stderr.starts_with(&begin), "{stderr}");
+        let (status, json, stderr) = linkwork(&here, &["check", file, "--json"]);
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         let found = &json["messages"][0];
-        assert_eq!((status, told.as_str()), (1, ""), "{json}");
+        assert_eq!((status, stderr.as_str()), (1, ""), "{json}");
         assert_eq!(
             (&found["file"], &found["line"], &found["column"]),
             (&file.into(), &line.into(), &column.into())
@@ -208,9 +210,9 @@ fn documentation_is_for_other_readers_too() {
     let here = folder("documented");
     let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - `theta`, rad\n/// - `length`, m\n";
     std::fs::write(here.join("pendulum.rs"), format!("{about}{}", PENDULUM.trim_start())).unwrap();
-    let (status, _, told) =
+    let (status, _, stderr) =
         linkwork(&here, &["view", "pendulum.rs", "--set", "length=1", "--duration", "0.1"]);
-    assert_eq!((status, told.as_str()), (0, ""));
+    assert_eq!((status, stderr.as_str()), (0, ""));
     let page = std::fs::read_to_string(here.join("Pendulum.html")).unwrap();
     let first = "<p>A <em>simple</em> pendulum, as <code>Pendulum</code>, with <code>theta</code>.</p>";
     let more = "<ul><li><code>theta</code>, rad</li><li><code>length</code>, m</li></ul></details>";
@@ -218,11 +220,11 @@ fn documentation_is_for_other_readers_too() {
 
     let bowl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/four_bar.rs");
     let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    let (status, _, told) = linkwork(
+    let (status, _, stderr) = linkwork(
         &here,
         &["export", "library", bowl, "--struct", "FourBar", "--out", "bar", "--linkwork", sources],
     );
-    assert_eq!((status, told.as_str()), (0, ""));
+    assert_eq!((status, stderr.as_str()), (0, ""));
     let description: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(here.join("bar/description.json")).unwrap()).unwrap();
     let functions = description["functions"].as_array().unwrap();
@@ -249,9 +251,9 @@ fn libraries_contain_the_attribute_or_its_code() {
         #[limit(on = rail, from = -1, to = 2.5, max_speed = 3)] ends: Limit }";
     std::fs::write(here.join("slider.rs"), slider).unwrap();
     let written = |more: &[&str]| {
-        let (status, _, told) =
+        let (status, _, stderr) =
             linkwork(&here, &[&["export", "library", "slider.rs", "--out", "slider"], more].concat());
-        assert_eq!((status, told.as_str()), (0, ""));
+        assert_eq!((status, stderr.as_str()), (0, ""));
         ["src/lib.rs", "description.json", "include/slider.h", "Cargo.toml"]
             .map(|file| std::fs::read_to_string(here.join("slider").join(file)).unwrap())
     };
@@ -286,7 +288,7 @@ fn functions_that_another_language_lacks_are_listed() {
     }
     let all =
         ["export", "c", "slider.rs", "--no-derivatives", "--casadi", "--with", "prepare, batch, drawing"];
-    let (status, _, told) = linkwork(&here, &all);
+    let (status, _, stderr) = linkwork(&here, &all);
     assert_eq!(status, 0);
     for line in [
         "the functions of `prepare`",
@@ -295,7 +297,7 @@ fn functions_that_another_language_lacks_are_listed() {
         "load in the form of CasADi",
         "limits in the form of CasADi",
     ] {
-        assert!(told.contains(&format!("linkwork: not in C: {line}\n")), "{line} in {told}");
+        assert!(stderr.contains(&format!("linkwork: not in C: {line}\n")), "{line} in {stderr}");
     }
 }
 
@@ -329,8 +331,8 @@ fn documented_commands_run() {
             command.retain(|word| !["--duration", "2"].contains(word));
             command.extend(["--duration", "0.05"]);
         }
-        let (status, _, told) = linkwork(&here, &command);
-        assert_eq!(status, 0, "{command:?}: {told}");
+        let (status, _, stderr) = linkwork(&here, &command);
+        assert_eq!(status, 0, "{command:?}: {stderr}");
     }
 }
 
@@ -385,7 +387,7 @@ fn robots_are_read_in_their_formats() {
 
 /// Checks the errors for mechanisms that cannot become a library, and for a folder without sources.
 #[test]
-fn libraries_that_cannot_be_are_told() {
+fn libraries_that_cannot_be_are_reported() {
     let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
     for (arguments, words) in [

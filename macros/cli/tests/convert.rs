@@ -49,9 +49,9 @@ fn converted(file: &Path, with: &str) -> (String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_linkwork"));
     let output = command.arg("convert").arg(file).args(["--with", with]).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    let (code, told) = (text(output.stdout), text(output.stderr));
-    assert!(output.status.success(), "{}: {told}", file.display());
-    (code, told)
+    let (code, stderr) = (text(output.stdout), text(output.stderr));
+    assert!(output.status.success(), "{}: {stderr}", file.display());
+    (code, stderr)
 }
 
 /// Returns the attribute's arguments, and the struct.
@@ -73,13 +73,13 @@ fn check(format: &str, file: &Path, with: &str) {
 /// Compares a struct with its file; `notes` are expected messages in addition to the list of renamed
 /// elements.
 fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
-    let (code, told) = converted(file, with);
+    let (code, stderr) = converted(file, with);
     let (arguments, item) = parts(&code);
     let is_expected = |line: &str| {
         line.starts_with("linkwork: other names than in the file: ")
             || notes.iter().any(|note| line.contains(note))
     };
-    assert!(told.lines().all(is_expected), "{}: {told}", file.display());
+    assert!(stderr.lines().all(is_expected), "{}: {stderr}", file.display());
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
@@ -289,7 +289,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
 
 /// Checks names that are not valid field names, and names of motors.
 #[test]
-fn other_names_than_in_the_file_are_told() {
+fn other_names_than_in_the_file_are_reported() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("renamed");
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("arm.urdf");
@@ -306,7 +306,7 @@ fn other_names_than_in_the_file_are_told() {
         joint("hand", "Upper-arm", "hand")
     );
     std::fs::write(&file, arm).unwrap();
-    let (code, told) = converted(&file, "");
+    let (code, stderr) = converted(&file, "");
     let all = [
         ("link `world`", "world_link"),
         ("link `Upper-arm`", "upper_arm"),
@@ -323,23 +323,26 @@ fn other_names_than_in_the_file_are_told() {
         "linkwork: other names than in the file: {}, and 1 more that the struct's documentation lists\n",
         shown.join(", ")
     );
-    assert_eq!(told, expected);
+    assert_eq!(stderr, expected);
     // Elements that retain their names are not mentioned.
-    let (code, told) = converted(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
-    assert!(!told.contains("shoulder") && !code.contains("shoulder` is"), "{told}{code}");
+    let (code, stderr) = converted(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
+    assert!(!stderr.contains("shoulder") && !code.contains("shoulder` is"), "{stderr}{code}");
 }
 
 #[test]
-fn what_cannot_be_converted_is_told() {
+fn what_cannot_be_converted_is_reported() {
     let run = |arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_linkwork")).args(arguments).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    let (status, told) = run(&["convert", file!(), "--struct", "None"]);
-    assert!(status == Some(2), "{told}");
+    let (status, stderr) = run(&["convert", file!(), "--struct", "None"]);
+    assert!(status == Some(2), "{stderr}");
     let panda = repository().join("models/urdf/panda.urdf");
-    let (status, told) = run(&["convert", panda.to_str().unwrap()]);
-    assert!(status == Some(0) && told.contains("follows `panda_finger_joint1` by a constraint"), "{told}");
-    let (status, told) = run(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
-    assert!(status == Some(2) && told.contains("a file that ends in .rs, not panda.sdf"), "{told}");
+    let (status, stderr) = run(&["convert", panda.to_str().unwrap()]);
+    assert!(
+        status == Some(0) && stderr.contains("follows `panda_finger_joint1` by a constraint"),
+        "{stderr}"
+    );
+    let (status, stderr) = run(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
+    assert!(status == Some(2) && stderr.contains("a file that ends in .rs, not panda.sdf"), "{stderr}");
 }

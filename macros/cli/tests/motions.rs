@@ -43,8 +43,8 @@ fn programs_and_generated_code_move_alike() {
         vec!["simulate", FLAIL, "--inputs", "thrust.csv", "--duration", "2", "--every", "0.5"];
     arguments.extend(set);
     arguments.extend(["--tolerance", "1e-11"]);
-    let (status, log, told) = linkwork(&here, &arguments);
-    assert_eq!((status, told.as_str()), (0, ""));
+    let (status, log, stderr) = linkwork(&here, &arguments);
+    assert_eq!((status, stderr.as_str()), (0, ""));
     assert!(log.starts_with("t,q.flight.x,"), "{log}");
 
     let flail = Flail { handle: 0.5 };
@@ -79,8 +79,8 @@ fn declared_speeds_move_configurations() {
     let mut arguments =
         vec!["simulate", JUGGLER, "--duration", "1", "--every", "0.25", "--tolerance", "1e-11"];
     arguments.extend(set.iter().map(String::as_str));
-    let (status, log, told) = linkwork(&here, &arguments);
-    assert_eq!((status, told.as_str()), (0, ""));
+    let (status, log, stderr) = linkwork(&here, &arguments);
+    assert_eq!((status, stderr.as_str()), (0, ""));
     let juggler = Juggler { axial: 0.25 };
     let (mut q, v) = (juggler.neutral(), SVector::<f64, 8>::from(begin));
     q[8] = 0.4;
@@ -132,8 +132,8 @@ pub struct Sled {
     std::fs::write(here.join("sled.rs"), sled).unwrap();
     let simulate = ["simulate", "sled.rs", "--set", "lag=0.5", "--set", "u.throttle=6", "--duration", "2"];
     for (set, start) in [(&[][..], 0.0), (&["--set", "x.thrust=2"], 2.0), (&["--set", "thrust=2"], 2.0)] {
-        let (status, log, told) = linkwork(&here, &[&simulate[..], set].concat());
-        assert_eq!((status, told.as_str()), (0, ""));
+        let (status, log, stderr) = linkwork(&here, &[&simulate[..], set].concat());
+        assert_eq!((status, stderr.as_str()), (0, ""));
         assert!(log.starts_with("t,q.rail,v.rail,x.thrust,u.throttle\r\n"), "{log}");
         for row in rows(&log) {
             let late = 1.0 - (-row[0] / 0.5).exp();
@@ -152,20 +152,21 @@ pub struct Sled {
         .replace("thrust)]", "thrust - brake)]");
     std::fs::write(here.join("two.rs"), two).unwrap();
     std::fs::write(here.join("one.csv"), "t,q.rail,u.brake\n0,0,1\n1,0,1\n").unwrap();
-    let (status, _, told) = linkwork(&here, &["view", "two.rs", "--set", "lag=1", "--motion", "one.csv"]);
-    assert!(status == 2 && told.contains("one.csv: there is no column `u.throttle`"), "{told}");
+    let (status, _, stderr) = linkwork(&here, &["view", "two.rs", "--set", "lag=1", "--motion", "one.csv"]);
+    assert!(status == 2 && stderr.contains("one.csv: there is no column `u.throttle`"), "{stderr}");
     let both = ["simulate", "two.rs", "--set", "lag=1", "--set", "u.brake=2", "--inputs", "one.csv"];
-    let (status, _, told) = linkwork(&here, &both);
-    assert!(status == 2 && told.contains("`u.brake` is a column here and given by `--set`"), "{told}");
+    let (status, _, stderr) = linkwork(&here, &both);
+    assert!(status == 2 && stderr.contains("`u.brake` is a column here and given by `--set`"), "{stderr}");
     let log = [&simulate[..], &["--out", "sled.mcap"]].concat();
     assert_eq!(linkwork(&here, &log).0, 0);
     let states = messages(&std::fs::read(here.join("sled.mcap")).unwrap());
     let last = states.iter().rfind(|message| message.get("v").is_some()).unwrap();
     assert!((last["v"]["thrust"].as_f64().unwrap() - 6.0 * (1.0 - (-4.0_f64).exp())).abs() < 1e-6, "{last}");
-    let (status, _, told) = linkwork(&here, &["simulate", "sled.rs", "--set", "lag=1", "--set", "x.thrst=1"]);
+    let (status, _, stderr) =
+        linkwork(&here, &["simulate", "sled.rs", "--set", "lag=1", "--set", "x.thrst=1"]);
     assert!(
-        status == 2 && told.contains("there is no `x.thrst`, but lag, q.rail, v.rail, x.thrust"),
-        "{told}"
+        status == 2 && stderr.contains("there is no `x.thrst`, but lag, q.rail, v.rail, x.thrust"),
+        "{stderr}"
     );
 }
 
@@ -196,9 +197,9 @@ pub struct Arm {
 }
 ";
     std::fs::write(here.join("arm.rs"), arm).unwrap();
-    let (status, log, told) =
+    let (status, log, stderr) =
         linkwork(&here, &["simulate", "arm.rs", "--duration", "2", "--set", "q.wrist=0.1"]);
-    assert!(status == 0 && told.contains("the motion is stiff: from 0.0"), "{told}");
+    assert!(status == 0 && stderr.contains("the motion is stiff: from 0.0"), "{stderr}");
     let end = rows(&log).pop().unwrap();
     // Torque of the weight divided by the stiffness, with a relative error of 10⁻⁵ from the lever arm at
     // angle zero.
@@ -210,15 +211,15 @@ pub struct Arm {
 #[test]
 fn pages_show_motions() {
     let here = folder("pages");
-    let (status, path, told) =
+    let (status, path, stderr) =
         linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "one.html"]);
-    assert_eq!((status, path.as_str(), told.as_str()), (0, "one.html\n", ""));
+    assert_eq!((status, path.as_str(), stderr.as_str()), (0, "one.html\n", ""));
     let page = std::fs::read_to_string(here.join("one.html")).unwrap();
     assert!(page.contains("\"Cuboid\"") && page.contains("\"count\":61"), "{}", &page[..2000]);
     let log = ["simulate", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "log.csv"];
     assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
-    let (status, _, told) = linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
-    assert_eq!((status, told.as_str()), (0, ""));
+    let (status, _, stderr) = linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
+    assert_eq!((status, stderr.as_str()), (0, ""));
     // Both pages are equal up to the last digits.
     let again = std::fs::read_to_string(here.join("Flail.html")).unwrap();
     assert_eq!(again.len(), page.len());
@@ -320,10 +321,10 @@ pub struct Ball {
 fn contacts_are_no_free_fall() {
     let here = folder("contacts");
     std::fs::write(here.join("ball.rs"), BALL).unwrap();
-    let (status, out, told) = linkwork(&here, &["simulate", "ball.rs"]);
-    assert!(status == 2 && out.is_empty() && told.contains("it has contacts"), "{told}");
-    let (status, _, told) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1"]);
-    assert!(status == 0 && told.contains("one configuration: it has contacts"), "{told}");
+    let (status, out, stderr) = linkwork(&here, &["simulate", "ball.rs"]);
+    assert!(status == 2 && out.is_empty() && stderr.contains("it has contacts"), "{stderr}");
+    let (status, _, stderr) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1"]);
+    assert!(status == 0 && stderr.contains("one configuration: it has contacts"), "{stderr}");
     assert!(std::fs::read_to_string(here.join("Ball.html")).unwrap().contains("\"count\":1,"));
     let (_, log, _) = linkwork(&here, &["simulate", "ball.rs", "--without-contacts", "--duration", "2"]);
     for row in rows(&log) {
@@ -366,10 +367,10 @@ fn loops_stay_closed() {
         &begin,
     ]
     .concat();
-    let (status, log, told) = linkwork(&here, &arguments);
+    let (status, log, stderr) = linkwork(&here, &arguments);
     // The given angles close the loop only up to their digits, which is reported.
-    assert!(status == 0 && told.contains("what is given does not fulfil the constraints"), "{told}");
-    assert!(told.contains("the motion begins near it, at q."), "{told}");
+    assert!(status == 0 && stderr.contains("what is given does not fulfil the constraints"), "{stderr}");
+    assert!(stderr.contains("the motion begins near it, at q."), "{stderr}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
@@ -394,30 +395,34 @@ fn loops_stay_closed() {
     }
     // One angle and one velocity are preserved, and the constraints determine the others.
     let one = ["simulate", "closed.rs", "--duration", "0.1", "--set", "q.input=0.3", "--set", "v.output=2"];
-    let (status, log, told) = linkwork(&here, &one);
+    let (status, log, stderr) = linkwork(&here, &one);
     assert!(
-        status == 0 && told.contains("what is given is kept, and the constraints put the rest at q.elbow = "),
-        "{told}"
+        status == 0
+            && stderr.contains("what is given is kept, and the constraints put the rest at q.elbow = "),
+        "{stderr}"
     );
-    assert!(told.contains("v.input = ") && !told.contains("q.input") && !told.contains("v.output"), "{told}");
+    assert!(
+        stderr.contains("v.input = ") && !stderr.contains("q.input") && !stderr.contains("v.output"),
+        "{stderr}"
+    );
     let (at, rate) = state(&self::rows(&log)[0]);
     assert_eq!((at[0], rate[2]), (0.3, 2.0));
     assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
     // The same angle in the other assembly mode.
     let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
-    let (status, log, told) = linkwork(&here, &guessed);
-    assert!(status == 0 && told.contains("what is given is kept"), "{told}");
+    let (status, log, stderr) = linkwork(&here, &guessed);
+    assert!(status == 0 && stderr.contains("what is given is kept"), "{stderr}");
     let (other, _) = state(&self::rows(&log)[0]);
     assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
     assert!(m.constraint_residuals(&other).norm() < 1e-11);
     // Angles that contradict the constraints are rejected.
     let wrong = ["simulate", "closed.rs", "--set", "q.input=1.2", "--set", "q.output=1.9"];
-    let (status, log, told) = linkwork(&here, &wrong);
-    assert!(status == 2 && log.is_empty() && told.contains("what is nearest: q.input = "), "{told}");
+    let (status, log, stderr) = linkwork(&here, &wrong);
+    assert!(status == 2 && log.is_empty() && stderr.contains("what is nearest: q.input = "), "{stderr}");
     // The singular stretched configuration is replaced by a nearby one, which is reported; the page shows the
     // motion.
-    let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
-    assert!(status == 0 && told.contains("the motion begins near it, at q."), "{told}");
+    let (status, _, stderr) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
+    assert!(status == 0 && stderr.contains("the motion begins near it, at q."), "{stderr}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
 }
 
@@ -457,9 +462,9 @@ fn beginnings_move_what_constraints_reach() {
     let short = ["simulate", "swing.rs", "--duration", "0.1", "--set", "rope=2"];
     for angle in ["0.6", "-1.5", "2.5"] {
         let given = format!("q.left_hook={angle}");
-        let (status, log, told) =
+        let (status, log, stderr) =
             linkwork(&here, &[&short[..], &["--set", "child=25", "--set", &given]].concat());
-        assert!(status == 0 && told.contains("what is given is kept"), "{told}");
+        assert!(status == 0 && stderr.contains("what is given is kept"), "{stderr}");
         let begin = &rows(&log)[0];
         let angle: f64 = angle.parse().unwrap();
         let off = begin[1..5].iter().zip([angle, angle, -angle, 0.0]).map(|(is, wanted)| (is - wanted).abs());
@@ -475,24 +480,27 @@ fn beginnings_move_what_constraints_reach() {
         (["child=25", "rop=2"], "did you mean `rope`?"),
     ] {
         let arguments = ["simulate", "swing.rs", "--set", figures[0], "--set", figures[1]];
-        let (status, log, told) = linkwork(&here, &arguments);
-        assert!(status == 2 && log.is_empty() && told.contains(why), "{told}");
+        let (status, log, stderr) = linkwork(&here, &arguments);
+        assert!(status == 2 && log.is_empty() && stderr.contains(why), "{stderr}");
     }
 }
 
 /// Checks the errors for a mechanism that cannot be assembled, and for missing values of tables.
 #[test]
-fn what_cannot_be_assembled_is_told() {
+fn what_cannot_be_assembled_is_reported() {
     let here = folder("apart");
     let apart = CLOSED
         .replace("ground.at(3 * x)", "ground.at(base * x)")
         .replace("Closed {", "Closed {\n    pub base: f64,");
     std::fs::write(here.join("apart.rs"), apart).unwrap();
-    let (status, out, told) = linkwork(&here, &["simulate", "apart.rs", "--set", "base=30"]);
-    assert!(status == 2 && out.is_empty() && told.contains("`Closed` cannot be assembled"), "{told}");
+    let (status, out, stderr) = linkwork(&here, &["simulate", "apart.rs", "--set", "base=30"]);
+    assert!(status == 2 && out.is_empty() && stderr.contains("`Closed` cannot be assembled"), "{stderr}");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
-    let (status, out, told) = linkwork(&here, &["simulate", file, "--struct", "Wing", "--set", "mass=1"]);
-    assert!(status == 2 && out.is_empty() && told.contains("--table lift=FILE --table drag=FILE"), "{told}");
+    let (status, out, stderr) = linkwork(&here, &["simulate", file, "--struct", "Wing", "--set", "mass=1"]);
+    assert!(
+        status == 2 && out.is_empty() && stderr.contains("--table lift=FILE --table drag=FILE"),
+        "{stderr}"
+    );
 }
 
 /// Checks that a spline table with three points of a parabola is the parabola: the resulting spring
@@ -527,8 +535,8 @@ pub struct Slider {
         "1e-11",
     ];
     let table = ["--table", "potential=spring.csv,smooth"];
-    let (status, log, told) = linkwork(&here, &[&arguments[..], &table].concat());
-    assert_eq!((status, told.as_str()), (0, ""));
+    let (status, log, stderr) = linkwork(&here, &[&arguments[..], &table].concat());
+    assert_eq!((status, stderr.as_str()), (0, ""));
     // Potential 4 x², mass 2 kg: 2 rad/s.
     for row in rows(&log) {
         assert!((row[1] - (2.0 * row[0]).cos()).abs() < 1e-8, "{row:?}");
@@ -540,13 +548,13 @@ pub struct Slider {
         (Some("potential=slider.rs"), "slider.rs: line 3: expected numbers"),
     ] {
         let table: Vec<&str> = table.iter().flat_map(|table| ["--table", table]).collect();
-        let (status, out, told) = linkwork(&here, &[&arguments[..], &table].concat());
-        assert!(status == 2 && out.is_empty() && told.contains(part), "{told}");
+        let (status, out, stderr) = linkwork(&here, &[&arguments[..], &table].concat());
+        assert!(status == 2 && out.is_empty() && stderr.contains(part), "{stderr}");
     }
 }
 
 #[test]
-fn what_cannot_be_done_is_told() {
+fn what_cannot_be_done_is_reported() {
     let here = folder("refused");
     std::fs::write(here.join("bad.csv"), "t,u.thrsut\n0,1\n").unwrap();
     std::fs::write(here.join("plain.csv"), "t,thrust\n0,1\n").unwrap();
@@ -563,8 +571,8 @@ fn what_cannot_be_done_is_told() {
         (vec!["--set", "handle=0.5", "--inputs", "plain.csv"], "no column of an input: expected u.thrust"),
         (vec!["--set", "handle=0.5", "--set", "q.chain.qw=0"], "is zero"),
     ] {
-        let (status, out, told) = linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());
-        assert!(status == 2 && out.is_empty() && told.contains(part), "{arguments:?}: {told}");
+        let (status, out, stderr) = linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());
+        assert!(status == 2 && out.is_empty() && stderr.contains(part), "{arguments:?}: {stderr}");
     }
 }
 
@@ -617,8 +625,8 @@ fn driven_mechanisms_follow_time() {
         .replace("#[output(crank)]\n    loads: FreeBody", "#[constraint(cylinder = 0.13)] stop: Holonomic");
     std::fs::write(here.join("twice.rs"), twice).unwrap();
     let simulate = ["simulate", "twice.rs", "--set", "speed=7", "--duration", "1"];
-    let (status, _, told) = linkwork(&here, &simulate);
-    assert!(status != 0 && told.contains("cannot be assembled"), "{told}");
+    let (status, _, stderr) = linkwork(&here, &simulate);
+    assert!(status != 0 && stderr.contains("cannot be assembled"), "{stderr}");
 }
 
 /// With declared speeds a driven mechanism follows its drive. Configurations in which the speeds do not
@@ -631,24 +639,27 @@ fn speeds_of_driven_mechanisms_may_be_singular() {
         std::fs::write(here.join("driven.rs"), with).unwrap();
         linkwork(&here, &["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"])
     };
-    let (status, log, told) =
+    let (status, log, stderr) =
         run("#[speed(3 * rate(big_end))] a: Speed, #[speed(rate(cylinder) + 0.1 * rate(big_end))] b: Speed,");
-    assert_eq!(status, 0, "{told}");
+    assert_eq!(status, 0, "{stderr}");
     for row in rows(&log) {
         let (sine, cosine) = (7.0 * row[0]).sin_cos();
         let piston = 0.04 * cosine + (0.13_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
         assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
     }
     // The crank begins at zero, where the rod is in line with it.
-    let (status, _, told) =
+    let (status, _, stderr) =
         run("#[speed(sin(big_end) * rate(cylinder))] a: Speed, #[speed(rate(big_end))] b: Speed,");
-    assert!(status == 2 && told.contains("the speeds of `Driven` are singular at the beginning"), "{told}");
+    assert!(
+        status == 2 && stderr.contains("the speeds of `Driven` are singular at the beginning"),
+        "{stderr}"
+    );
     // Their determinant is proportional to 1 + cos(big_end): zero after half a turn.
-    let (status, _, told) = run("#[speed(cos(big_end) * rate(cylinder) - 0.1 * rate(big_end))] a: Speed,
+    let (status, _, stderr) = run("#[speed(cos(big_end) * rate(cylinder) - 0.1 * rate(big_end))] a: Speed,
          #[speed(2 * rate(cylinder) + 0.2 * rate(big_end))] b: Speed,");
     let there =
-        told.split_once("beyond 0.448").is_some_and(|(_, why)| why.contains("speeds are singular there"));
-    assert!(status == 2 && there, "{told}");
+        stderr.split_once("beyond 0.448").is_some_and(|(_, why)| why.contains("speeds are singular there"));
+    assert!(status == 2 && there, "{stderr}");
 }
 
 /// Leg of Jansen's linkage.
@@ -706,8 +717,8 @@ fn legs_are_assembled_within_half_a_turn() {
         ("q.shaft=-0.308", [-0.308, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ] {
         let simulate = ["simulate", "leg.rs", "--set", given, "--duration", "0.01", "--every", "0.01"];
-        let (status, log, told) = linkwork(&here, &simulate);
-        assert!(status == 0 && told.contains("this is assembly mode "), "{given}: {told}");
+        let (status, log, stderr) = linkwork(&here, &simulate);
+        assert!(status == 0 && stderr.contains("this is assembly mode "), "{given}: {stderr}");
         let first = &rows(&log)[0];
         for (angle, wanted) in first[1..8].iter().zip(wanted) {
             assert!((angle - wanted).abs() < std::f64::consts::PI + 1e-9, "{given}: {first:?}");

@@ -35,8 +35,8 @@ fn the_program_does_what_it_says() {
 #[test]
 fn projects_are_made_once() {
     let here = folder("new");
-    let (status, told, _) = linkwork(&here, &["new", "my-arm"]);
-    assert!(status == 0 && told.contains("cargo run"), "{told}");
+    let (status, stderr, _) = linkwork(&here, &["new", "my-arm"]);
+    assert!(status == 0 && stderr.contains("cargo run"), "{stderr}");
     let main = std::fs::read_to_string(here.join("my-arm/src/main.rs")).unwrap();
     assert_eq!(main, include_str!("../src/starter/main.rs"));
     // A command built from the repository depends on the repository, and Cargo accepts the manifest.
@@ -54,18 +54,18 @@ fn projects_are_made_once() {
     assert_eq!(read["packages"][0]["name"], "my-arm");
 
     // With `--linkwork FOLDER`, the manifest names the sources in that folder.
-    let (status, _, told) = linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
-    assert_eq!(status, 0, "{told}");
+    let (status, _, stderr) = linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
+    assert_eq!(status, 0, "{stderr}");
     let own = std::fs::read_to_string(here.join("own/Cargo.toml")).unwrap();
     assert_eq!(own.replace("\"own\"", "\"my-arm\""), manifest);
-    let (status, _, told) = linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
-    assert!(status == 2 && told.contains("`--linkwork`: "), "{told}");
+    let (status, _, stderr) = linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
+    assert!(status == 2 && stderr.contains("`--linkwork`: "), "{stderr}");
 
     for (name, part) in
         [("my-arm", "is there already"), ("2d", "no name of a package"), ("fn", "no name"), ("std", "hide")]
     {
-        let (status, _, told) = linkwork(&here, &["new", name]);
-        assert!(status == 2 && told.contains(part), "{name}: {told}");
+        let (status, _, stderr) = linkwork(&here, &["new", name]);
+        assert!(status == 2 && stderr.contains(part), "{name}: {stderr}");
     }
 }
 

@@ -59,8 +59,8 @@ fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str])
     command.current_dir(here).args(["simulate", &file, "--tolerance", "1e-10", "--every", "0.25"]).args(more);
     set.iter().for_each(|set| _ = command.arg("--set").arg(set));
     let output = command.output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{text}\n{set:?}\n{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{text}\n{set:?}\n{stderr}");
     let log = String::from_utf8(output.stdout).unwrap();
     let mut lines = log.lines();
     let names = lines.next().unwrap().split(',').map(ToString::to_string).collect();

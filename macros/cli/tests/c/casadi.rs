@@ -58,7 +58,7 @@ fn casadi_loads_functions_with_their_jacobians() {
 /// Checks the errors for parameters that cannot be fixed, and for single precision, which CasADi does not
 /// support.
 #[test]
-fn what_casadi_cannot_have_is_told() {
+fn what_casadi_cannot_have_is_reported() {
     for (arguments, part) in [
         (["--set", "mass=1"], "there is no parameter `mass` to be fixed"),
         (["--scalar", "float"], "CasADi has no functions of single precision"),
@@ -71,7 +71,7 @@ fn what_casadi_cannot_have_is_told() {
             .arg(folder("refused"))
             .output()
             .expect("the command starts");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(!output.status.success() && told.contains(part), "{told}");
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && stderr.contains(part), "{stderr}");
     }
 }
