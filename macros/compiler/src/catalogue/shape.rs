@@ -57,6 +57,22 @@ impl Called {
 }
 
 impl Argument {
+    /// Returns the number of values of the argument, given `NQ`, `NV` and `NU`. Zero for results of other
+    /// functions and for matrices that receive results.
+    pub fn length(self, [nq, nv, nu]: [usize; 3]) -> usize {
+        match self {
+            Argument::T => 1,
+            Argument::Q => nq,
+            Argument::V | Argument::A | Argument::Tau => nv,
+            Argument::U => nu,
+            Argument::Given(_, _, n)
+            | Argument::Standard(n)
+            | Argument::Factors(n)
+            | Argument::Momenta(n) => n,
+            Argument::Into(..) | Argument::Called(_) => 0,
+        }
+    }
+
     /// Returns the name of the argument in the signature.
     pub fn name(self) -> &'static str {
         match self {

@@ -56,17 +56,7 @@ impl Outline<'_> {
 
     /// Returns the number of entries of an argument.
     pub fn length(&self, argument: Argument) -> usize {
-        match argument {
-            Argument::T => 1,
-            Argument::Q => self.nq,
-            Argument::V | Argument::A | Argument::Tau => self.nv,
-            Argument::U => self.nu,
-            Argument::Given(_, _, n)
-            | Argument::Standard(n)
-            | Argument::Factors(n)
-            | Argument::Momenta(n) => n,
-            Argument::Into(..) | Argument::Called(_) => 0,
-        }
+        argument.length([self.nq, self.nv, self.nu])
     }
 
     /// Returns the signature of a function with the results of a shape.
