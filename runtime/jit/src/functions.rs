@@ -150,17 +150,8 @@ impl Entry {
                 let (inverse, rest) = rest.split_at_mut(n * n);
                 let (inputs, turning) = rest.split_at_mut(n * m);
                 let (by_q, by_v) = forces.split_at_mut(n * n);
-                let [q, v, u] = columns;
-                kernels::minus_products(
-                    *n,
-                    inverse,
-                    &mut [
-                        (&mut *by_q, q.as_slice()),
-                        (&mut *by_v, v.as_slice()),
-                        (&mut *inputs, u.as_slice()),
-                    ],
-                    work,
-                );
+                let matrices = [&mut *by_q, &mut *by_v, &mut *inputs];
+                kernels::minus_products(*n, inverse, matrices, columns, work);
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
             Plan::CalledLinear { routine, derivatives, columns, n, m } => {
@@ -174,17 +165,8 @@ impl Entry {
                 shared.call(*derivatives, values, &self.arguments, &[(Argument::Tau, tau)], found, work);
                 let (by, inverse) = found.split_at_mut(2 * square);
                 let (by_q, by_v) = forces.split_at_mut(square);
-                let [q, v, u] = columns;
-                kernels::minus_products(
-                    *n,
-                    inverse,
-                    &mut [
-                        (&mut *by_q, q.as_slice()),
-                        (&mut *by_v, v.as_slice()),
-                        (&mut *inputs, u.as_slice()),
-                    ],
-                    work,
-                );
+                let matrices = [&mut *by_q, &mut *by_v, &mut *inputs];
+                kernels::minus_products(*n, inverse, matrices, columns, work);
                 by.iter_mut().zip(&*forces).for_each(|(by, more)| *by -= more);
                 let (by_q, by_v) = by.split_at(square);
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
@@ -226,8 +208,7 @@ impl CalledForward {
 /// Replaces derivatives of forces by derivatives of accelerations.
 fn solve(n: usize, inverse: &[f64], forces: &mut [f64], columns: &[Vec<Columns>; 2], work: &mut [f64]) {
     let (by_q, by_v) = forces.split_at_mut(n * n);
-    let [q, v] = columns;
-    kernels::minus_products(n, inverse, &mut [(by_q, q.as_slice()), (by_v, v.as_slice())], work);
+    kernels::minus_products(n, inverse, [by_q, by_v], columns, work);
 }
 
 /// Writes the matrices of a linear system: derivatives of the accelerations by `q` and `v`, minus those by the
@@ -302,6 +283,11 @@ impl Maker<'_, '_> {
             let program = &program;
             move |j: usize, i: usize| program.outputs[first + j * n + i] == Operand::Const(0.0)
         };
+        // Columns of derivatives by `q`, `v` and `u` that begin at these outputs.
+        let linear_columns = |[q, v, u]: [usize; 3]| {
+            [(n, q), (n, v), (m, u)]
+                .map(|(count, first)| Columns::group(n, &(0..count).collect::<Vec<_>>(), is_zero(first)))
+        };
         let (plan, work) = match f.shape {
             Shape::Inverse(_) => {
                 let inverse = inverse();
@@ -340,24 +326,12 @@ impl Maker<'_, '_> {
                 (Plan::CalledForward(Box::new(called)), work)
             }
             Shape::Linear(..) => {
-                let every: Vec<usize> = (0..n).collect();
-                let inputs: Vec<usize> = (0..m).collect();
-                let columns = [
-                    Columns::group(n, &every, is_zero(0)),
-                    Columns::group(n, &every, is_zero(n * n)),
-                    Columns::group(n, &inputs, is_zero(3 * n * n)),
-                ];
+                let columns = linear_columns([0, n * n, 3 * n * n]);
                 let work = 4 * n * n + n * m + kernels::work(n);
                 (Plan::Linear { routine: all(outputs)?, columns, n, m }, work)
             }
             Shape::CalledLinear(..) => {
-                let every: Vec<usize> = (0..n).collect();
-                let inputs: Vec<usize> = (0..m).collect();
-                let columns = [
-                    Columns::group(n, &every, is_zero(n)),
-                    Columns::group(n, &every, is_zero(n + n * n)),
-                    Columns::group(n, &inputs, is_zero(n + 2 * n * n)),
-                ];
+                let columns = linear_columns([n, n + n * n, n + 2 * n * n]);
                 let derivatives = self.index("forward_dynamics_derivatives")?;
                 let rest = kernels::work(n).max(self.entries[derivatives].work);
                 let work = n + 6 * n * n + n * m + rest;

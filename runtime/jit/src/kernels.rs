@@ -31,50 +31,58 @@ pub(crate) fn work(n: usize) -> usize {
     n * n.next_multiple_of(ROWS) + Columns::MOST * n
 }
 
-/// Replaces columns of a matrix by minus their products with a square matrix of `n` rows. All matrices are
-/// stored by columns.
-pub(crate) fn minus_products(
+/// Replaces the given columns of each matrix by minus their products with a square matrix of `n` rows. All
+/// matrices are stored by columns.
+pub(crate) fn minus_products<const K: usize>(
     n: usize,
     square: &[f64],
-    factors: &mut [(&mut [f64], &[Columns])],
+    matrices: [&mut [f64]; K],
+    columns: &[Vec<Columns>; K],
     work: &mut [f64],
 ) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
         #[target_feature(enable = "avx2,fma")]
-        fn fused(n: usize, square: &[f64], factors: &mut [(&mut [f64], &[Columns])], work: &mut [f64]) {
-            products(n, square, factors, work, f64::mul_add);
+        fn fused<const K: usize>(
+            n: usize,
+            square: &[f64],
+            matrices: [&mut [f64]; K],
+            columns: &[Vec<Columns>; K],
+            work: &mut [f64],
+        ) {
+            products(n, square, matrices, columns, work, f64::mul_add);
         }
         // SAFETY: the processor has these features.
-        return unsafe { fused(n, square, factors, work) };
+        return unsafe { fused(n, square, matrices, columns, work) };
     }
     #[cfg(target_arch = "aarch64")]
-    return products(n, square, factors, work, f64::mul_add);
+    return products(n, square, matrices, columns, work, f64::mul_add);
     #[cfg(not(target_arch = "aarch64"))]
-    products(n, square, factors, work, |a, b, c| a * b + c);
+    products(n, square, matrices, columns, work, |a, b, c| a * b + c);
 }
 
 #[inline(always)]
-fn products(
+fn products<const K: usize>(
     n: usize,
     square: &[f64],
-    factors: &mut [(&mut [f64], &[Columns])],
+    matrices: [&mut [f64]; K],
+    columns: &[Vec<Columns>; K],
     work: &mut [f64],
     mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
 ) {
     let stride = n.next_multiple_of(ROWS);
-    let (padded, columns) = work.split_at_mut(n * stride);
+    let (padded, products) = work.split_at_mut(n * stride);
     for (column, own) in padded.chunks_exact_mut(stride).zip(square.chunks_exact(n)) {
         column[..n].copy_from_slice(own);
         column[n..].fill(0.0);
     }
-    for (matrix, groups) in factors {
-        for group in *groups {
+    for (matrix, groups) in matrices.into_iter().zip(columns) {
+        for group in groups {
             match group.columns.len() {
-                1 => tiles::<1>(n, padded, matrix, group, columns, mul_add),
-                2 => tiles::<2>(n, padded, matrix, group, columns, mul_add),
-                3 => tiles::<3>(n, padded, matrix, group, columns, mul_add),
-                _ => tiles::<4>(n, padded, matrix, group, columns, mul_add),
+                1 => tiles::<1>(n, padded, matrix, group, products, mul_add),
+                2 => tiles::<2>(n, padded, matrix, group, products, mul_add),
+                3 => tiles::<3>(n, padded, matrix, group, products, mul_add),
+                _ => tiles::<4>(n, padded, matrix, group, products, mul_add),
             }
         }
     }
