@@ -4,7 +4,7 @@ use super::differentiable::{column, each_column, multipliers};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
-use crate::forward::{constants, each_function, inherent_functions};
+use crate::forward::{constants, each_function};
 use crate::integrate::Hooks;
 use crate::private::constant;
 use crate::{Mechanism, Real};
@@ -139,8 +139,6 @@ where
     let (_, by_force) = to_first_order(m, rate, t, (q, v), &tau);
     Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
-
-inherent_functions!(impl<'m, M, S; const NH, NC> Stabilized<'m, M, S, NH, NC>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>

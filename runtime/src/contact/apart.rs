@@ -1,22 +1,20 @@
-//! A mechanism whose contacts are left out.
+//! Mechanisms without their contacts.
 
 use crate::Mechanism;
-use crate::forward::{constants, each_function, inherent_functions};
+use crate::forward::{constants, each_function};
 use crate::integrate::Hooks;
 
-/// A mechanism whose contacts do nothing; made by [`apart`].
+/// Mechanism without its contacts, made by [`apart`].
 #[derive(Clone, Copy, Debug)]
 pub struct Apart<'m, M> {
     mechanism: &'m M,
 }
 
-/// The mechanism without its contacts: bodies pass through each other, and every method of integration
+/// Returns the mechanism without its contacts: bodies pass through each other, and every method of integration
 /// simulates it.
 pub fn apart<M>(mechanism: &M) -> Apart<'_, M> {
     Apart { mechanism }
 }
-
-inherent_functions!(impl<'m, M> Apart<'m, M>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for Apart<'_, M>

@@ -5,7 +5,7 @@ use super::held::{Held, held};
 use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, Derivatives, unknown};
-use crate::forward::{constants, each_function, inherent_functions};
+use crate::forward::{constants, each_function};
 use crate::integrate::Hooks;
 use crate::private::constant;
 use crate::{Mechanism, Real};
@@ -163,8 +163,6 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     }
 }
 
-inherent_functions!(impl<'m, M, S; const NK, NR> Holding<'m, M, S, NK, NR>);
-
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
     Mechanism<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
@@ -215,7 +213,7 @@ where
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
 
-    /// Nothing is brought onto contacts or constraints.
+    /// Returns the state unchanged: it is projected onto neither contacts nor constraints.
     fn project(
         &self,
         _t: T,
@@ -225,7 +223,7 @@ where
         Ok((*q, *v))
     }
 
-    /// What is held stays so, whether the state does or not.
+    /// Returns the impulse for which contact velocities keep their values, zero or not.
     fn impulse(
         &self,
         t: T,
@@ -259,7 +257,7 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
-    /// What is held may overlap.
+    /// Returns the configuration unchanged: enforced contacts may overlap.
     fn contact_start(
         &self,
         _t: T,
@@ -269,7 +267,7 @@ where
         Ok(*q)
     }
 
-    /// Nothing opens or closes.
+    /// Returns the end of the step unchanged: contacts neither open nor close.
     fn contact_step(
         &self,
         _t: T,

@@ -3,7 +3,7 @@
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, apart, with_diagonal};
 use crate::derivatives::{ByMotion, unknown};
-use crate::{Derivatives, Real};
+use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the block matrix of `block` (velocities) with rows for the states below it and columns for the

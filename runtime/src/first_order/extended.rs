@@ -4,7 +4,6 @@ use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::ByMotion;
-use crate::forward::inherent_functions;
 use crate::integrate::Hooks;
 use crate::private::put_block;
 use crate::{Mechanism, Real};
@@ -83,8 +82,6 @@ impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, N
         (self.mechanism.with_states(&x), v)
     }
 }
-
-inherent_functions!(impl<'m, M; const NV, NX, NE> Extended<'m, M, NV, NX, NE>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
