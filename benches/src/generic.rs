@@ -1,6 +1,6 @@
 //! Hand-written reference implementation: rigid-body dynamics of any tree of links, read at run time.
 //!
-//! It implements the recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7,
+//! The algorithms are the recursive ones of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7,
 //! in link axes, with nalgebra's fixed 3-vectors and 3×3 matrices. All intermediate results are in a [`Data`]
 //! that is allocated once, so that no function allocates. It does not use the compiler's crates and is
 //! therefore also an oracle for the generated code.

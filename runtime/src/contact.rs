@@ -193,14 +193,14 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
 }
 
-/// What is done with a mechanism whose contacts are of any number, by
-/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts): generic code that knows nothing of these
-/// numbers comes to [`Contacts`] through it.
+/// Generic code for mechanisms with any number of contacts, called by
+/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with the
+/// numbers of the mechanism.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// What comes of it.
+    /// Type of the result.
     type Output;
 
-    /// Does it.
+    /// Returns the result for a mechanism.
     fn visit<M, const NK: usize, const NR: usize>(self, mechanism: &M) -> Self::Output
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>;

@@ -44,7 +44,7 @@ pub struct Start<'a, 'g> {
 
 /// Ratio of singular values below which declared speeds are singular at the beginning.
 const SINGULAR: f64 = 1e-10;
-/// The same where the integration stops in front of a singular configuration.
+/// Ratio of singular values below which declared speeds are reported as the reason why an integration stops.
 const NEARLY_SINGULAR: f64 = 1e-3;
 /// Minimum relative change of an initial value that is reported, m and rad.
 const TOLD: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! What integration methods need to know of a mechanism, and need not be seen by those who simulate it.
+//! Interface between mechanisms and integration methods, which programs that simulate do not need.
 
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;

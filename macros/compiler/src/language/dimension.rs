@@ -93,7 +93,7 @@ pub const SPEED: Dimension = Dimension::new(1, 0, -1);
 pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
 /// Rate of an angle, 1/s.
 pub const RATE: Dimension = Dimension::new(0, 0, -1);
-/// Its rate, 1/s².
+/// Angular acceleration, 1/s².
 pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
 /// Moment of inertia, kg·m².
 pub const INERTIA: Dimension = Dimension::new(2, 1, 0);

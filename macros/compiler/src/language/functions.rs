@@ -47,36 +47,36 @@ pub enum Dependence {
 /// The dimension of a function's value.
 #[derive(Debug)]
 pub enum UnitRule {
-    /// Nothing is known of it.
+    /// An unknown dimension.
     Unknown,
-    /// This one, whatever the arguments are.
+    /// A fixed dimension, for all arguments.
     Of(Dimension),
-    /// That of a direction.
+    /// Dimension of a direction.
     Direction,
-    /// That of all arguments, which are alike.
+    /// Dimension of the arguments, which must be equal.
     Alike,
-    /// A plain number; the arguments are alike.
+    /// A plain number; the dimensions of the arguments must be equal.
     Quotient,
-    /// That of the first argument.
+    /// Dimension of the first argument.
     LikeFirst,
-    /// That of the last argument.
+    /// Dimension of the last argument.
     LikeLast,
-    /// That of the product of the arguments; for a scalar the product of two directions is plain.
+    /// Dimension of the product of the arguments; for a scalar the product of two directions is plain.
     Product {
         /// The value is a scalar.
         scalar: bool,
     },
-    /// That of the first argument, plain for a direction.
+    /// Dimension of the first argument, plain for a direction.
     Magnitude,
     /// The first argument to the power of the second.
     Power,
-    /// That of the first argument over time.
+    /// Dimension of the first argument over time.
     TimeDerivative,
-    /// The inverse of that of the first argument.
+    /// Inverse of the dimension of the first argument.
     Inverse,
-    /// That of a field over a length.
+    /// Dimension of a field over a length.
     Gradient,
-    /// This one; the first argument names places, `y / x`.
+    /// A fixed dimension; the first argument is a pair of points or frames, `y / x`.
     Places(Dimension),
     /// A moment of inertia, if all directions are plain.
     Moment,

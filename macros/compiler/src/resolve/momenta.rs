@@ -13,11 +13,11 @@ use crate::syntax::{self, ExprKind, words};
 /// A sum over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
-    /// Of momenta.
+    /// Sum of the momenta.
     Momentum,
-    /// Of angular momenta about a point.
+    /// Sum of the angular momenta about a point.
     AngularMomentum,
-    /// Of kinetic energies.
+    /// Sum of the kinetic energies.
     Energy,
 }
 

@@ -113,7 +113,7 @@ fn kinematic_mechanisms_have_no_linear_equations() {
     assert!(found.len() == 1 && found[0].starts_with("linear equations of motion need inertia"), "{found:?}");
 }
 
-/// The same holds for other printed equations.
+/// Without inertia, all printed equations of motion are rejected.
 #[test]
 fn kinematic_mechanisms_have_no_equations_of_motion() {
     let fields = "#[body] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin";

@@ -117,7 +117,7 @@ fn sums_and_polynomials_are_conditions() {
 
 /// Gains and biases as in MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`). A shortcut takes the
 /// defaults of the same shortcut, or of `<general>` with a constant gain, in the nearest class that has them.
-/// It never takes the constant force of a bias.
+/// No shortcut takes the constant force of a bias.
 #[test]
 fn defaults_of_actuators_are_one_record() {
     for (defaults, actuator, expected) in [

@@ -549,7 +549,7 @@ fn the_world_does_not_move() {
     }
 }
 
-/// As MuJoCo refuses them: sites without a neighbour and pulleys that no site follows.
+/// Sites without a neighbour and pulleys that no site follows are errors, as in MuJoCo 4.0.0.
 #[test]
 fn parts_of_a_path_without_length_are_errors() {
     let help = "= help: a tendon and each part behind a pulley has two sites";

@@ -512,7 +512,7 @@ fn comments_do_not_hide_values() {
     }
 }
 
-/// What has a meaning elsewhere in a file is an error, and not taken for the default.
+/// An element or attribute in the wrong parent element is an error, and does not become the default.
 #[test]
 fn parts_in_the_place_of_others_are_errors() {
     let model = "= help: a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";

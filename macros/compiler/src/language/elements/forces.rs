@@ -37,7 +37,7 @@ pub enum ForceQuantity {
     Energy,
     /// The coordinate or the distance itself.
     Coordinate,
-    /// Its rate.
+    /// Rate of the coordinate or the distance.
     Speed,
     /// This dimension.
     Fixed(Dimension),
@@ -80,7 +80,7 @@ table! {
         Speed = key("speed", Speed);
         /// Gravitational constant, for two bodies with mass.
         Constant = key("constant", ForceQuantity::Fixed(GRAVITATION));
-        /// Gravitational parameter of the attracting one.
+        /// Gravitational parameter of the attracting body.
         Mu = key("mu", ForceQuantity::Fixed(ATTRACTION));
         /// Force times the square of the distance.
         Strength = key("strength", ForceQuantity::Fixed(STRENGTH));
@@ -98,33 +98,33 @@ table! {
 pub struct ForceRow {
     /// The name of the type.
     pub name: &'static str,
-    /// Words of other tools for the type.
+    /// Names of the element in other tools.
     pub synonyms: &'static str,
-    /// It can act on a coordinate, a body or a length: `on = …`.
+    /// Whether the element can act on a coordinate, a body or a length: `on = …`.
     pub on: bool,
-    /// It can act between two points: `between = (…, …)`.
+    /// Whether the element can act between two points: `between = (…, …)`.
     pub between: bool,
-    /// The other arguments, in the order in which messages list them.
+    /// All other arguments, in the order in which messages list them.
     pub arguments: &'static [Key],
-    /// The alternatives of its law, of which one is given; the last one is asked for if none is.
+    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last one.
     pub laws: &'static [Key],
     /// Arguments that must be given, with an example each.
     pub required: &'static [(Key, &'static str)],
-    /// Arguments of which one at most is given, with the error and the help for two.
+    /// Two arguments that exclude each other, with the error and the help if both are given.
     pub exclusive: Option<([Key; 2], &'static str, &'static str)>,
-    /// Names that stand for the stretch or the speed in its law.
+    /// Names of the stretch and the speed in the expression of the law.
     pub locals: Locals,
-    /// It can act on a body, not only on a coordinate or a length.
+    /// Whether the element can act on a body, not only on a coordinate or a length.
     pub on_bodies: bool,
-    /// It loads a body by a torque, not by a force.
+    /// Whether the element loads a body by a torque instead of a force.
     pub torque: bool,
-    /// It loads a body by a force at one point alone.
+    /// Whether the element loads a body by a force at a single point.
     pub at_point: bool,
-    /// Pieces that show it: on a length, and on an angle.
+    /// Pieces of the drawing: for a length, and for an angle.
     pub pieces: Option<[PieceKind; 2]>,
-    /// It is drawn between two points alone.
+    /// Whether the element is drawn only between two points.
     pub drawn_between: bool,
-    /// Words of other tools for its arguments.
+    /// Names of the arguments in other tools.
     pub words: Words,
     /// How it is declared.
     pub example: &'static str,

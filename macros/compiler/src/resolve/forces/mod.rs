@@ -113,11 +113,11 @@ impl<'g> Builder<'_, 'g> {
 
 /// The length or the angle that a force element acts on.
 pub struct ActedOn<'g> {
-    /// Its value and its rate; `None` for a coordinate.
+    /// Value and rate of the length or the angle; `None` for a coordinate.
     pub stretch: Option<Stretch<'g>>,
-    /// True for an angle, nothing if it may be either.
+    /// Whether an angle is meant; `None` if a length is possible, too.
     pub angle: Option<bool>,
-    /// The coordinate that it is.
+    /// The coordinate, if the element acts on one.
     pub coordinate: Option<Coordinate>,
 }
 

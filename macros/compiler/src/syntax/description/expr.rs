@@ -6,18 +6,18 @@ use crate::language::{Callable, Method};
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
 pub struct Name {
-    /// The word.
+    /// Text of the word.
     pub text: String,
-    /// Where it stands.
+    /// Span or position in the source.
     pub place: Place,
 }
 
 /// A word of the language as written, with its row in the tables.
 #[derive(Clone, Debug)]
 pub struct Term<I> {
-    /// The word.
+    /// Text of the word.
     pub text: String,
-    /// Where it stands.
+    /// Span or position in the source.
     pub place: Place,
     /// The row; `None` for a word that is in no table.
     pub id: Option<I>,

@@ -7,11 +7,11 @@ use crate::language::{ForceKind, Key};
 /// A force element or an input.
 #[derive(Clone, Debug)]
 pub struct Action {
-    /// Its name; an input's name is its entry in `INPUTS`.
+    /// Name of the element; that of an input is its entry in `INPUTS`.
     pub name: Name,
-    /// Its row in the table of force elements.
+    /// Row in the table of force elements.
     pub kind: ForceKind,
-    /// What it acts on.
+    /// Coordinate, body or points that the element acts on.
     pub on: Target,
     /// The arguments that are given.
     pub arguments: Vec<(Key, Expr)>,
@@ -20,7 +20,7 @@ pub struct Action {
 /// What a file says of springs, dampers, rotors and motors.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// Its name; an input's name is its entry in `INPUTS`.
+    /// Name of the element; that of an input is its entry in `INPUTS`.
     pub name: Name,
     /// What it acts on.
     pub on: DriveOn,
