@@ -268,3 +268,22 @@ fn limits_of_coordinates_stay_with_speeds() {
     let Unreached::OutOfReach { q, .. } = stretched else { panic!("{stretched}") };
     assert_close("stretched", q.as_slice(), &[(0.1_f64 / 0.9).atan(), 0.0], 1e-4);
 }
+
+/// A mechanism without its contacts moves in generalized speeds as in joint velocities.
+#[test]
+fn a_mechanism_without_its_contacts_keeps_its_speeds() {
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let u = m.speeds_of_rates(&q, &rates);
+    let method = ImplicitMidpoint::step(1e-3);
+    let expected = simulate(&contact::apart(&plain))
+        .from(q, rates)
+        .duration(0.5)
+        .method(Rk4::step(1e-3))
+        .finish()
+        .unwrap();
+    let end = simulate(&contact::apart(&m)).from(q, u).duration(0.5).method(method).finish().unwrap();
+    assert_close("configuration", end.q.as_slice(), expected.q.as_slice(), 1e-4);
+    assert_close("velocity", m.rates_of_speeds(&end.q, &end.v).as_slice(), expected.v.as_slice(), 1e-4);
+    // Without contacts the hull falls freely: its origin passes the ground.
+    assert!(end.q[2] < -0.2, "{}", end.q[2]);
+}

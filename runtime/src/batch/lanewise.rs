@@ -92,6 +92,7 @@ where
 {
     const CONSTRAINED: bool = M::CONSTRAINED;
     const SLIPPING: bool = M::SLIPPING;
+    const FEEDBACK: bool = M::FEEDBACK;
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;
     const SPEEDS: bool = M::SPEEDS;

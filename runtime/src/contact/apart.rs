@@ -39,6 +39,8 @@ where
     const FEEDBACK: bool = M::FEEDBACK;
     const CONTACTING: bool = false;
     const LOCATABLE: bool = false;
+    const FIRST_ORDER: usize = M::FIRST_ORDER;
+    const SPEEDS: bool = M::SPEEDS;
 
     each_function!(methods, [M::Scalar] pass Hooks, self => self.mechanism);
 
