@@ -355,3 +355,22 @@ fn the_ground_may_be_a_link() {
     // Bodies that are fixed to the ground have no effect on the motion.
     assert_eq!((Grounded.total_mass(), Grounded.mass_matrix(&q)[0]), (2.0, 2.0));
 }
+
+/// Two parallel cranks and a coupler, one of whose joints closes a loop.
+#[mechanism(urdf = "data/urdf/parallelogram.urdf", loops = close)]
+struct Parallelogram;
+
+/// Checks the motion of a parallelogram, whose coupler moves in translation. By the principle of virtual work
+/// its inertia about the cranks is `2 (I + m c²) + M l²`, and gravity acts on it with `2 m g c + M g l`.
+#[test]
+fn a_joint_closes_a_loop() {
+    let (inertia, weight) = (2.0 * (0.02 + 1.5 * 0.04) + 2.0 * 0.16, 9.81 * (2.0 * 1.5 * 0.2 + 2.0 * 0.4));
+    assert_eq!(Parallelogram::INPUTS, ["shoulder", "elbow", "support"]);
+    for (angle, rate, torque) in [(0.7_f64, 0.0, 0.0), (2.0, -1.5, 3.0), (-1.2, 4.0, -2.0)] {
+        let (q, v) = ([angle, -angle, angle].into(), [rate, -rate, rate].into());
+        assert_close("closed", Parallelogram.constraint_residuals(&q).as_slice(), &[0.0; 5], 1e-15);
+        let a = Parallelogram.forward_dynamics(&q, &v, &[torque, 0.0, 0.0].into());
+        let expected = (torque - weight * angle.cos()) / inertia;
+        assert_close("accelerations", a.as_slice(), &[expected, -expected, expected], 1e-12);
+    }
+}

@@ -93,6 +93,7 @@ use std::path::PathBuf;
 /// | `passive = honour` or `ignore` | whether damping, friction and springs of the file's joints and tendons are imported (default) or ignored |
 /// | `mimic = follow` or `independent` | whether joints with `mimic`, and joints and bodies in MJCF's `<equality>`, are coupled (default) or independent |
 /// | `contacts = file` or `ignore` | whether contacts between the bodies of an MJCF file and the planes of its world are imported; the default is ignore |
+/// | `loops = refuse` or `close` | whether a link of a URDF file that is the child of several joints is an error (default), or all but one of these joints close loops |
 /// | `limits = honour`, `ignore` or `stops` | `honour` (default): the limits of the file's joints are those of the trait `linkwork::Limits`. `ignore`: they are not imported. `stops`: in addition, joints stop at the limits of their coordinates |
 /// | `inertia = check`, `trust` or `none` | `check` (default): physically impossible inertias are errors. `trust`: inertias are not checked. `none`: masses and inertias are not imported, for kinematics alone |
 /// | `inputs = joints`, `actuators` or `none` | whether every moving joint with one degree of freedom is an input, every actuator of an MJCF file, or nothing; the default is actuators for MJCF files and joints for others |

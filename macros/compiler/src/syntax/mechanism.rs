@@ -180,6 +180,8 @@ pub struct FileOptions {
     pub parameters: Vec<FileFigures>,
     /// What touches what is taken from the file.
     pub contacts: bool,
+    /// Whether a link of a URDF file may be the child of several joints, of which all but one close loops.
+    pub close_loops: bool,
     /// Contacts name the collision geometry of links.
     pub collisions: bool,
     /// Visual geometry is drawn.

@@ -14,7 +14,7 @@ use proc_macro2::{Span, TokenStream};
 const LARGEST_SNAP: f64 = 0.01;
 
 /// The options that have a value.
-const OPTIONS: [&str; 21] = [
+const OPTIONS: [&str; 22] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -28,6 +28,7 @@ const OPTIONS: [&str; 21] = [
     "mimic",
     "limits",
     "contacts",
+    "loops",
     "inertia",
     "inputs",
     "lock",
@@ -59,7 +60,7 @@ pub fn read_options(
     }
     let file = read_path(&mut arguments, cx);
     let file_only =
-        ["base", "passive", "mimic", "limits", "contacts", "inputs", "lock", "snap", "parameters"];
+        ["base", "passive", "mimic", "limits", "contacts", "loops", "inputs", "lock", "snap", "parameters"];
     if file.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
@@ -75,6 +76,7 @@ pub fn read_options(
         }
     }
     let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let close_loops = read_loops(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
@@ -113,6 +115,7 @@ pub fn read_options(
         snap,
         parameters,
         contacts,
+        close_loops,
         collisions: false,
         visuals: false,
     })
@@ -129,6 +132,19 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
             .help(super::contact::TOUCHES);
     }
     asked && other.is_none()
+}
+
+/// Reads `loops = refuse | close`, an option of URDF files, and returns whether loops are closed. Other
+/// formats have joints or constraints that close loops.
+fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
+    let place = arguments.place_of("loops");
+    let close =
+        arguments.take_word("loops", &["refuse", "close"], cx).is_some_and(|(word, _)| word == "close");
+    if let (Some(place), Some(other)) = (place, format.filter(|format| *format != FileFormat::Urdf)) {
+        cx.error(place, "`loops` is an option of URDF files")
+            .help(format!("remove it: the loops of {} are always closed", other.article()));
+    }
+    close
 }
 
 /// `urdf = "…"` or `mjcf = "…"`.

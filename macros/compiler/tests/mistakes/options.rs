@@ -34,6 +34,7 @@ const ROWS: &[Row] = &[
     ("xacro = \"r.urdf.xacro\"", "`#[mechanism]` has no argument `xacro`", "expand the template first"),
     ("urdf = robot", "expected a string for `urdf`", "write `urdf = \"…\"`"),
     ("base = free", "`base` is an option of a file", "`#[joint(ground -> body)] pose: Free`"),
+    ("loops = close", "`loops` is an option of a file", "add `urdf"),
     ("contacts = file", "`contacts` is an option of a file", "add `urdf"),
     ("floating_base = true", "`#[mechanism]` has no argument `floating_base`", "did you mean `base = free`?"),
     ("f32", "unknown word `f32`", "write `scalar = f32`"),

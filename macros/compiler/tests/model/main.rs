@@ -49,6 +49,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             snap: None,
             parameters: Vec::new(),
             contacts: false,
+            close_loops: false,
             collisions: false,
             visuals: false,
         };

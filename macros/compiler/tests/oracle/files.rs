@@ -37,6 +37,7 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
         snap: None,
         parameters: Vec::new(),
         contacts: false,
+        close_loops: false,
         collisions: false,
         visuals: false,
     };

@@ -3,28 +3,19 @@
 use super::assemble::joint_of;
 use super::parts::Robot;
 use crate::import::context::{Cx, quote};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Moves the joints that close loops from the tree to `robot.closing`. A joint closes a loop if an earlier
-/// joint has the same child link.
+/// Moves the joints that close loops from the tree to `robot.closing`. Of several joints with the same child
+/// link, the first whose parent does not hang from that link belongs to the tree; the others close loops.
 ///
 /// Loop-closing joints have no coordinates, so nothing can act on one: drives, damping, friction and `mimic`
 /// of such joints are reported.
 pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
-    let links: BTreeSet<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
-    let mut carried: BTreeSet<String> = BTreeSet::new();
-    let (mut tree, mut closing) = (Vec::new(), Vec::new());
-    for joint in std::mem::take(&mut robot.joints) {
-        let is_first = carried.insert(joint.child.text.clone());
-        // Unknown links are reported by another check.
-        let known = [&joint.parent, &joint.child].into_iter().all(|end| links.contains(end.text.as_str()));
-        match is_first || !known || joint.parent.text == joint.child.text {
-            true => tree.push(joint),
-            false => closing.push(joint),
-        }
-    }
-    robot.joints = tree;
-    for joint in closing {
+    let chosen = find_closing(robot);
+    let joints = std::mem::take(&mut robot.joints).into_iter().enumerate();
+    let (closing, tree): (Vec<_>, Vec<_>) = joints.partition(|(k, _)| chosen.contains(k));
+    robot.joints = tree.into_iter().map(|(_, joint)| joint).collect();
+    for (_, joint) in closing {
         let driven = robot.drives.iter().any(|drive| drive.name.text == joint.name.text);
         if driven || joint.damping.is_some() || joint.friction.is_some() || joint.mimic.is_some() {
             let message =
@@ -39,4 +30,32 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
         }
         robot.closing.push(joint_of(joint));
     }
+}
+
+/// Returns the indices of the joints that close loops. Joints with unknown links, or from a link to itself,
+/// are reported by another check.
+fn find_closing(robot: &Robot) -> BTreeSet<usize> {
+    let links: BTreeSet<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
+    let mut joints_above: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut links_below: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (k, joint) in robot.joints.iter().enumerate() {
+        let (parent, child) = (joint.parent.text.as_str(), joint.child.text.as_str());
+        if links.contains(parent) && links.contains(child) && parent != child {
+            joints_above.entry(child).or_default().push(k);
+            links_below.entry(parent).or_default().push(child);
+        }
+    }
+    let mut closing = BTreeSet::new();
+    for (child, joints) in joints_above.into_iter().filter(|(_, joints)| joints.len() > 1) {
+        let mut below = BTreeSet::from([child]);
+        let mut stack = vec![child];
+        while let Some(link) = stack.pop() {
+            let next = links_below.get(link).into_iter().flatten();
+            stack.extend(next.copied().filter(|link| below.insert(*link)));
+        }
+        let is_outside = |k: &usize| !below.contains(robot.joints[*k].parent.text.as_str());
+        let kept = joints.iter().copied().find(is_outside).unwrap_or(joints[0]);
+        closing.extend(joints.into_iter().filter(|k| *k != kept));
+    }
+    closing
 }

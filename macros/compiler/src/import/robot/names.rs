@@ -71,7 +71,7 @@ pub(in crate::import) fn check_unique<'a>(
 }
 
 /// Reports joints with unknown links, joints from a link to itself, and links with two parents.
-pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
     let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
@@ -90,18 +90,23 @@ pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
             if first.name.text == joint.name.text {
                 continue;
             }
-            report_two_parents(first, joint, cx);
+            report_two_parents(first, joint, format, cx);
         } else {
             parents.insert(&joint.child.text, joint);
         }
     }
 }
 
-fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
+fn report_two_parents(first: &FileJoint, second: &FileJoint, format: FileFormat, cx: &mut Cx<'_>) {
     let (link, a, b) = (quote(&second.child.text), quote(&first.name.text), quote(&second.name.text));
     cx.error(&second.child.place, format!("link {link} is the child of two joints, {a} and {b}"), |d| {
-        d.help(format!("the first is at {}", position(&first.child.place)))
-            .help("the links of a file form a tree; it has no closed loops")
+        d.help(format!("the first is at {}", position(&first.child.place)));
+        match format {
+            FileFormat::Urdf => {
+                d.help("if one of them closes a loop, write `#[mechanism(…, loops = close)]`")
+            }
+            _ => d.help("the links of a file form a tree; it has no closed loops"),
+        }
     });
 }
 

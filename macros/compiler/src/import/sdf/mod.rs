@@ -142,7 +142,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
     robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    robot::check_ends(&robot, cx);
+    robot::check_ends(&robot, options.format, cx);
     robot::check_locks(&robot.joints, &options.lock, cx);
     if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {
         robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();

@@ -71,6 +71,7 @@ fn defaults() -> FileOptions {
         snap: None,
         parameters: Vec::new(),
         contacts: false,
+        close_loops: false,
         collisions: false,
         visuals: false,
     }

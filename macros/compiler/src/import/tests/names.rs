@@ -153,8 +153,27 @@ fn a_link_hangs_from_one_joint() {
         &format!("{links}\n{}", joints.join("\n")),
         "r.urdf:5:62: link `c` is the child of two joints, `ac` and `bc`
          = help: the first is at r.urdf:4:62
-         = help: the links of a file form a tree; it has no closed loops",
+         = help: if one of them closes a loop, write `#[mechanism(…, loops = close)]`",
     );
+}
+
+/// Checks that the first of two joints with one child belongs to the tree, unless its parent hangs from the
+/// child.
+#[test]
+fn joints_close_loops() {
+    let options = FileOptions { close_loops: true, ..defaults() };
+    let file = |joints: &[String]| {
+        format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(link).concat(), joints.concat())
+    };
+    let (ab, ac) = (joint("ab", "fixed", "a", "b", ""), joint("ac", "fixed", "a", "c", ""));
+    let (bc, cb) = (joint("bc", "floating", "b", "c", ""), joint("cb", "continuous", "c", "b", ""));
+    let tree = |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
+    let last = tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
+    check_with(&options, &file(&[ab.clone(), ac, cb.clone()]), &last);
+    let first = tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
+    check_with(&options, &file(&[cb.clone(), ab, bc.clone()]), &first);
+    let without_root = run(&options, &file(&[bc, cb]));
+    assert!(without_root.contains("links `b`, `c` hang from one another"), "{without_root}");
 }
 
 #[test]

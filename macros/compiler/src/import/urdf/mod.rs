@@ -28,7 +28,10 @@ pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Op
     robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    robot::check_ends(&robot, cx);
+    if options.close_loops && !cx.failed() {
+        robot::close_loops(&mut robot, cx);
+    }
+    robot::check_ends(&robot, options.format, cx);
     robot::check_locks(&robot.joints, &options.lock, cx);
     if cx.failed() {
         return None;
@@ -39,8 +42,10 @@ pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Op
         return None;
     };
     let standing = standing::links(node, options).into_iter().map(ToString::to_string).collect::<Vec<_>>();
+    let closing = std::mem::take(&mut robot.closing);
     let mut imported = robot::assemble(robot, &order, motions, options, cx);
     robot::make_fields(&mut imported, &standing, options, cx);
+    imported.joints.extend(closing);
     (!cx.failed()).then_some(imported)
 }
 
