@@ -1,6 +1,6 @@
-//! What the user wrote → a checked mechanism: names resolved, the tree of links found, joints reduced to
-//! elementary motions, bodies lumped into the links that carry them. All mistakes of the user are found here
-//! or before; knows neither algorithms nor generated code.
+//! Resolution of the description written by the user into a checked mechanism: resolves names, finds the tree
+//! of links, reduces joints to elementary motions and lumps bodies into the links that carry them. All errors
+//! of the user are reported here or earlier. This module depends neither on algorithms nor on generated code.
 
 mod accelerations;
 mod axis;

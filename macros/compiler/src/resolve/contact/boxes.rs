@@ -1,17 +1,17 @@
-//! Where two boxes touch.
+//! Contact points of two boxes, and of a sphere or capsule on a box.
 //!
-//! Two boxes are apart if a plane is between them whose normal is that of a face of either, or is normal to
-//! an edge of each (Gottschalk, Lin and Manocha, *OBBTree*, 1996). The one of these fifteen directions along
-//! which they are farthest apart, or overlap least, says what touches. If it is a face's normal, what lies
-//! before that face is the opposite face of the other box, clipped by the sides of the first: its edges
-//! within these sides, by their ends, and the corners of the first within the other. If it is normal to two
-//! edges, these touch where they are nearest to each other.
+//! Two boxes are separated if a plane lies between them whose normal is a face normal of either box, or is
+//! perpendicular to an edge of each (Gottschalk, Lin and Manocha, *OBBTree*, 1996). Of these fifteen
+//! directions, the one with the largest separation (or the smallest overlap) determines the contact. If it is
+//! a face normal, the opposite face of the other box is clipped by the sides of the first face. The candidate
+//! points are the ends of its clipped edges, and the corners of the first face that lie within the other. If
+//! the direction is perpendicular to two edges, the contact is at the closest points of these edges.
 //!
-//! A capsule on a box is such a line with a radius; its ends are spheres.
+//! The axis of a capsule is treated as an edge with a radius; the ends of a capsule are spheres.
 //!
-//! Points that are not of what touches are apart by how much farther the boxes are apart along the direction
-//! that says so. A point that two edges of a face have in common counts once; the other has the size of the
-//! boxes for its distance.
+//! The gap of a candidate point that does not belong to the determining direction is increased by the
+//! difference of the separations. If two edges of a face share a point, it counts once; the gap of the
+//! duplicate is the size of the boxes.
 
 use super::surface::Form;
 use super::unilateral::{nearest, within};
@@ -19,17 +19,18 @@ use super::{Contact, Pair, sphere_contact};
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::resolve::builder::Builder;
 
-/// How much farther apart along a direction later ones have to be for it to give way, by the size of the
-/// boxes.
+/// Amount by which the separation along a later direction must exceed that of an earlier one to replace it,
+/// relative to the size of the boxes.
 const SAME: f64 = 1e-9;
-/// Square of the sine of an angle between edges that are parallel: faces say where such boxes touch.
+/// Squared sine of the angle below which edges are treated as parallel; faces then determine the contact.
 const PARALLEL: f64 = 1e-10;
-/// A direction in which two boxes of one size differ, wherever they are placed on purpose.
+/// Generic direction that orders boxes of equal size by their positions. Boxes placed on purpose rarely have
+/// equal components along it.
 const LEANING: [f64; 3] = [0.2113, 0.3779, 0.9014];
-/// Slope of an edge against a side that is none.
+/// Smallest slope of an edge against a side that is not treated as parallel to it.
 const LEVEL: f64 = 1e-12;
 
-/// A box: its axes, half of its lengths along them, and its centre.
+/// A box: its axes, half its lengths along them, and its centre.
 #[derive(Clone, Copy)]
 struct Block<'g> {
     axes: [Vec3<'g>; 3],
@@ -37,12 +38,13 @@ struct Block<'g> {
     center: Vec3<'g>,
 }
 
-/// A direction between two boxes.
+/// A candidate separating direction of two boxes.
 #[derive(Clone, Copy)]
 struct Apart<'g> {
-    /// How far they are apart along it.
+    /// Separation of the boxes along the direction, negative if they overlap.
     distance: Expr<'g>,
-    /// Which axis of each it comes from: ones and zeros. Of a face's normal the first.
+    /// Selectors, one entry equal to one, of the axis of each box that defines the direction. For a face
+    /// normal both are the face's axis.
     first: [Expr<'g>; 3],
     second: [Expr<'g>; 3],
 }
@@ -55,12 +57,12 @@ struct Boxes<'g> {
     size: Expr<'g>,
 }
 
-/// One where `x` is positive, else zero.
+/// Returns one if `x` is positive, zero if it is negative.
 fn is_positive(x: Expr<'_>) -> Expr<'_> {
     (x.call(Function::Signum) + x.num(1.0)) * 0.5
 }
 
-/// The first where `which` is one, the second where it is zero.
+/// Returns `first` if `which` is one, `second` if it is zero.
 fn either<'g>(which: Expr<'g>, first: Expr<'g>, second: Expr<'g>) -> Expr<'g> {
     first * which + second * (which.num(1.0) - which)
 }
@@ -81,7 +83,7 @@ fn smaller<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     a.extreme(Extreme::Min, b)
 }
 
-/// What of three is chosen.
+/// Returns the value that a selector of three selects.
 fn chosen<'g>(which: &[Expr<'g>; 3], of: [Expr<'g>; 3]) -> Expr<'g> {
     of[0] * which[0] + of[1] * which[1] + of[2] * which[2]
 }
@@ -90,19 +92,19 @@ fn chosen_vector<'g>(which: &[Expr<'g>; 3], of: &[Vec3<'g>; 3]) -> Vec3<'g> {
     of[0] * which[0] + of[1] * which[1] + of[2] * which[2]
 }
 
-/// What comes after the one that is chosen, in a circle.
+/// Returns the selector of the cyclically next axis.
 fn after<'g>(which: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
     let [a, b, c] = *which;
     [c, a, b]
 }
 
-/// All three times the same.
+/// Multiplies a selector by a factor.
 fn times<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
     which.map(|x| x * factor)
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Where a sphere, a capsule or a box touches a box.
+    /// Returns the contacts of a sphere, a capsule or a box with a box whose centre is `c` away from theirs.
     pub(super) fn on_box(&self, pair: &Pair<'g>, lengths: &[Expr<'g>; 3], c: Vec3<'g>) -> Vec<Contact<'g>> {
         let g = self.scope.graph;
         let block = |lengths: &[Expr<'g>; 3], center, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>| Block {
@@ -134,8 +136,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The points where two boxes may touch, from the centre of the first, which is `c` from that of the second;
-/// all directions in the same axes.
+/// Returns the points where two boxes may touch, relative to the centre of the first box, which is at `c`
+/// from that of the second. All directions are in the same axes.
 fn touches<'g>(a: &Block<'g>, b: &Block<'g>) -> Vec<Contact<'g>> {
     let size = a.half.into_iter().chain(b.half).fold(a.half[0].zero(), |sum, half| sum + half);
     let cosines = a.axes.map(|own| b.axes.map(|other| own.dot(other)));
@@ -146,7 +148,7 @@ fn touches<'g>(a: &Block<'g>, b: &Block<'g>) -> Vec<Contact<'g>> {
     let (holder, other) = boxes.roles(of_second);
     let mut points = faces(&holder, &other, &face.first, size);
     for point in &mut points {
-        // Both bodies have the point; the normal is towards the first one.
+        // The point belongs to both bodies; the normal points towards the first one.
         point.point -= a.center;
         let side = of_second * 2.0 - of_second.num(1.0);
         point.axes[0].1 = point.axes[0].1 * side;
@@ -164,9 +166,10 @@ impl<'g> Boxes<'g> {
         self.a.center - self.b.center
     }
 
-    /// The face along whose normal they are farthest apart, and whether it is one of the second box. Of faces
-    /// that say the same it is that of the larger box, and of boxes of one size that of the lower one along
-    /// some direction: which one was named first decides nothing.
+    /// Returns the face along whose normal the boxes have the largest separation, and one if it belongs to
+    /// the second box (otherwise zero). Between equal separations, a face of the larger box is chosen; for
+    /// boxes of equal size, of the lower one along a fixed direction. The order in which the boxes are
+    /// written has no effect.
     fn face(&self) -> (Apart<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let [first, second] = [false, true].map(|is_second| self.face_of(is_second));
@@ -182,7 +185,7 @@ impl<'g> Boxes<'g> {
         (Apart { distance, first: which, second: which }, one - is_first)
     }
 
-    /// The face of one of them along whose normal the other is farthest from it.
+    /// Returns the face of one box along whose normal the other is farthest from it.
     fn face_of(&self, is_second: bool) -> Apart<'g> {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let c = self.away();
@@ -207,7 +210,7 @@ impl<'g> Boxes<'g> {
         best
     }
 
-    /// The pair of edges along whose common normal they are farthest apart.
+    /// Returns the pair of edges along whose common normal the boxes have the largest separation.
     fn edges(&self) -> Apart<'g> {
         let zero = self.size.zero();
         let c = self.away();
@@ -243,7 +246,7 @@ impl<'g> Boxes<'g> {
         best
     }
 
-    /// The box whose face it is, and the other one.
+    /// Returns the box that has the determining face, and the other box.
     fn roles(&self, of_second: Expr<'g>) -> (Block<'g>, Block<'g>) {
         let mixed = |first: &Block<'g>, second: &Block<'g>| Block {
             axes: std::array::from_fn(|k| either_vector(of_second, first.axes[k], second.axes[k])),
@@ -253,7 +256,7 @@ impl<'g> Boxes<'g> {
         (mixed(&self.b, &self.a), mixed(&self.a, &self.b))
     }
 
-    /// Where two edges touch.
+    /// Returns the contact of two edges.
     fn crossing(&self, edge: &Apart<'g>) -> Contact<'g> {
         let (c, one) = (self.away(), self.size.num(1.0));
         let own = chosen_vector(&edge.first, &self.a.axes);
@@ -277,18 +280,19 @@ impl<'g> Boxes<'g> {
     }
 }
 
-/// A face of a box, in the directions of its normal and of its sides.
+/// A face of a box, with its normal and the directions of its sides.
 struct Face<'g> {
-    /// Normal, and directions of the sides.
+    /// Outward normal, and directions of the sides.
     axes: [Vec3<'g>; 3],
-    /// Distance of the face from the centre, and of its sides from its middle.
+    /// Distance of the face from the centre of the box, and of the sides from the centre of the face.
     half: [Expr<'g>; 3],
-    /// The size of the boxes.
+    /// Size of the boxes.
     size: Expr<'g>,
 }
 
 impl<'g> Face<'g> {
-    /// The face of a box across the axis `which` that is on the side of `c`, a place from its centre.
+    /// Returns the face of a box normal to the selected axis, on the side of `c`, a position relative to its
+    /// centre.
     fn of(holder: &Block<'g>, which: &[Expr<'g>; 3], c: Vec3<'g>, size: Expr<'g>) -> Self {
         let [next, last] = [after(which), after(&after(which))];
         let normal = chosen_vector(which, &holder.axes);
@@ -298,13 +302,13 @@ impl<'g> Face<'g> {
         Face { axes: [normal, sides[0], sides[1]], half, size }
     }
 
-    /// The components of a vector.
+    /// Returns the components of a vector along the normal and the sides.
     fn seen(&self, v: Vec3<'g>) -> [Expr<'g>; 3] {
         self.axes.map(|axis| v.dot(axis))
     }
 
-    /// From where to where of `start + t direction`, with `t` from −1 to 1, is within the sides; the second
-    /// is less than the first where nothing is.
+    /// Returns the range of `t` within −1 and 1 for which `start + t direction` is within the sides. If the
+    /// range is empty, its end is less than its beginning.
     fn clipped(&self, start: &[Expr<'g>; 3], direction: &[Expr<'g>; 3]) -> [Expr<'g>; 2] {
         let one = self.size.num(1.0);
         let (mut from, mut to) = (-one, one);
@@ -317,13 +321,13 @@ impl<'g> Face<'g> {
         [from, to]
     }
 
-    /// A contact in the middle between a place from the centre of the box and the face, which are `over`
-    /// apart.
+    /// Returns a contact midway between a position relative to the centre of the box and the face; `over` is
+    /// the distance between them.
     fn between(&self, gap: Expr<'g>, place: Vec3<'g>, over: Expr<'g>) -> Contact<'g> {
         self.contact(gap, place - self.axes[0] * (over * 0.5))
     }
 
-    /// A contact at a place from the centre of the box.
+    /// Returns a contact at a position relative to the centre of the box.
     fn contact(&self, gap: Expr<'g>, place: Vec3<'g>) -> Contact<'g> {
         let [normal, first, second] = self.axes;
         let axes = [("normal", normal), ("first", first), ("second", second)];
@@ -331,9 +335,10 @@ impl<'g> Face<'g> {
     }
 }
 
-/// What of a box lies before the face of another across its axis `which`: of each edge of its nearest face,
-/// within the sides of that one, the end, and the beginning if it is cut off there; and the corners of the
-/// face before it. Places are from where the centres are given.
+/// Returns the contacts of the nearest face of `other` with the selected face of `holder`. Each edge of the
+/// nearest face, clipped by the sides of the selected face, gives its end, and its beginning if that is cut
+/// off. The corners of the selected face within the nearest face follow. Positions are relative to the origin
+/// of the centres.
 fn faces<'g>(
     holder: &Block<'g>,
     other: &Block<'g>,
@@ -343,7 +348,7 @@ fn faces<'g>(
     let one = size.num(1.0);
     let c = other.center - holder.center;
     let face = Face::of(holder, which, c, size);
-    // The face of the other box that looks at this one.
+    // The face of the other box that is opposite to this one.
     let cosines = other.axes.map(|axis| axis.dot(face.axes[0]));
     let [x, y, z] = cosines.map(absolute);
     let third = is_positive(z - larger(x, y) - one * SAME);
@@ -359,7 +364,7 @@ fn faces<'g>(
     let [height, hu, hw] = face.half;
     let smallest = smaller(h1, h2);
     let mut points = Vec::new();
-    // Around the face, each from where the one before ends.
+    // Around the face: each edge begins where the previous one ends.
     for (off, along, side, way) in [
         ((d2, e2), (d1, e1), 1.0, -1.0),
         ((d1, e1), (d2, e2), -1.0, -1.0),
@@ -391,10 +396,10 @@ fn faces<'g>(
     points
 }
 
-/// The points where the straight line in the middle of a capsule, which leads from its centre by `reach` both
-/// ways along `own`, lies across a box: where it is cut off by the sides of a face, and where it crosses an
-/// edge. `c` leads from the centre of the box to that of the capsule, and places are from there. Its ends are
-/// spheres, and touch as such.
+/// Returns the contacts of the axis of a capsule with a box: where the axis is cut off by the sides of a
+/// face, and where it crosses an edge. The axis extends from its centre by `reach` in both directions of
+/// `own`. `c` leads from the centre of the box to that of the capsule; positions are relative to the latter.
+/// The ends of the capsule are spheres and are not included.
 fn crossed<'g>(
     radius: Expr<'g>,
     (own, reach): (Vec3<'g>, Expr<'g>),
@@ -442,7 +447,7 @@ fn crossed<'g>(
     let normal = across * (c.dot(across).call(Function::Signum) / length);
     let middle = edge_middle(block, &edge, normal);
     let (near, far) = nearest(c - middle, (own, reach), (axis, chosen(&edge, block.half)));
-    // Where an end is nearest, it touches as a sphere.
+    // If an end of the axis is nearest, it touches as a sphere.
     let left = (c - middle + own * near - axis * far).norm() - absolute(edge_distance);
     let gap = edge_distance + left - radius;
     points.push(Contact {
@@ -454,7 +459,8 @@ fn crossed<'g>(
     points
 }
 
-/// The middle of the edge along the axis `which` of a box that is farthest along `n`, from its centre.
+/// Returns the centre, relative to that of the box, of the edge along the selected axis that is farthest
+/// along `n`.
 fn edge_middle<'g>(block: &Block<'g>, which: &[Expr<'g>; 3], n: Vec3<'g>) -> Vec3<'g> {
     let one = which[0].num(1.0);
     (0..3).fold(Vec3::zero(one.graph()), |sum, k| {

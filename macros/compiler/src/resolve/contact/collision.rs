@@ -1,4 +1,4 @@
-//! Collision geometry of a file's links, as surfaces of contacts.
+//! Collision geometry of the links of a file, as surfaces of contacts.
 
 use super::surface::{Form, Surface};
 use crate::diag::{Diagnostics, Place};
@@ -7,7 +7,7 @@ use crate::resolve::builder::Builder;
 use crate::resolve::scope::Placed;
 use crate::syntax::{self, Collision, ExprKind, Name, Shape};
 
-/// Which shape of a link is meant, if one.
+/// Returns the index of the selected shape of a link, if one is selected.
 fn part_of(e: &syntax::Expr) -> Option<usize> {
     match &e.kind {
         ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal()? as usize),
@@ -16,7 +16,7 @@ fn part_of(e: &syntax::Expr) -> Option<usize> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The collision geometry of a link, `link.collision()`, or of all links, `collision()`.
+    /// Resolves the collision geometry of a link, `link.collision()`, or of all links, `collision()`.
     pub fn collisions(
         &self,
         e: &syntax::Expr,
@@ -56,7 +56,7 @@ impl<'g> Builder<'_, 'g> {
         surfaces.collect()
     }
 
-    /// A part of the collision geometry where it is.
+    /// Returns the surface of a shape of the collision geometry, with its pose.
     fn collision(
         &self,
         part: &Collision,

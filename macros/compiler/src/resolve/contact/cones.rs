@@ -1,11 +1,11 @@
-//! A cone that rolls on a plane, on a cone or inside of one: they touch along a line. That none of its points
-//! slips says that the apexes stay together and that the bodies turn relative to each other about the line
-//! (Poinsot's rolling cones).
+//! A cone that rolls on a plane, on a cone or inside a cone. The surfaces touch along a line. No point of
+//! that line slips if and only if the apexes coincide and the relative rotation is about the line (Poinsot's
+//! rolling cones).
 //!
-//! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α`
-//! inside, `α + β` outside), the line lies in the plane of the axes at the angle `α` from `a`, and
-//! `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half angle
-//! `π/2`.
+//! Let `a` and `b` be the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α`
+//! inside, `α + β` outside). The line of contact lies in the plane of the axes at the angle `α` from `a`. The
+//! vector `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half
+//! angle `π/2`.
 
 use super::Pair;
 use super::surface::Form;
@@ -43,7 +43,7 @@ impl<'g> Builder<'_, 'g> {
         let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
         self.scope.require(Rule::Positive, room, &[sine]);
         let (a, b) = (self.of_first(pair, axis), self.of_second(pair, axis_b));
-        // Rows of the apex: three places, or one place and two velocities.
+        // Rows of the apex: three positions, or one position and two velocities.
         let apex = match pair.b.form {
             Form::Plane(n) => {
                 let [first, second] = perpendicular(n);

@@ -1,7 +1,7 @@
-//! A convex body that rolls or slips on a surface of any form, given by its points: `surface(u, w, point)`.
-//! Where they touch does not follow in closed form, so the surface's parameters `u` and `w` are coordinates,
-//! which move no mass: the constraints put them where the body's farthest point against the normal is that
-//! point of the surface.
+//! A convex body that rolls or slips on a surface given by its points: `surface(u, w, point)`. The contact
+//! point has no closed form. The parameters `u` and `w` of the surface are therefore massless coordinates.
+//! Constraints determine them such that the body's farthest point against the normal coincides with the point
+//! of the surface.
 
 use super::surface::Sheet;
 use super::{Contact, Pair, farthest};
@@ -15,7 +15,8 @@ use crate::resolve::scope::{Allowed, Context, Placed};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
-    /// The points of a surface, in the axes of its body, with the two coordinates that name them.
+    /// Parses the points of a surface, in the axes of its body, with the two coordinates on which they
+    /// depend.
     pub(super) fn sheet(
         &self,
         frame: &Placed<'g>,
@@ -52,7 +53,7 @@ impl<'g> Builder<'_, 'g> {
         Some(Sheet { at, tangents })
     }
 
-    /// A coordinate of its own, by name.
+    /// Returns the coordinate with this name, which must be declared as a field of its own.
     fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let kinematics = self.scope.kinematics.borrow();
         let known = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
@@ -66,7 +67,8 @@ impl<'g> Builder<'_, 'g> {
         found.map(|(_, c, _)| *c)
     }
 
-    /// Where a convex body touches, with the distances that put the coordinates of the surface there.
+    /// Returns the contact of a convex body, with the distances that determine the coordinates of the
+    /// surface.
     pub(super) fn contact_point(&self, pair: &Pair<'g>, sheet: &Sheet<'g>) -> Option<Contact<'g>> {
         let of_surface = |v| self.of_second(pair, v).value;
         let [u, w] = sheet.tangents.map(of_surface);

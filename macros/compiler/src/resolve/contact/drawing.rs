@@ -1,4 +1,4 @@
-//! Surfaces that touch, as pieces of the drawing.
+//! Surfaces in contact, as pieces of the drawing.
 
 use super::surface::{Form, Surface};
 use crate::diag::Diagnostics;
@@ -9,7 +9,8 @@ use crate::resolve::builder::Builder;
 use crate::syntax::ExprKind;
 
 impl<'g> Builder<'_, 'g> {
-    /// The surfaces of contacts and of pairs that roll or slip, each once; returns the heights of terrains.
+    /// Adds the surfaces of contacts and of pairs that roll or slip, each once. Returns the heights of
+    /// terrains.
     pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) -> Vec<Expr<'g>> {
         let mut heights = Vec::new();
         let mut silent = Diagnostics::unread();
@@ -75,7 +76,7 @@ impl<'g> Builder<'_, 'g> {
                 heights.extend(known.is_none().then_some(terrain.height));
                 (PieceKind::Terrain(number), [at.clone(), rows(&pose.rotation.matrix())].concat())
             }
-            // It has no end, and no place along which it is as high as it is.
+            // The surface is unbounded and has no axis of symmetry.
             Form::Sheet(_) => return None,
         };
         Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })

@@ -1,4 +1,4 @@
-//! Forces and moments at contacts, for the outputs that name them.
+//! Forces and moments at contacts, as functions in outputs.
 
 use super::unilateral::Point;
 use crate::diag::Diagnostics;
@@ -9,8 +9,8 @@ use crate::resolve::call::Call;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
 use crate::syntax;
 
-/// Whether expressions that name forces at contacts name no reactions and accelerations, which are those
-/// without contacts.
+/// Whether expressions use no contact forces, or use them without reactions and accelerations. Reactions and
+/// accelerations are those of the motion without contact forces.
 pub fn stands_alone(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
@@ -19,15 +19,16 @@ pub fn stands_alone(values: &[Expr<'_>]) -> bool {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `contact_force(name)`: the force of the second surface on the first, summed over the points of contact.
+    /// Resolves `contact_force(name)`: the force of the second surface on the first, summed over the contact
+    /// points.
     pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
         Some(sum_by_axes(&kinematics.touches.get(name)?.forces))
     }
 
-    /// `contact_moment(name)`: the moment of friction of the second surface on the first, against spin and
-    /// rolling.
+    /// Resolves `contact_moment(name)`: the moment of friction of the second surface on the first, against
+    /// spin and rolling.
     pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
@@ -40,7 +41,7 @@ impl<'g> Scope<'_, 'g> {
         Some(sum_by_axes(moments))
     }
 
-    /// Returns the name of the contact that a function takes.
+    /// Returns the name of the contact that is the argument of a function.
     fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = self.kinematics.borrow();
         let known = || kinematics.touches.keys().map(String::as_str);
@@ -68,7 +69,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Returns the sum of forces by the axes of links.
+/// Returns the sum of forces, grouped by the links in whose axes they are expressed.
 fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
     let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
     for (link, force) in forces {
@@ -81,7 +82,7 @@ fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
     Value::Vector(terms)
 }
 
-/// Reports moments of friction against what does not turn.
+/// Reports coefficients of torsional or rolling friction at contacts without the corresponding rotation.
 pub(super) fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
     let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
     let asked = [

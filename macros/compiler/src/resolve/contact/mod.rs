@@ -1,7 +1,7 @@
-//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is
-//! found in closed form: where a convex body touches a plane is its point farthest along the normal (its
-//! support function), a sphere touches along the normal through its centre, and cones touch along a line. On
-//! a surface given by its points two coordinates say where.
+//! Pairs of surfaces in contact. Surfaces of a rolling pair have equal velocities at the contact; those of a
+//! slipping pair do not. The contact point has a closed form. A convex body touches a plane at its farthest
+//! point along the normal (its support function). A sphere touches along the normal through its centre. Cones
+//! touch along a line. On a surface given by its points, two coordinates determine the contact point.
 
 mod boxes;
 mod collision;
@@ -31,34 +31,36 @@ use crate::mechanism::{FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
 use surface::{Form, Surface};
 
-/// A contact at a point, in the axes of the link that carries both.
+/// A contact at a point, in the axes of the link that carries both bodies.
 struct Contact<'g> {
-    /// Distance of the surfaces.
+    /// Signed distance of the surfaces, m.
     gap: Expr<'g>,
-    /// The point of the first body, from its centre.
+    /// Contact point, relative to the centre of the first surface.
     point: Vec3<'g>,
     /// Normal and two tangents, with their names.
     axes: [(&'static str, Vec3<'g>); 3],
-    /// Distances that are zero where the coordinates of a surface are those of the contact.
+    /// Distances that vanish when the coordinates of a surface given by its points are those of the contact,
+    /// with their names.
     conditions: Vec<(&'static str, Expr<'g>)>,
 }
 
-/// Two surfaces with the motions of their bodies, relative to the link that carries both, in its axes.
+/// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
+/// link.
 struct Pair<'g> {
     a: Surface<'g>,
     b: Surface<'g>,
     on_a: Relative<'g>,
     on_b: Relative<'g>,
-    /// The place of the first surface.
+    /// Position of the first surface.
     center: Moving<'g>,
-    /// The place of the second one.
+    /// Position of the second surface.
     base: Moving<'g>,
 }
 
 const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the rows of a rolling pair.
+    /// Adds the constraint rows of a rolling pair.
     pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let Some(pair) = self.pair(constraint, cx) else { return };
         if let Form::Cone(..) = pair.a.form {
@@ -76,8 +78,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal
-    /// force, and the place of the contact on a surface that is given by its points.
+    /// Adds the rows that keep a pair in contact: the distance, with the friction caused by its normal force,
+    /// and the conditions for the contact coordinates of a surface given by its points.
     fn hold(
         &mut self,
         constraint: &syntax::Constraint,
@@ -86,8 +88,8 @@ impl<'g> Builder<'_, 'g> {
         friction: Vec<FrictionTerm<'g>>,
     ) {
         let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
-        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as
-        // well.
+        // The normal of a surface given by its points depends on the contact coordinates. Away from the
+        // contact, their velocities change the distance as well.
         let rate = match contact.conditions.is_empty() {
             true => normal.dot(slip),
             false => time_derivative(self.model.space(), contact.gap),
@@ -106,12 +108,12 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Remembers where a pair touches, for free-body diagrams.
+    /// Records the contact point of a pair for free-body diagrams.
     fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
         self.touching.insert(name.to_string(), self.place_of_touch(pair, contact.point));
     }
 
-    /// The place of a point that is given from the first one's centre.
+    /// Returns the position of a point given relative to the centre of the first surface.
     fn place_of_touch(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
         let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
@@ -119,12 +121,13 @@ impl<'g> Builder<'_, 'g> {
         place
     }
 
-    /// Reads a pair, for its mistakes alone.
+    /// Parses a pair only to report its errors.
     pub fn check_pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let _ = self.pair(constraint, cx);
     }
 
-    /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
+    /// Parses `rolls(surface, surface)` or `slips(surface, surface)`. The first surface of the result is the
+    /// one that rolls.
     fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
         let e = &constraint.value;
         let kind = constraint.kind.pair();
@@ -138,7 +141,7 @@ impl<'g> Builder<'_, 'g> {
             }
         };
         let a = self.surface(first, &example, cx);
-        // Two bodies in the place of two surfaces are one mistake.
+        // Two bodies written instead of two surfaces are one error.
         if a.is_none() && !matches!(second.kind, ExprKind::Method(..)) {
             return None;
         }
@@ -151,7 +154,7 @@ impl<'g> Builder<'_, 'g> {
         Some(pair)
     }
 
-    /// Two surfaces with their motions, in the order that is known.
+    /// Returns two surfaces with their motions, in the order that `is_known` accepts.
     fn two(
         &self,
         mut a: Surface<'g>,
@@ -175,17 +178,18 @@ impl<'g> Builder<'_, 'g> {
         Some(Pair { a, b, on_a, on_b, center, base })
     }
 
-    /// A direction of the first body.
+    /// Returns a direction of the first body, with its rate, in the common axes.
     fn of_first(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
     }
 
-    /// A direction of the second body.
+    /// Returns a direction of the second body, with its rate, in the common axes.
     fn of_second(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
     }
 
-    /// Velocity of the first body relative to the second one, at a point from the first one's centre.
+    /// Returns the velocity of the first body relative to the second at a point given relative to the centre
+    /// of the first surface.
     fn slip(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Vec3<'g> {
         let Pair { center, base, .. } = pair;
         let [w_a, w_b] = self.spins(pair);
@@ -193,12 +197,12 @@ impl<'g> Builder<'_, 'g> {
         center.rate + w_a.cross(point) - (base.rate + w_b.cross(arm))
     }
 
-    /// Angular velocities.
+    /// Returns the angular velocities of both bodies relative to their common link.
     fn spins(&self, pair: &Pair<'g>) -> [Vec3<'g>; 2] {
         [&pair.on_a, &pair.on_b].map(|on| self.direction_out(on, on.twist.angular))
     }
 
-    /// Where a pair touches at a point; `None` for pairs that touch along a line.
+    /// Returns the contact of a pair; `None` for pairs that touch along a line.
     fn contact(&self, pair: &Pair<'g>) -> Option<Contact<'g>> {
         let turned_a = |v| self.of_first(pair, v).value;
         let turned_b = |v| self.of_second(pair, v).value;
@@ -224,14 +228,15 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Form<'g> {
-    /// True for a surface that can roll on another.
+    /// Whether the surface can roll on another one.
     fn rolls_on(&self, b: &Form<'g>) -> bool {
         let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
         self.id().is_some_and(|id| rollers.contains(&id))
     }
 }
 
-/// The contact of a sphere with its centre at `c` from the centre or apex of the other surface.
+/// Returns the contact of a sphere whose centre is at `c` relative to the centre or apex of the other
+/// surface.
 fn sphere_contact<'g>(
     radius: Expr<'g>,
     b: &Form<'g>,
@@ -273,10 +278,10 @@ fn sphere_contact<'g>(
     Some(Contact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
 }
 
-/// The point of a convex body that is farthest along `n`, from its centre.
+/// Returns the farthest point of a convex body along `n`, relative to its centre.
 ///
-/// Of a rim in the plane across `n` all are; with `least`, the least square of the sine of the angle between
-/// axis and `n`, its centre stands for them.
+/// If `n` is the axis of a rim, all its points are equally far. With a positive `least`, a lower bound on the
+/// squared sine of the angle between axis and `n`, the centre of the rim is returned then.
 fn farthest<'g>(
     form: &Form<'g>,
     n: Vec3<'g>,
@@ -304,8 +309,8 @@ fn farthest<'g>(
     })
 }
 
-/// Two tangents for a normal of any direction (Duff et al., *Building an orthonormal basis, revisited*,
-/// 2017).
+/// Returns two unit tangents for a unit normal of any direction (Duff et al., *Building an orthonormal basis,
+/// revisited*, 2017).
 fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
     let [x, y, z] = n.0;
     let sign = z.call(Function::Signum);

@@ -1,6 +1,6 @@
-//! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient
-//! of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is
-//! smooth in the slip.
+//! Compliant contacts: forces that depend on penetration and its rate (Hunt and Crossley, *Coefficient of
+//! restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth
+//! in the slip velocity.
 
 use super::unilateral::{Laws, Point};
 use crate::diag::Diagnostics;
@@ -11,13 +11,13 @@ use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context, Exerted};
 use crate::syntax::{self, Softness};
 
-/// The speed of slip below which friction falls off, m/s.
+/// Default slip speed below which friction is regularised, m/s.
 const SPEED: f64 = 1e-3;
 
-/// An overlap that is none, m: keeps the derivative of its root finite.
+/// Offset under the square root of the penetration, m, which keeps its derivative finite at zero.
 const NONE: f64 = 1e-30;
 
-/// How surfaces yield.
+/// Stiffness and dissipation of a compliant contact.
 pub(super) struct Soft<'g> {
     stiffness: Expr<'g>,
     hertz: bool,
@@ -26,7 +26,7 @@ pub(super) struct Soft<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Reads how surfaces yield; `None` after a mistake.
+    /// Reads stiffness and dissipation; `None` after an error.
     pub(super) fn softness(&self, soft: &Softness, cx: &mut Diagnostics) -> Option<Soft<'g>> {
         let g = self.scope.graph;
         let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
@@ -52,7 +52,7 @@ impl<'g> Builder<'_, 'g> {
         Some(Soft { stiffness: stiffness?, hertz: soft.hertz, dissipation: dissipation?, speed: speed? })
     }
 
-    /// Adds what acts at a point: energy of the overlap, what takes energy from its rate, and friction.
+    /// Adds the effects of a contact point: potential energy of the penetration, dissipation and friction.
     pub(super) fn add_soft_point(
         &mut self,
         point: &Point<'g>,
@@ -94,9 +94,9 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds moments of friction against the angular velocities `turns` about directions: at most `most` by
-    /// the normal force, and less where `most` times the angular velocity is below the speed at which
-    /// friction falls off. Returns them.
+    /// Adds and returns moments of friction against the angular velocities `turns` about directions. The
+    /// maximum moment is `most` times the normal force. The moment is smaller if `most` times the angular
+    /// velocity is below the regularisation speed.
     fn add_moment(
         &mut self,
         turns: &[(Vec3<'g>, Expr<'g>)],

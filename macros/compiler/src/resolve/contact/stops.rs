@@ -1,4 +1,4 @@
-//! Stops: coordinates and expressions at the bounds of limits.
+//! Stops: contacts of coordinates and expressions at the bounds of limits.
 
 use super::unilateral::{Laws, apart};
 use crate::diag::Diagnostics;
@@ -19,7 +19,7 @@ impl<'g> Builder<'_, 'g> {
         };
         let g = self.scope.graph;
         let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
-            // Mistakes are told where the limit is read.
+            // Errors are reported by the pass that reads the limit.
             true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
             false => self.scope.scalar(e, &mut Diagnostics::unread()),
         };
@@ -34,7 +34,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What a limit stops: its value, its rate, and whether it is an angle.
+    /// Returns the limited value, its rate, and whether it is an angle.
     fn stopped(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
         let g = self.scope.graph;
         if !self.scope.is_moving(&limit.on) {

@@ -1,4 +1,4 @@
-//! Surfaces of bodies, as contacts name them: `body.form(arguments)`.
+//! Surfaces of bodies in contacts, written as `body.form(arguments)`.
 
 use super::terrain::Terrain;
 use crate::diag::{Diagnostics, all_of};
@@ -10,63 +10,63 @@ use crate::resolve::scope::{Allowed, Context, Placed};
 use crate::syntax::{self, ExprKind, GROUND};
 use std::f64::consts::FRAC_PI_2;
 
-/// A surface of a body; vectors and lengths in body axes.
+/// Form of a surface; vectors and lengths in body axes.
 #[derive(Clone)]
 pub enum Form<'g> {
-    /// The rim of a disk: radius, axis.
+    /// Rim of a disk: radius, axis.
     Circle(Expr<'g>, Vec3<'g>),
-    /// A tyre: radius of its centre line, radius of its section, axis.
+    /// Tyre: radius of its centre line, radius of its section, axis.
     Torus(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// Radius.
+    /// Sphere: radius.
     Sphere(Expr<'g>),
-    /// Semi-axes along the body's axes.
+    /// Ellipsoid: semi-axes along the body's axes.
     Ellipsoid([Expr<'g>; 3]),
-    /// Normal, towards what rolls on it.
+    /// Plane: normal, towards the body that rolls on it.
     Plane(Vec3<'g>),
-    /// The inside of a sphere: radius.
+    /// Inside of a sphere: radius.
     Bowl(Expr<'g>),
-    /// The outside of a cylinder: radius, axis.
+    /// Outside of a cylinder of infinite length: radius, axis.
     Cylinder(Expr<'g>, Vec3<'g>),
-    /// A cylinder with two ends: radius, length, axis.
+    /// Cylinder with two ends: radius, length, axis.
     Drum(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// The inside of a cylinder: radius, axis.
+    /// Inside of a cylinder: radius, axis.
     Tube(Expr<'g>, Vec3<'g>),
-    /// The outside of a cone: half angle, axis from the apex into the cone.
+    /// Outside of a cone: half angle, axis from the apex into the cone.
     Cone(Expr<'g>, Vec3<'g>),
-    /// The inside of a cone: half angle, axis from the apex to the opening.
+    /// Inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
-    /// A surface given by its points.
+    /// Surface given by its points.
     Sheet(Sheet<'g>),
-    /// A height over x and y.
+    /// Height as a function of x and y.
     Terrain(Box<Terrain<'g>>),
-    /// A point, which can only be in contact.
+    /// Point; only in unilateral contacts.
     Point,
-    /// A box: its lengths along the body's axes.
+    /// Box: its lengths along the body's axes.
     Cuboid([Expr<'g>; 3]),
-    /// A cylinder between two halves of a sphere: radius, distance of their centres, axis.
+    /// Cylinder between two hemispheres: radius, distance of their centres, axis.
     Capsule(Expr<'g>, Expr<'g>, Vec3<'g>),
 }
 
-/// Points of a surface as expressions of two coordinates, in body axes from its place.
+/// Surface given by its points as expressions of two coordinates, in body axes relative to its position.
 #[derive(Clone)]
 pub struct Sheet<'g> {
-    /// The point.
+    /// Point of the surface.
     pub at: Vec3<'g>,
-    /// Its derivatives; their cross product points to what rolls.
+    /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
     pub tangents: [Vec3<'g>; 2],
 }
 
-/// A surface where it is.
+/// A surface with its pose.
 #[derive(Clone)]
 pub struct Surface<'g> {
-    /// Its centre, apex or a point of it.
+    /// Frame at the centre, at the apex or at a point of the surface.
     pub frame: Placed<'g>,
-    /// Its form.
+    /// Form of the surface.
     pub form: Form<'g>,
 }
 
 impl Form<'_> {
-    /// Returns the row of the surface; `None` for a point.
+    /// Returns the row of the surface in the table of the language; `None` for a point.
     pub fn id(&self) -> Option<SurfaceId> {
         match self {
             Form::Circle(..) => Some(SurfaceId::Circle),
@@ -90,7 +90,7 @@ impl Form<'_> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// `body.form(arguments)`; `example` is how a pair is written.
+    /// Parses `body.form(arguments)`; `example` is the syntax of a pair, for errors.
     pub fn surface(&self, e: &syntax::Expr, example: &str, cx: &mut Diagnostics) -> Option<Surface<'g>> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
             let error = cx.error(e.place.clone(), "expected a surface");
@@ -174,12 +174,12 @@ fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<Form<'g>
         SurfaceId::Funnel => Form::Funnel(number(0)?, n),
         SurfaceId::Cuboid => Form::Cuboid([number(0)?, number(1)?, number(2)?]),
         SurfaceId::Capsule => Form::Capsule(number(0)?, number(1)?, n),
-        // These have other arguments than numbers and a direction.
+        // The arguments of these surfaces are not numbers and a direction.
         SurfaceId::Sheet | SurfaceId::Terrain => return None,
     })
 }
 
-/// Reports a length that is not positive, and a half angle that is not between zero and a right one.
+/// Reports a length that is not positive, and a half angle that is not between 0 and π/2. Returns false then.
 fn check_size(is_angle: bool, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(n) = value.value() else { return true };
     if is_angle {

@@ -1,5 +1,5 @@
-//! Ground whose height is an expression of the place: `terrain(height)`, with `u` and `w` for the place along
-//! x and y.
+//! Ground whose height is an expression of the position: `terrain(height)`, where `u` and `w` are the
+//! coordinates along x and y.
 
 use super::{Contact, tangents_of};
 use crate::diag::Diagnostics;
@@ -12,16 +12,17 @@ use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
 
-/// The coordinates of the place, as the height names them.
+/// Names of the coordinates in the expression of the height.
 pub const PLACE: [&str; 2] = ["u", "w"];
 
-/// How often the place under a sphere is mended; each time doubles its digits.
+/// Number of Newton iterations for the nearest point to a sphere; each doubles the number of correct digits.
 const MENDED: usize = 3;
 
-/// Of the distance at which a sphere touches, the part above which it is taken to be that near.
+/// Maximum distance at which the nearest point is computed, relative to the distance at which a sphere
+/// touches.
 const NEAR: f64 = 1.25;
 
-/// A height over x and y, with its first and second derivatives: xx, xy, yy.
+/// Height as a function of x and y, with its first derivatives and its second derivatives xx, xy and yy.
 #[derive(Clone)]
 pub struct Terrain<'g> {
     pub(super) height: Expr<'g>,
@@ -29,7 +30,7 @@ pub struct Terrain<'g> {
     curvatures: [Expr<'g>; 3],
 }
 
-/// A terrain at a place.
+/// Height of a terrain with its derivatives at a position.
 struct Local<'g> {
     height: Expr<'g>,
     slopes: [Expr<'g>; 2],
@@ -37,7 +38,7 @@ struct Local<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The terrain with this height.
+    /// Parses a terrain with this height.
     pub(super) fn terrain(&self, height: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terrain<'g>> {
         let g = self.scope.graph;
         let symbols = [0, 1].map(|k| Quantity::Given(k).symbol());
@@ -66,7 +67,8 @@ impl<'g> Terrain<'g> {
         Local { height: entry(0), slopes: [entry(1), entry(2)], curvatures: [entry(3), entry(4), entry(5)] }
     }
 
-    /// The contact with a sphere around `c`, a place in the terrain's axes; a point is one without a radius.
+    /// Returns the contact with a sphere around `c`, a position in the terrain's axes. A point is a sphere of
+    /// radius zero.
     pub(super) fn contact(
         &self,
         radius: Expr<'g>,
@@ -85,9 +87,9 @@ impl<'g> Terrain<'g> {
         }
     }
 
-    /// The nearest place of the terrain. From straight below Newton's method leads there; spheres far above,
-    /// for which other places might be nearer, are taken to be near, and what that leaves out of the distance
-    /// is added to it.
+    /// Returns the nearest point of the terrain, by Newton's method from the point straight below. The
+    /// nearest point of a sphere far above may be ambiguous. Such a sphere is lowered for the iteration, and
+    /// the omitted height is added to the distance.
     fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &Local<'g>) -> Nearest<'g> {
         let above = c[2] - below.height;
         if radius.is_zero() {
@@ -112,14 +114,14 @@ impl<'g> Terrain<'g> {
     }
 }
 
-/// The nearest place of a terrain: its normal, and the distance from there.
+/// Nearest point of a terrain: the normal there, and the distance.
 struct Nearest<'g> {
     normal: Vec3<'g>,
     distance: Expr<'g>,
 }
 
 impl<'g> Local<'g> {
-    /// The length of the normal whose height is one.
+    /// Returns the length of the normal vector whose z component is one.
     fn size(&self) -> Expr<'g> {
         let [hx, hy] = self.slopes;
         (hx.num(1.0) + hx * hx + hy * hy).sqrt()

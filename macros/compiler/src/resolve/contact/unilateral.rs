@@ -1,4 +1,4 @@
-//! Contacts that open and close: surfaces of bodies, and coordinates at their bounds.
+//! Unilateral contacts: surfaces of bodies that separate and collide, and coordinates at their bounds.
 
 use super::force::check_turns;
 use super::surface::{Form, Surface};
@@ -16,56 +16,56 @@ use crate::resolve::scope::{Allowed, Context, Exerted, Terms};
 use crate::syntax::contact::collision;
 use crate::syntax::{self, ExprKind, GROUND};
 
-/// Most points of all contacts of a mechanism: what is generated grows as their number.
+/// Maximum number of contact points of a mechanism: the generated code grows with their number.
 const MAX_CONTACT_POINTS: usize = 128;
 
-/// Square of the sine of an angle between lines that are parallel.
+/// Squared sine of the angle below which lines are treated as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
+/// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
 const FLAT: f64 = 1e-24;
 
 const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
-/// What stands for a cylinder.
+/// Help for unsupported contacts of cylinders.
 const STAND_IN: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
 
-/// Coefficients of a contact.
+/// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy)]
 pub(super) struct Laws<'g> {
     pub(super) friction: Expr<'g>,
-    /// Coefficient of friction at rest.
+    /// Coefficient of static friction.
     pub(super) stiction: Expr<'g>,
-    /// Largest moment about the normal by the normal force.
+    /// Maximum friction moment about the normal per unit normal force, m.
     pub(super) torsional: Expr<'g>,
-    /// Largest moment about the tangents by the normal force.
+    /// Maximum friction moment about the tangents per unit normal force, m.
     pub(super) rolling: Expr<'g>,
     pub(super) restitution: Expr<'g>,
-    /// Restitution is a ratio of impulses.
+    /// Whether restitution is a ratio of impulses (Poisson) instead of velocities (Newton).
     pub(super) of_impulses: bool,
 }
 
 /// A point where two surfaces may touch.
 pub(super) struct Point<'g> {
-    /// Distance.
+    /// Signed distance, m.
     pub(super) gap: Expr<'g>,
-    /// Normal and tangents, towards the first surface, each with the rate along it.
+    /// Normal and two tangents, towards the first surface, each with the velocity along it.
     pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
-    /// Relative angular velocity about each.
+    /// Relative angular velocity about the normal and each tangent.
     pub(super) turns: [Expr<'g>; 3],
-    /// The link in whose axes the directions are.
+    /// Link in whose axes the directions are expressed.
     pub(super) ancestor: Option<LinkId>,
-    /// Where it is.
+    /// Position of the point.
     pub(super) place: Terms<'g>,
 }
 
-/// The value of a coefficient of restitution, and whether it is a ratio of impulses.
+/// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses.
 pub(super) fn apart(restitution: Option<&syntax::Restitution>) -> (Option<&syntax::Expr>, bool) {
     restitution.map_or((None, false), |e| (Some(&e.value), e.of_impulses))
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all contacts to the model: declared ones in their order, then the stops of limits.
+    /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
     pub fn add_contacts(&mut self, _: Moving, cx: &mut Diagnostics) {
         let description = self.description;
         for contact in &description.contacts {
@@ -85,7 +85,7 @@ impl<'g> Builder<'_, 'g> {
     fn add_contact(&mut self, contact: &syntax::Contact, cx: &mut Diagnostics) {
         let laws = self.laws(contact, cx);
         let firsts = self.touching(&contact.first, cx);
-        // Two bodies in the place of two surfaces are one mistake.
+        // Two bodies written instead of two surfaces are one error.
         let seconds = match firsts {
             None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
             _ => self.touching(&contact.second, cx),
@@ -100,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
         let mut points: Vec<Point<'g>> = Vec::new();
         for first in &firsts {
             for second in &seconds {
-                // Of a whole file, what moves.
+                // A contact of all links of a file omits surfaces of the same link.
                 if whole && first.frame.link == second.frame.link {
                     continue;
                 }
@@ -140,7 +140,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), exerted);
     }
 
-    /// Where two surfaces touch; `None` after a mistake.
+    /// Returns the points where two surfaces may touch; `None` after an error.
     fn points_of(
         &self,
         first: &Surface<'g>,
@@ -150,7 +150,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Vec<Point<'g>>> {
         let first_link = first.frame.link;
         let mut pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
-        // The same as by the velocities of links, in fewer terms to differentiate.
+        // Equals the velocity from the twists of links, with fewer terms to differentiate.
         let [x, y, z] = motion_rates(self.model.space(), &pair.center.value.0, false)[..] else {
             return None;
         };
@@ -178,7 +178,7 @@ impl<'g> Builder<'_, 'g> {
         Some(points.collect())
     }
 
-    /// Adds a point of contact to the model, and its forces on the first surface.
+    /// Adds a contact point to the model, and its forces on the first surface to `exerted`.
     fn add_point(&mut self, name: String, point: &Point<'g>, laws: Laws<'g>, exerted: &mut Exerted<'g>) {
         let [normal, slip @ ..] = point.rates;
         let slides = slip
@@ -228,7 +228,7 @@ impl<'g> Builder<'_, 'g> {
         self.model.contacts.push(contact);
     }
 
-    /// The coefficients of a contact; `None` after a mistake.
+    /// Reads the coefficients of a contact; `None` after an error.
     fn laws(&self, contact: &syntax::Contact, cx: &mut Diagnostics) -> Option<Laws<'g>> {
         let name = &contact.name.text;
         let mut read =
@@ -270,7 +270,7 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// A coefficient, zero if it is not given; `None` after a mistake.
+    /// Reads a coefficient, zero if it is absent; `None` after an error.
     pub(super) fn coefficient(
         &self,
         e: Option<&syntax::Expr>,
@@ -296,7 +296,8 @@ impl<'g> Builder<'_, 'g> {
         Some(value)
     }
 
-    /// Surfaces of one side of a contact: one that rolls, a point, or the collision geometry of a file.
+    /// Returns the surfaces of one side of a contact: a surface, a point, or the collision geometry of a
+    /// file.
     pub(super) fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Surface<'g>>> {
         if let Some(link) = collision(e) {
             return self.collisions(e, link, cx);
@@ -312,7 +313,7 @@ impl<'g> Builder<'_, 'g> {
         Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
 
-    /// Where a pair touches, at one point or several.
+    /// Returns the points where a pair may touch.
     fn touches(&self, pair: &Pair<'g>) -> Vec<Touch<'g>> {
         let g = self.scope.graph;
         let turned_a = |v| self.of_first(pair, v).value;
@@ -354,7 +355,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Where a sphere, a point, the ends of a capsule or the corners of a box touch a terrain.
+    /// Returns the contacts of a sphere, a point, the ends of a capsule or the corners of a box with a
+    /// terrain.
     fn grounded(
         &self,
         pair: &Pair<'g>,
@@ -381,7 +383,7 @@ impl<'g> Builder<'_, 'g> {
         touches.collect()
     }
 
-    /// Where a sphere, a point or a capsule touches what is no plane.
+    /// Returns the contact of a sphere, a point or a capsule with a curved surface.
     fn round(
         &self,
         pair: &Pair<'g>,
@@ -423,7 +425,7 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The corners of a box.
+/// Returns the corners of a box with these edge lengths, relative to its centre.
 fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     std::array::from_fn(|k| {
         let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
@@ -431,8 +433,9 @@ fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     })
 }
 
-/// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn
-/// further each. Where the rim lies flat, every one is lowest: one of the body's own is chosen.
+/// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
+/// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
+/// the body is then used.
 fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
     let [(_, own), _] = perpendicular(axis);
     let (a, own) = (turned(axis), turned(own));
@@ -444,14 +447,15 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'
     [lowest, beside, -lowest, -beside]
 }
 
-/// What is nearest to a number between `-most` and `most`.
+/// Clamps `x` to the interval from `-most` to `most`.
 pub(super) fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
     x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
 }
 
-/// Where two straight lines of given half lengths are nearest to each other, from their middles along their
-/// axes; `c` leads from the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, §
-/// 5.1.9). Where they are parallel it is one place of many.
+/// Returns the closest points of two line segments, as signed distances from their centres along their unit
+/// axes. Each segment has an axis and half its length; `c` leads from the second centre to the first
+/// (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). For parallel segments, one of the many
+/// solutions is returned.
 pub(super) fn nearest<'g>(
     c: Vec3<'g>,
     (own, own_reach): (Vec3<'g>, Expr<'g>),
@@ -466,7 +470,7 @@ pub(super) fn nearest<'g>(
 }
 
 impl<'g> Form<'g> {
-    /// True for a surface whose contact with another is known.
+    /// Whether the contact of this surface with another one is supported.
     fn touches(&self, b: &Form<'g>) -> bool {
         b.id().is_some_and(|id| id.row().contacts.contains(&self.id()))
     }
