@@ -1,5 +1,5 @@
-//! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear
-//! in them.
+//! Quantities that depend on accelerations: time derivatives of velocity-dependent expressions, and forces
+//! that are linear in the accelerations.
 
 use super::builder::Builder;
 use super::quantities::{in_links, vector};
@@ -14,7 +14,7 @@ use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
-    /// The rate of an expression along the motion.
+    /// Returns the time derivative of a scalar expression along the motion.
     pub fn rate_of_value(
         &self,
         function: &Place,
@@ -36,8 +36,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// `rate(vector / frame)`: the rate of a vector or a matrix as seen from a frame, which is that of its
-    /// components there.
+    /// Resolves `rate(vector / frame)`: the time derivative of a vector or a matrix in a frame, that is, of
+    /// its components in that frame.
     pub fn rate_in(
         &self,
         function: &Place,
@@ -69,7 +69,7 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
 
-    /// The rates of several expressions along the motion.
+    /// Returns the time derivatives of several expressions along the motion.
     fn rates(
         &self,
         function: &Place,
@@ -119,8 +119,8 @@ impl<'g> Scope<'_, 'g> {
         Some(values.iter().zip(gradients).map(rate).collect())
     }
 
-    /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that
-    /// moves.
+    /// Whether the argument of `rate` is an expression of moving quantities, or the name of a definition,
+    /// instead of a coordinate.
     pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
         match &argument.kind {
             ExprKind::Name(name) => self.definitions.iter().any(|definition| definition.name.text == *name),
@@ -131,7 +131,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// A force on a rate, with what of it is linear in the accelerations apart.
+    /// Adds a force on a rate. Terms that are linear in the accelerations are separated from the others.
     pub fn add_value_load(&mut self, rate: Expr<'g>, force: Expr<'g>, place: &Place, cx: &mut Diagnostics) {
         let graph = self.scope.graph;
         let acceleration = |s| match Quantity::of(s) {
@@ -167,7 +167,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A force with a value, at a point: a load for each component.
+    /// Adds a force vector at a point: a load for each component.
     pub fn add_load(&mut self, rate: Vec3<'g>, force: Vec3<'g>, place: &Place, cx: &mut Diagnostics) {
         for k in 0..3 {
             let before = cx.len();
@@ -180,8 +180,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Reports forces linear in accelerations where the forces of constraints and contacts follow from a
-    /// symmetric mass matrix.
+    /// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The
+    /// constraint and contact forces are computed with a symmetric mass matrix.
     pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {
         let Some(force) = self.model.acceleration_forces.first() else { return };
         let found = match (self.model.constraints.is_empty(), self.model.contacts.is_empty()) {

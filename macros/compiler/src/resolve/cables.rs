@@ -1,4 +1,4 @@
-//! Cables that run around spheres and cylinders.
+//! Cables around spheres and cylinders.
 
 use super::call::{Call, flatten};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
@@ -14,13 +14,13 @@ const CYLINDER: Option<Method> = Some(Method::Surface(SurfaceId::Cylinder));
 const DRUM: Option<Method> = Some(Method::Surface(SurfaceId::Drum));
 
 impl<'g> Scope<'_, 'g> {
-    /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut
-    /// cable between two points, laid around a surface where that stands in its way.
+    /// Resolves `cable(a / b, drum.cylinder(radius, axis))` and `cable(a / b, ball.sphere(radius))`: the
+    /// length of a taut cable between two points, wrapped around the surface if the surface is in its path.
     ///
-    /// Around a cylinder it turns about the axis from `a` to `b`, by less than a full turn. Across the axis
-    /// the points have distances `d`, and lie at an angle `θ` from each other; what touches is
-    /// `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents and a
-    /// helix, which is straight on the unrolled cylinder; elsewhere it is straight.
+    /// A cable around a cylinder winds about the axis from `a` to `b`, by less than a full revolution. The
+    /// points have the distances `d_a` and `d_b` from the axis and the angle `θ` between them. The angle of
+    /// contact is `φ = θ − acos(R / d_a) − acos(R / d_b)`. If it is positive, the cable consists of tangents
+    /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
     pub fn cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [of, surface] = call.take(cx)?;
         let Ok(ends) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
@@ -51,7 +51,7 @@ impl<'g> Scope<'_, 'g> {
             None => (a.cross(b).length(), a.dot(b)),
             Some(n) => (frame.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
         };
-        // Around a cylinder from zero to a full turn.
+        // Around a cylinder, between zero and a full revolution.
         let angle = match axis {
             None => sine.atan2(cosine),
             Some(_) => (-sine).atan2(-cosine) + self.graph.num(PI),
@@ -61,14 +61,14 @@ impl<'g> Scope<'_, 'g> {
         let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
         let wound = tangents[0] + tangents[1] + radius * touched;
         let straight = (a - b).length();
-        // One where it touches, zero elsewhere; its derivative is zero.
+        // One if the cable touches, otherwise zero. The derivative is zero.
         let touches = touched.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
         let flat = straight + touches * (wound - straight);
         let length = if rise.is_zero() { flat } else { (flat.square() + rise.square()).sqrt() };
         Some(Value::Scalar(length))
     }
 
-    /// A sphere or a cylinder of a body: its place, its radius and its axis.
+    /// Returns the pose, the radius and the axis of a sphere or cylinder; a sphere has no axis.
     fn round(
         &self,
         e: &syntax::Expr,
@@ -119,7 +119,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Reports an end of a cable that lies inside of what the cable runs around wherever the mechanism is.
+/// Reports an end of a cable that lies inside the surface in all configurations.
 fn check_outside(
     end: &syntax::Expr,
     across: Vec3<'_>,

@@ -1,10 +1,9 @@
-//! Which particles carry something, so that their axes matter: those from which a place, a direction or a
-//! joint starts.
+//! Particles whose axes matter because a position, a direction or a joint is defined relative to them.
 
 use crate::syntax::{Description, Expr, ExprKind, Target};
 
-/// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what
-/// acts on it.
+/// Whether the axes of a particle are used: by a joint on it, by `name.at(…)` or `name.x`, or by a force on
+/// it.
 pub fn carries(d: &Description, name: &str) -> bool {
     let is_name = |e: &Expr| e.name() == Some(name);
     let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));
@@ -16,7 +15,7 @@ pub fn carries(d: &Description, name: &str) -> bool {
         || expressions(d).into_iter().any(|e| names_axes(e, name))
 }
 
-/// `name.at(…)` or `name.x` somewhere in an expression.
+/// Whether an expression contains `name.at(…)` or `name.x`.
 fn names_axes(e: &Expr, name: &str) -> bool {
     e.parts().into_iter().any(|part| match &part.kind {
         ExprKind::Field(base, _) | ExprKind::Method(base, ..) => base.name() == Some(name),
@@ -24,7 +23,7 @@ fn names_axes(e: &Expr, name: &str) -> bool {
     })
 }
 
-/// The expressions in which places can be named.
+/// Returns the expressions that can contain positions.
 pub fn expressions(d: &Description) -> Vec<&Expr> {
     let mut all: Vec<&Expr> = Vec::new();
     all.extend(d.bodies.iter().filter_map(|b| b.at.as_ref()));

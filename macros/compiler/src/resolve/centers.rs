@@ -1,5 +1,5 @@
-//! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is
-//! a vector from a place of the body.
+//! Characteristic points of a motion: instantaneous centres, the screw axis, the centre of percussion. Each
+//! is a vector from the origin of the body or a point of it.
 
 use super::call::{Call, flatten};
 use super::quantities::vector;
@@ -10,20 +10,20 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax;
 
-/// The motion of a body with respect to a frame, in the axes of the body's link.
+/// Motion of a body relative to a frame, in the axes of the body's link.
 struct Relative<'g> {
     link: Option<LinkId>,
     /// Velocity of the body's origin.
     v: Vec3<'g>,
     /// Angular velocity.
     w: Vec3<'g>,
-    /// Acceleration of the body's origin, and angular acceleration, where they are asked for.
+    /// Acceleration of the body's origin and angular acceleration, if requested.
     rates: Option<[Vec3<'g>; 2]>,
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `instant_center(body / frame)`: the vector from the body's origin to the point at rest, `ω × v / ω²`
-    /// with the velocity `v` of the origin.
+    /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest, `ω ×
+    /// v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
@@ -35,23 +35,23 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
-    /// `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the screw axis
-    /// (Mozzi, Chasles), `ω × v / ω²`.
+    /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
+    /// screw axis (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
-    /// `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
+    /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(Value::Scalar(w.dot(v) / square))
     }
 
-    /// `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to the point
-    /// without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
+    /// Resolves `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to
+    /// the point without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, w, rates, .. } = self.relative(call, Allowed::Acceleration, cx)?;
         let [a, alpha] = rates?;
@@ -65,7 +65,8 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(vec![(link, center)]))
     }
 
-    /// Reads the motion of a body that rotates relative to a frame, with accelerations where they are allowed.
+    /// Returns the motion of a body that rotates relative to a frame, with accelerations if `allowed`
+    /// includes them.
     fn relative(&self, call: &Call<'_>, allowed: Allowed, cx: &mut Diagnostics) -> Option<Relative<'g>> {
         let Ok([body, frame]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
         if !self.check_allowed(allowed, &format!("`{}(…)`", call.name()), call.place, cx) {
@@ -95,7 +96,7 @@ impl<'g> Scope<'_, 'g> {
         let (_, by, place) = (of?, by?, place?);
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (place.link, Vec3::zero(self.graph));
-        // Any point that the frame carries.
+        // Any point fixed in the frame.
         let from = Placed { link: by, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
         let here = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
@@ -110,9 +111,10 @@ impl<'g> Scope<'_, 'g> {
         })
     }
 
-    /// `center_of_percussion(body / point, axis)`: the vector from a point, about which a body turns, to
-    /// where a blow across the arm to its centre of mass leaves the point at rest. With the arm `r` across
-    /// the axis `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
+    /// Resolves `center_of_percussion(body / point, axis)`: the vector from the point to the centre of
+    /// percussion of a body that rotates about an axis through the point. An impulse there, perpendicular to
+    /// the arm to the centre of mass, leaves the point at rest. With the arm `r` perpendicular to the axis
+    /// `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [of, axis] = call.take(cx)?;
         let Ok([body, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
@@ -164,7 +166,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// True for a vector that is zero for all values of what it depends on.
+/// Whether a vector is zero for all values of its symbols.
 fn vanishes(v: Vec3<'_>) -> bool {
     v.0.iter().all(|c| always(*c, 0.0))
 }

@@ -1,4 +1,4 @@
-//! Joints: each becomes a chain of links, one for each elementary motion.
+//! Joints as chains of links, one link per elementary motion.
 
 use super::builder::Builder;
 use super::elementary::Elementary;
@@ -10,14 +10,14 @@ use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, P
 use crate::syntax::Joint;
 
 impl<'g> Builder<'_, 'g> {
-    /// Resolves what the joints say although the tree is broken, so that all mistakes are reported at once.
+    /// Resolves the arguments of all joints although the tree is broken, to report all errors at once.
     pub fn check_joints(&self, cx: &mut Diagnostics) {
         for joint in &self.description.joints {
             self.check_joint(joint, cx);
         }
     }
 
-    /// Resolves what one joint says, for its mistakes alone.
+    /// Resolves the arguments of a joint only to report their errors.
     pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
         let _ = self.scope.motions(joint, cx);
         let _ = self.endpoint(&joint.parent, cx);
@@ -60,7 +60,7 @@ impl<'g> Builder<'_, 'g> {
         self.add_passive(j, joint, cx);
     }
 
-    /// Adds one link for each motion; returns the last link and the joint's child frame on it.
+    /// Adds one link for each motion. Returns the last link and the joint's child frame on it.
     fn add_chain(
         &mut self,
         j: usize,
@@ -81,7 +81,7 @@ impl<'g> Builder<'_, 'g> {
         (link, pose)
     }
 
-    /// Damping, friction and motor of a joint itself.
+    /// Adds damping, friction and motor of a joint with one degree of freedom.
     fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
         let [(name, on, _)] = self.coordinates[j].plain.as_slice() else {
             return;
@@ -100,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// True if every body has its place.
+    /// Whether every body has been placed.
     pub fn is_placed(&self) -> bool {
         self.places.iter().all(Option::is_some)
     }

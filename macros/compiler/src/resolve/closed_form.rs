@@ -1,7 +1,7 @@
-//! Loops that are solved in closed form: a Pin closes a loop in a plane between two bodies that are held by
-//! Pins, or by a Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of
-//! two circles, or of a circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI);
-//! `branch` says which of two.
+//! Loops that are solved in closed form: a Pin closes a planar loop between two bodies, each of which is the
+//! child of a Pin or a Sleeve (at most one Sleeve). The coordinates of these two joints become expressions of
+//! the other coordinates, by the intersection of two circles, or of a circle and a line (Bottema and Roth,
+//! *Theoretical Kinematics*, 1979, ch. XI). The argument `branch` selects one of the two assembly modes.
 
 use super::builder::{Builder, ClosedFormLoop};
 use super::elementary::Elementary;
@@ -15,22 +15,22 @@ use crate::kinematics::{change_axes, perpendicular};
 use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
-/// A side of a loop where its joint is at zero, in the axes of the first side's joint.
+/// A side of a loop with its joint coordinate at zero, in the axes of the first side's joint.
 struct Side<'g> {
-    /// Origin of the joint, from that of the first.
+    /// Origin of the joint, relative to that of the first joint.
     base: Vec3<'g>,
-    /// The point that the loop closes in, from the origin.
+    /// Closing point of the loop, relative to the joint's origin.
     point: Vec3<'g>,
-    /// Direction of a slide; none for a Pin.
+    /// Sliding direction; `None` for a Pin.
     slide: Option<Vec3<'g>>,
 }
 
-/// That the joints which loops are solved for are known. Comes of [`Builder::add_solved`] alone.
+/// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
 pub struct Solved(());
 
 const HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
 
-/// The loops whose joints name a branch.
+/// Returns the loops whose closing joint has a `branch`, and reports joints for which that is not allowed.
 pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
     let mut found: Vec<ClosedFormLoop> = Vec::new();
     for (j, joint) in d.joints.iter().enumerate() {
@@ -67,7 +67,7 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Clos
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Makes known which motions of which joints are solved for.
+    /// Records the joints that are solved for, with their axes.
     pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
         let side = |j: &usize| {
             let joint = &self.description.joints[*j];
@@ -78,7 +78,7 @@ impl<'g> Builder<'_, 'g> {
         Solved(())
     }
 
-    /// The child's joint frame in the parent's frame: the joint at its solution.
+    /// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.
     pub fn solved_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let ClosedFormLoop { closing, sides } = self.solving_loop(j)?;
         let joint = &self.description.joints[*closing];
@@ -88,7 +88,7 @@ impl<'g> Builder<'_, 'g> {
             cx.error(place.clone(), "unknown branch").help("write `branch = 1` or `branch = -1`");
             return None;
         }
-        // The first side is a Pin; its joint's axes are those of all that follows.
+        // The first side is a Pin; all following vectors are in the axes of its joint.
         let pin = usize::from(self.description.joints[sides[0]].kind != JointKind::Pin);
         let (first, second) = (sides[pin], sides[1 - pin]);
         let (frame, axis) = self.joint_frame(first, cx)?;
@@ -115,7 +115,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let reached = e1 * meeting[0] + e2 * meeting[1] - b.base;
         Some(match b.slide {
-            // In the axes of the second joint, a slide by what is missing.
+            // Slide by the remaining distance, in the axes of the second joint.
             Some(slide) => {
                 let length = (reached - b.point).dot(slide);
                 Pose { rotation: Rotation::identity(self.scope.graph), translation: other * length }
@@ -131,7 +131,7 @@ impl<'g> Builder<'_, 'g> {
         Pose { rotation: Rotation::eigenaxis(axis, angle), translation: Vec3::zero(self.scope.graph) }
     }
 
-    /// A joint's frame on its parent, and its axis there.
+    /// Returns the frame of a joint on its parent, and its axis in that frame.
     fn joint_frame(&self, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
         let joint = &self.description.joints[j];
         let (link, pose) = self.joint_parent(&joint.parent.body, cx)?;
@@ -157,8 +157,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Side { base, point: out(point), slide })
     }
 
-    /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the
-    /// solution is that of the mechanism itself.
+    /// Transforms a vector from the axes of a link to those of a frame. Released joints count as closed: the
+    /// solution is that of the original mechanism.
     fn seen_from(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
@@ -170,7 +170,7 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// Where both sides meet, in the plane, from the origin of the first.
+/// Returns the point in the plane at which both sides meet, relative to the origin of the first joint.
 fn meeting<'g>(
     a: &Side<'g>,
     b: &Side<'g>,
@@ -186,7 +186,7 @@ fn meeting<'g>(
         let x = branch * (along.square() - square(w) + reach).sqrt() - along;
         return [w[0] + s[0] * x, w[1] + s[1] * x];
     }
-    // On the line between the origins by `part` of it, and across by `height`.
+    // `part` is the fraction along the line between the origins, `height` the offset perpendicular to it.
     let d = flat(b.base);
     let distance = square(d);
     let part = (distance + reach - square(flat(b.point))) * 0.5 / distance;
@@ -194,7 +194,7 @@ fn meeting<'g>(
     [d[0] * part - d[1] * height, d[1] * part + d[0] * height]
 }
 
-/// The angle from one direction to another.
+/// Returns the angle from one direction to another.
 fn turned<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
     (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1])
 }

@@ -1,4 +1,4 @@
-//! Joints that close loops: what they restrict, as scalar rows.
+//! Joints that close loops, as scalar constraint rows.
 
 use super::builder::Builder;
 use super::elementary::Elementary;
@@ -9,7 +9,7 @@ use crate::kinematics::jet::{Jet, Moving, Relative};
 use crate::kinematics::{AXES, change_axes, perpendicular, time_derivative, unit};
 use crate::mechanism::{Constraint, Measure, Transmission};
 
-/// The two ends of a joint that closes a loop.
+/// The two ends of a joint that closes a loop, with their motions.
 struct Closing<'g> {
     j: usize,
     parent: Placed<'g>,
@@ -19,7 +19,7 @@ struct Closing<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// What the joint of a loop allows, and its two ends.
+    /// Returns the elementary motions of a loop-closing joint, and its two ends.
     fn closing(&self, j: usize, cx: &mut Diagnostics) -> Option<(Vec<Elementary<'g>>, Closing<'g>)> {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
@@ -34,8 +34,8 @@ impl<'g> Builder<'_, 'g> {
         Some((motions?, Closing { j, parent, child, on_parent, on_child }))
     }
 
-    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's
-    /// plane.
+    /// Adds the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane
+    /// of the loop.
     pub fn close_in_plane(&mut self, j: usize, cx: &mut Diagnostics) {
         self.group += 1;
         if let Some((motions, ends)) = self.closing(j, cx)
@@ -66,7 +66,7 @@ impl<'g> Builder<'_, 'g> {
         self.rotation_rows(&ends, &motions);
     }
 
-    /// The child's joint frame has its origin where the slides of the joint let it be.
+    /// Adds rows that keep the origin of the child's joint frame in the directions in which the joint slides.
     fn translation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
         let g = self.scope.graph;
         let slides: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::slide).collect();
@@ -91,14 +91,14 @@ impl<'g> Builder<'_, 'g> {
         for motion in motions {
             match motion {
                 Elementary::Helix(axis, pitch) => self.advance_row(ends, (*axis, *pitch), gap.value),
-                // Their rows are those of what slides and of what turns.
+                // The rows of the other motions are those of the slides and rotations.
                 Elementary::Turn(_) | Elementary::Slide(_) | Elementary::Ball | Elementary::Free => {}
             }
         }
     }
 
-    /// Along the axis of a screw the child's joint frame is where its turn leads: `gap` is from the parent's
-    /// to it.
+    /// Adds the row of a screw joint that couples the child's advance along the axis to its rotation. `gap`
+    /// leads from the parent's joint frame to the child's.
     fn advance_row(&mut self, ends: &Closing<'g>, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) {
         let Closing { parent, child, on_parent, on_child, .. } = ends;
         let n = self.direction(on_parent, parent.pose.rotation.to_parent(axis)).value;
@@ -110,13 +110,13 @@ impl<'g> Builder<'_, 'g> {
         let value = pitch * (sine * advance.cos() - cosine * advance.sin());
         let rate = time_derivative(self.model.space(), value);
         let second = time_derivative(self.model.space(), rate);
-        // It pushes the child back along the axis and turns it by the pitch.
+        // The force pushes the child back along the axis; the torque rotates it by the pitch.
         self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
         let turned = self.transmission(ends, true, n * pitch);
         self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
     }
 
-    /// The child's joint axes are turned as the turns of the joint let them be.
+    /// Adds rows that allow only the rotations of the joint between the axes of its two ends.
     fn rotation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
         if matches!(motions, [Elementary::Ball]) {
             return;
@@ -126,9 +126,9 @@ impl<'g> Builder<'_, 'g> {
         let of_parent = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
         let of_child = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
         let axis = |k| Vec3::axis(self.scope.graph, k);
-        // Directions of the parent and of the child that stay orthogonal, or at a constant angle.
+        // Directions of the parent and of the child that remain orthogonal, or at a constant angle.
         let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
-            // The sines of the angles about three axes.
+            // Sines of the angles about three axes.
             [] => (0..3)
                 .map(|k| {
                     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
@@ -152,8 +152,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A row of a joint, with the force of a length or the torque of an angle on the child that its
-    /// multiplier is, in the axes of the link that carries both ends.
+    /// Adds a row of a joint. Its multiplier is a force (of a length) or a torque (of an angle) on the child
+    /// along `direction`, in the axes of the link that carries both ends.
     fn push(
         &mut self,
         ends: &Closing<'g>,

@@ -1,6 +1,6 @@
-//! Constraints: joints that close loops, expressions that stay zero, rolling pairs. Each becomes scalar rows
-//! with their rates and the derivatives of those. Motions are taken relative to the nearest link that carries
-//! both sides, so that what both share drops out.
+//! Constraints: joints that close loops, expressions that remain zero, rolling and slipping pairs. Each
+//! becomes scalar rows with their rates and the time derivatives of the rates. Motions are relative to the
+//! nearest link that carries both sides, so that their common motion cancels.
 
 use super::builder::Builder;
 use super::closed_form::Solved;
@@ -17,15 +17,16 @@ use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Freedom, Measure, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
-/// Most scalar constraints of a mechanism, twice as many as velocities: half of them may be redundant.
+/// Maximum number of scalar constraints of a mechanism: twice the maximum number of velocities, because half
+/// of the constraints may be redundant.
 const MAX_CONSTRAINTS: usize = 256;
 
-/// That all constraints are there. Comes of [`Builder::add_constraints`] alone.
+/// Proof that all constraints have been added. Created only by [`Builder::add_constraints`].
 #[derive(Clone, Copy)]
 pub struct Constrained(());
 
 impl<'g> Builder<'_, 'g> {
-    /// All constraints: those of the joints that close loops, then those declared.
+    /// Adds all constraints: first those of loop-closing joints, then the declared ones.
     pub fn add_constraints(
         &mut self,
         closing: &[usize],
@@ -105,8 +106,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The components of a vector without those that are zero wherever the mechanism is, as they are across
-    /// its plane; all of them if they all are.
+    /// Returns the components of a vector without those that vanish identically, such as the component normal
+    /// to the plane of a planar mechanism. If all vanish, all are returned.
     fn without_idle(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
         let is_idle = |e: &Expr<'g>| {
             let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
@@ -120,7 +121,7 @@ impl<'g> Builder<'_, 'g> {
         rest
     }
 
-    /// Reads what a constraint says, for its mistakes alone.
+    /// Resolves a constraint only to report its errors.
     fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {
@@ -167,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Left side minus right side: one component, or three.
+    /// Returns the left side minus the right side: one component, or three with names.
     fn difference(
         &self,
         constraint: &syntax::Constraint,
@@ -192,7 +193,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let left = self.scope.in_context(context(), |scope| scope.value(&constraint.value, cx));
         if left.is_none() {
-            // What the other side says is told as well.
+            // Report the errors of the other side as well.
             if let Some(other) = &constraint.other {
                 let _ = self.scope.in_context(context(), |scope| scope.value(other, cx));
             }
@@ -221,10 +222,10 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// A rate whose derivatives by the velocities name velocities, but do not depend on them: the same without
-/// those. `None` if they do.
+/// Removes velocities from the coefficients of a linear constraint if the coefficients contain velocities but
+/// do not depend on them. Returns `None` if they depend on velocities.
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
-    // Signs and corners show where velocities change their signs, together or not.
+    // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
     let at = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::of(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),

@@ -1,4 +1,4 @@
-//! Curves and fields: what follows from derivatives of an expression by a coordinate or a place.
+//! Curves and fields: derivatives of an expression by a coordinate or a position.
 
 use super::call::Call;
 use super::quantities::{in_links, vector};
@@ -14,8 +14,8 @@ use crate::mechanism::{Coordinate, LinkId, Pose, Quantity};
 use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns the axes that follow from a vector or a curve, in those of a place: `cylindrical(vector)`,
-    /// `spherical(vector)`, `frenet(curve, coordinate)`.
+    /// Returns the axes defined by a vector or a curve, relative to the axes of a frame:
+    /// `cylindrical(vector)`, `spherical(vector)`, `frenet(curve, coordinate)`.
     pub fn natural_axes(
         &self,
         (rotation, name): (language::Rotation, &Callee),
@@ -58,7 +58,7 @@ impl<'g> Scope<'_, 'g> {
         })
     }
 
-    /// Tangent, normal and binormal of a curve (Frenet and Serret) in the axes of a place.
+    /// Returns tangent, normal and binormal of a curve (Frenet and Serret), in the axes of a frame.
     fn frenet(
         &self,
         curve: &syntax::Expr,
@@ -86,7 +86,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
     }
 
-    /// `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
+    /// Resolves `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
     pub fn curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, _] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
@@ -97,7 +97,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(normal.length() / (speed * speed * speed)))
     }
 
-    /// `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
+    /// Resolves `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
     pub fn torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, third] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
@@ -109,7 +109,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(normal.dot(third) / normal.dot(normal)))
     }
 
-    /// Returns three derivatives of the curve that a function takes, by the coordinate that it takes.
+    /// Returns the first three derivatives of a function's curve argument by its coordinate argument.
     fn curve_derivatives(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Vec3<'g>; 3]> {
         let [curve, along] = call.take(cx)?;
         let text = call.name();
@@ -119,7 +119,8 @@ impl<'g> Scope<'_, 'g> {
         Some(self.derivatives_along(text, curve, along, cx)?.0)
     }
 
-    /// Three derivatives of a vector by a coordinate, in the axes of a link that do not depend on it.
+    /// Returns the first three derivatives of a vector by a coordinate. They are in the axes of the returned
+    /// link, which do not depend on the coordinate.
     fn derivatives_along(
         &self,
         text: &str,
@@ -153,7 +154,7 @@ impl<'g> Scope<'_, 'g> {
         Some(([first, second, next(second)], link))
     }
 
-    /// A plain coordinate by its name.
+    /// Returns a coordinate by its name.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let name = e.spelt();
         let kinematics = self.kinematics.borrow();
@@ -172,7 +173,8 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// `gradient(field / point)`: how a scalar changes with the place of a point, all else held.
+    /// Resolves `gradient(field / point)`: the derivative of a scalar by the position of a point; all other
+    /// quantities are constant.
     pub fn gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [whole] = call.take(cx)?;
         let ExprKind::Binary(BinaryOp::Div, of, at, _) = &whole.kind else { return call.reject(cx) };
@@ -185,7 +187,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("name a `Point`, a particle or a body");
             return None;
         };
-        // The point is moved by three numbers, and the field differentiated by them.
+        // The point is displaced by three symbols, and the field is differentiated by them.
         let moves = [0, 1, 2].map(|k| Quantity::Displacement(k).symbol());
         let by = Vec3(moves.map(|s| self.graph.symbol(s)));
         let pose = Pose { translation: placed.pose.translation + by, ..placed.pose.clone() };

@@ -1,5 +1,5 @@
-//! What the word `drawing` asks for: pieces that show what is declared, in the axes of named frames, so that
-//! no pass over the links moves them.
+//! Pieces of the drawing, added by the option `drawing`. They show the declared elements in the axes of named
+//! frames, so that a viewer needs no traversal of the links.
 
 use super::builder::Builder;
 use super::joint::drawn;
@@ -15,16 +15,16 @@ use crate::syntax::{
 };
 use std::collections::BTreeSet;
 
-/// A place: the frame that it is fixed in, the ground if none, and where.
+/// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
 pub type Anchor<'g> = (Option<usize>, Pose<'g>);
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the drawing, if it was asked for.
+    /// Adds the drawing if it is requested.
     pub fn add_drawing(&mut self) {
         if !self.description.drawing {
             return;
         }
-        // What is read a second time requires nothing a second time.
+        // The second reading of expressions adds no requirements.
         let required = self.scope.requirements.borrow().clone();
         let context = Context::new(Allowed::Constant, None);
         let previous = self.scope.context.replace(context);
@@ -55,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
         self.model.heights = heights;
     }
 
-    /// A place on a link in the axes of a frame that the link carries; `None` if it carries none.
+    /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
     pub(super) fn anchor(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
         if link.is_none() {
             return Some((None, pose.clone()));
@@ -64,12 +64,12 @@ impl<'g> Builder<'_, 'g> {
         Some((Some(at), self.model.frames[at].pose.inverse().then(pose)))
     }
 
-    /// A body's own frame.
+    /// Returns the index of a body's own frame.
     fn body_frame(&self, name: &str) -> Option<usize> {
         self.model.frames.iter().position(|frame| frame.name == name)
     }
 
-    /// The end of a joint.
+    /// Returns the pose of the end of a joint.
     fn end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::unread();
         let on_body = self.endpoint(end, &mut silent)?;
@@ -83,8 +83,9 @@ impl<'g> Builder<'_, 'g> {
         self.anchor(link, &pose.then(&on_body))
     }
 
-    /// Adds the visual geometry of a file; returns the bodies that have any, and no mesh among it. Those with
-    /// meshes are drawn by their mass properties as well, which are shown where a mesh cannot be read.
+    /// Adds the visual geometry of a file. Returns the bodies that have visual geometry without meshes.
+    /// Bodies with meshes are also drawn by their mass properties, which are visible if a mesh cannot be
+    /// read.
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
@@ -120,7 +121,7 @@ impl<'g> Builder<'_, 'g> {
         pieces.iter().map(|piece| &piece.name).filter(|name| !meshes.contains(name)).cloned().collect()
     }
 
-    /// Solids and particles, but for bodies that are shown already.
+    /// Adds solids and particles, except for the bodies in `shown`.
     fn draw_bodies(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let g = self.scope.graph;
         for (k, body) in self.description.bodies.iter().enumerate() {
@@ -164,7 +165,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The solids of an inertia about a point; false if it has figures that are no solid's.
+    /// Collects the solids of an inertia about a point; returns false if a term of the inertia is not a
+    /// solid.
     fn solids(
         &self,
         e: &syntax::Expr,
@@ -196,7 +198,7 @@ impl<'g> Builder<'_, 'g> {
                     None if kind == PieceKind::Sphere => {}
                     None => numbers.extend(rows(&turned.matrix())),
                 }
-                // The mass comes first.
+                // The first argument is the mass.
                 for size in sizes.iter().skip(1) {
                     match self.scope.scalar(size, &mut silent) {
                         Some(size) => numbers.push(size),
@@ -213,7 +215,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Joints, and bars from the joint that holds a body to its others and to its centre of mass.
+    /// Adds joints, and bars from a body's first joint to its other joints and to its centre of mass.
     fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let mut held: Vec<(&str, Vec3<'g>)> = Vec::new();
         for joint in &self.description.joints {
@@ -251,7 +253,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// How a joint is drawn, with its axis on the parent.
+    /// Returns the symbol of a joint, with its axis on the parent.
     fn joint_kind(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
         let (kind, axes) = drawn(joint)?;
         let axis = |axes: &[syntax::Expr]| {
@@ -260,7 +262,7 @@ impl<'g> Builder<'_, 'g> {
         Some((kind, axes.map_or(Some(None), |axes| axis(axes).map(Some))?))
     }
 
-    /// Springs, dashpots and inputs.
+    /// Adds springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.description.actions {
             let row = action.kind.row();
@@ -276,7 +278,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// An element between two points or on a joint: `long` if it spans a length, `round` if it turns.
+    /// Adds an element between two points or on a joint: `long` if it spans a length, `round` if it acts on a
+    /// rotation.
     fn draw_element(&self, action: &Action, long: PieceKind, round: PieceKind, pieces: &mut Vec<Piece<'g>>) {
         let found = match &action.on {
             Target::Between(a, b) => {
@@ -296,8 +299,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The joint with one coordinate that an expression names: whether it turns, the frames and places of its
-    /// ends, its axis on the parent.
+    /// Returns the data of a joint with one coordinate: whether it is revolute, the frames and positions of
+    /// its ends, and its axis on the parent.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.name()?;
@@ -308,7 +311,7 @@ impl<'g> Builder<'_, 'g> {
         Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
     }
 
-    /// The joint that an input of a file drives.
+    /// Returns the joint that an input of a file drives.
     fn driven(&self, input: &str) -> Option<&str> {
         let drives = &self.description.drives;
         let found =
@@ -316,7 +319,7 @@ impl<'g> Builder<'_, 'g> {
         found.and_then(|drive| drive.on.terms().first()).map(|(joint, _)| joint.text.as_str())
     }
 
-    /// An arrow for an input, if it has one direction.
+    /// Returns an arrow for an input, if the input has one direction.
     fn input(
         &self,
         k: usize,

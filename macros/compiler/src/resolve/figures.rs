@@ -1,25 +1,24 @@
-//! Figures that are too large or too small to compute with: products of two of them must stay finite and
-//! reciprocals too.
+//! Range checks of masses, moments and lengths: products of two values and reciprocals must remain finite.
 
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Expr;
 use crate::syntax::ScalarType;
 
-/// The figures that leave room for computing.
+/// Range of values whose products and reciprocals are finite.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
-    /// Largest mass and moment: their squares are finite.
+    /// Maximum mass and moment; their squares are finite.
     pub most: f64,
-    /// Largest length: with a mass of one its moment is within the range.
+    /// Maximum length; with a mass of one its moment is within the range.
     pub length: f64,
-    /// Smallest mass and moment beside zero: its reciprocal is finite.
+    /// Minimum nonzero mass and moment; its reciprocal is finite.
     pub least: f64,
-    /// The name of the scalar type.
+    /// Name of the scalar type.
     pub name: &'static str,
 }
 
 impl Range {
-    /// The range of a scalar type; a type parameter stands for `f64`.
+    /// Returns the range of a scalar type; a type parameter has the range of `f64`.
     pub fn of(scalar: &ScalarType) -> Range {
         match scalar {
             ScalarType::F32 => Range { most: 1e18, length: 1e9, least: 1e-36, name: "f32" },
@@ -27,7 +26,7 @@ impl Range {
         }
     }
 
-    /// Reports a mass or a moment outside the range, if it is a number.
+    /// Reports a constant mass or moment outside the range. Returns false then.
     pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
         let Some(n) = e.value().filter(|n| *n != 0.0) else { return true };
         if n.abs() > self.most {
@@ -43,7 +42,7 @@ impl Range {
         true
     }
 
-    /// Reports a length outside the range, if it is a number.
+    /// Reports a constant length outside the range. Returns false then.
     pub fn check_length(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
         let Some(n) = e.value().filter(|n| n.abs() > self.length) else { return true };
         cx.error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))

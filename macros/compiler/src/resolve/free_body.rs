@@ -1,8 +1,9 @@
-//! Free-body diagrams: all that acts on a body at once, for outputs of the type `FreeBody`. The joints of the
-//! body are released, six motions each; what a force element, a constraint or a contact does to the body is
-//! its generalized force on the joint that holds the body, less those on the joints that the body holds
-//! (virtual work: the body moves alone while all others stay). What joints transmit are their reactions, with
-//! the motors, springs and dashpots on their own coordinates.
+//! Free-body diagrams: all forces on a body, for outputs of the type `FreeBody`. Each joint of the body is
+//! released to six degrees of freedom. The wrench of a force element, a constraint or a contact on the body
+//! is its generalized force on the joint of which the body is the child, minus those on the joints of which
+//! the body is the parent. This is the principle of virtual work: the body moves alone while all others are
+//! fixed. The wrenches of joints are their reactions, including the motors, springs and dashpots on their own
+//! coordinates.
 
 use super::builder::Builder;
 use super::holders::name_of;
@@ -19,35 +20,35 @@ use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
 use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
-/// States in which is looked at what acts.
+/// Number of sampled states at which actions are tested for zero.
 const SAMPLES: u64 = 3;
-/// Below this part of what it is the sum of, a force is none.
+/// Magnitude, relative to that of the summands, below which a sum of forces counts as zero.
 const ROUNDING: f64 = 1e-10;
 
-/// A force and a torque about the centre of mass of the body, in the axes of one link.
+/// Force and torque about the centre of mass of the body, in the axes of one link.
 #[derive(Clone, Copy)]
 struct Wrench<'g> {
     force: Vec3<'g>,
     torque: Vec3<'g>,
 }
 
-/// The body of a diagram, in the axes of one link.
+/// Body of a diagram.
 struct Freed<'g> {
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
     center: Placed<'g>,
-    /// The released joints: number among them, whether it holds the body.
+    /// Released joints: index among the released joints, and whether the body is the child.
     joints: Vec<(usize, bool)>,
-    /// The axes of the result.
+    /// Link and pose of the axes of the result.
     axes: (Option<LinkId>, Pose<'g>),
 }
 
-/// An action: its name, where it comes from, where it acts, and what it does.
+/// An action: name, origin, point of action, and wrench.
 type Acting<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
 
 impl<'g> Builder<'_, 'g> {
-    /// Expressions with the coordinates of released joints at zero, and their rates.
+    /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
     pub fn with_released_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let Some((joints, _)) = self.releasing else { return e.to_vec() };
         let open = RELEASED * joints.len();
@@ -62,8 +63,8 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Remembers what an element has added since then: its generalized forces on the coordinates of released
-    /// joints.
+    /// Records the generalized forces of a new element on the coordinates of released joints. `before` counts
+    /// the elements of the model before it.
     pub fn know_applied(&mut self, before: &Counts, name: &str) {
         let Some((joints, _)) = self.releasing else { return };
         if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
@@ -101,7 +102,7 @@ impl<'g> Builder<'_, 'g> {
         self.applied.push((name.to_string(), forces));
     }
 
-    /// The free-body diagram that an output asks for. Before joints are released it has no actions yet.
+    /// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
     pub fn free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<OutputValue<'g>> {
         let name = self.check_free_body(output, cx)?;
         let axes = self.output_axes(output, cx)?;
@@ -132,7 +133,7 @@ impl<'g> Builder<'_, 'g> {
         Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions, ..empty }))
     }
 
-    /// The name of the body, if it can have a diagram.
+    /// Returns the name of the body, if it can have a diagram.
     fn check_free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<String> {
         let ground = Some((None, Pose::identity(self.scope.graph)));
         let e = &output.value;
@@ -146,8 +147,8 @@ impl<'g> Builder<'_, 'g> {
         Some(name.to_string())
     }
 
-    /// What moves as one with a body: its link, its mass and its centre of mass. Reports what moves on it
-    /// without a joint.
+    /// Returns the link, the mass and the centre of mass of a body and all elements fixed to it. Reports
+    /// elements that move on it without a joint.
     fn rigid_part(
         &self,
         name: &str,
@@ -186,7 +187,7 @@ impl<'g> Builder<'_, 'g> {
         Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
     }
 
-    /// The first link of the motions of a released joint.
+    /// Returns the first link of the motions of a released joint.
     fn first_of_released(&self, at: usize) -> Option<LinkId> {
         let count = self.releasing?.0.len();
         let v = self.model.nv() - RELEASED * (count - at);
@@ -195,7 +196,7 @@ impl<'g> Builder<'_, 'g> {
         links.joints.iter().position(is_it).map(LinkId)
     }
 
-    /// A place from the centre of mass, in the axes' link.
+    /// Returns a position relative to the centre of mass, in the axes of the result's link.
     fn arm_to(&self, body: &Freed<'g>, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let mut terms = place.clone();
@@ -224,7 +225,7 @@ impl<'g> Builder<'_, 'g> {
         Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
     }
 
-    /// A force and a torque on the coordinates of released joints as what acts on the body.
+    /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
     fn on_body(&self, body: &Freed<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
         let mut sum = Wrench { force: zero, torque: zero };
@@ -238,7 +239,8 @@ impl<'g> Builder<'_, 'g> {
         sum
     }
 
-    /// What a force and a torque at a released joint, in its frame, are about the centre of mass.
+    /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
+    /// frame of the joint.
     fn at_joint(&self, body: &Freed<'g>, at: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<Wrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
@@ -267,7 +269,7 @@ impl<'g> Builder<'_, 'g> {
             let origin = if is_input { Origin::Input } else { Origin::Element };
             let place = self.place_of_element(body, name);
             let wrench = match &place {
-                // A force through its point, where nothing is left of its torque.
+                // A force through its point of action has no torque about that point.
                 Some(_) => Wrench { torque: Vec3::zero(self.scope.graph), ..wrench },
                 None => wrench,
             };
@@ -276,7 +278,7 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// Where an element pulls at a body, if it does so at one point.
+    /// Returns the point of the body at which an element acts, if it acts at a single point.
     fn place_of_element(&self, body: &Freed<'g>, name: &str) -> Option<Terms<'g>> {
         let action = self.description.actions.iter().find(|action| action.name.text == name)?;
         let mut unread = Diagnostics::unread();
@@ -297,8 +299,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What the joints of the tree transmit to the body, and what holds it, or what it carries, on a place
-    /// that is given.
+    /// Returns the reactions of the tree's joints on the body, and those of elements placed by `at` and
+    /// `frame`.
     fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
@@ -324,7 +326,7 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// What constraints, and the joints that close loops, do to the body.
+    /// Returns the wrenches of constraints and of loop-closing joints on the body.
     fn constraints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
@@ -369,7 +371,7 @@ impl<'g> Builder<'_, 'g> {
         by_name.into_iter().filter_map(act).collect()
     }
 
-    /// What contacts that open and close do to the body, by their forces.
+    /// Returns the wrenches of unilateral contacts on the body.
     fn contacts_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
@@ -398,7 +400,7 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// The end of a joint that belongs to the body.
+    /// Returns the position of the end of a joint that belongs to the body.
     fn end_on(&self, body: &Freed<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::unread();
         ends.into_iter().find_map(|end| {
@@ -409,22 +411,22 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// The wrench about another point of the body.
+    /// Returns the wrench about another point of the body.
     fn moved_to(&self, body: &Freed<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_to(body, place);
         Wrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
-    /// Whether something is left where forces on several joints are added: what acts between two bodies that
-    /// the same joint carries cancels, up to rounding.
+    /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
+    /// carries cancel up to rounding.
     fn acts(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
         let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;
         }
         (0..SAMPLES).any(|seed| {
-            // Quaternions are unit: what cancels does so for rotations alone.
+            // Sampled quaternions have unit length, because terms may cancel only for rotations.
             let q = random_configuration(&self.model, seed);
             let number = |s: Symbol| match Quantity::of(s) {
                 Quantity::Configuration(k) => q[k],
@@ -432,7 +434,7 @@ impl<'g> Builder<'_, 'g> {
             };
             let largest = |e: &[Expr<'g>]| eval(e, &number).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
             let (left, size) = (largest(&all), largest(forces));
-            // Numbers that are not finite tell nothing.
+            // Values that are not finite are inconclusive; they count as nonzero.
             !left.is_finite() || left > ROUNDING * size
         })
     }

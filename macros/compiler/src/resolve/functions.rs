@@ -1,4 +1,4 @@
-//! Calls of functions of expressions, and their values: one arm for each function.
+//! Calls of functions in expressions, and their values: one match arm per function.
 
 use super::call::Call;
 use super::momenta::Sum;
@@ -11,8 +11,7 @@ use crate::language::{Callable, FunctionId, Solid};
 use crate::syntax::{self, Callee, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns the value of a call: of a function of the language, a table of the user's, or a law in two
-    /// pieces.
+    /// Returns the value of a call of a function of the language, a table of the user, or a piecewise law.
     pub fn call(
         &self,
         callee: &Callee,
@@ -163,7 +162,8 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(s))
     }
 
-    /// Returns the vector that a function takes alone, in common axes; `help` is for a scalar in its place.
+    /// Returns the only argument of a function, a vector, in common axes. `help` is the help for a scalar
+    /// argument.
     fn only_vector(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
         let [a] = call.take(cx)?;
         let vector = self.vector_or(a, help, cx)?;
@@ -171,7 +171,7 @@ impl<'g> Scope<'_, 'g> {
         Some((axes, v[0]))
     }
 
-    /// Reports a function that is not known, with the one that is most likely meant.
+    /// Reports an unknown function, with the function that is most likely meant.
     fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
         let text = callee.text.as_str();
         let own = self.tables.iter().map(|table| table.name.text.as_str());
@@ -221,7 +221,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Reports a power that is not a number in any state.
+/// Reports a power that is undefined in all states. Returns false then.
 fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(x) = base.value() else { return true };
     let what = match exponent.value() {

@@ -1,5 +1,5 @@
-//! What holds bodies and can be released, for free-body diagrams: joints of the tree, and places that are
-//! given by `at` and `frame`.
+//! Releasable connections of bodies, for free-body diagrams: joints of the tree, and placements by `at` and
+//! `frame`.
 
 use super::builder::Builder;
 use super::scope::{Placed, PlacedKind};
@@ -7,17 +7,18 @@ use super::tree;
 use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose};
 use crate::syntax::{self, Description, GROUND, Rank};
 
-/// The number of a body's place among what can be released: joints come first, then bodies, then particles.
+/// Returns the index of a body's placement among the releasable connections: joints are first, then bodies,
+/// then particles.
 pub fn of_body(d: &Description, body: usize) -> usize {
     d.joints.len() + body
 }
 
-/// The number of a particle's place.
+/// Returns the index of a particle's placement among the releasable connections.
 pub fn of_particle(d: &Description, particle: usize) -> usize {
     d.joints.len() + d.bodies.len() + particle
 }
 
-/// The name of a joint, or of a body or particle that is placed.
+/// Returns the name of a releasable connection: that of a joint, a body or a particle.
 pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
     let joints = d.joints.iter().map(|joint| &joint.name);
     let bodies = d.bodies.iter().map(|body| &body.name);
@@ -25,8 +26,8 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the link of a body or a particle that is placed, if it moves by that; if its place is
-    /// released, the last of six more.
+    /// Returns the link of a placed body or particle, with a new link if its placement moves. If the
+    /// placement is released, returns the last of six further links.
     pub fn link_of_place(
         &mut self,
         number: usize,
@@ -38,7 +39,8 @@ impl<'g> Builder<'_, 'g> {
         if link == carrier {
             let frame = carrier.filter(|link| self.frame_links.contains(link) && self.is_on_frame(number));
             let Some(frame) = frame else { return (link, pose) };
-            // What carries the frame holds the body by it, apart from other bodies on the frame.
+            // The link that carries the frame is the holder; other bodies on the frame have connections of
+            // their own.
             holder = self.model.links.get(frame.0).and_then(|frame| frame.parent);
             let (motion, inertia) = (Motion::Placed, Inertia::zero(self.scope.graph));
             link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
@@ -51,8 +53,8 @@ impl<'g> Builder<'_, 'g> {
         self.release(at, released.len(), link, pose)
     }
 
-    /// Whether a body or a particle is fixed in a frame, not on a body or at a point, in a mechanism with
-    /// free-body diagrams.
+    /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
+    /// with free-body diagrams.
     fn is_on_frame(&self, number: usize) -> bool {
         let d = self.description;
         let is_placed = |e: &syntax::Expr| {
@@ -70,7 +72,7 @@ impl<'g> Builder<'_, 'g> {
             && !places.into_iter().flatten().any(is_placed)
     }
 
-    /// The body that carries a point, or a particle that does not move on it; a body itself.
+    /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
     fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
         let d = self.description;
         let moves = |name: &str| {
@@ -85,7 +87,8 @@ impl<'g> Builder<'_, 'g> {
         (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
     }
 
-    /// What holds a body or is held by it, and whether it holds: joints of the tree, and places.
+    /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is
+    /// the child.
     pub fn holders_of(&self, body: &str) -> Vec<(usize, bool)> {
         let d = self.description;
         let closing = tree::closing(d);

@@ -1,4 +1,4 @@
-//! Mass and inertia of bodies: solids, matrices, and whether a real body can have them.
+//! Mass and inertia of bodies: solids, matrices, and checks of physical consistency.
 
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -7,17 +7,17 @@ use crate::language::{Argument, Callable, Method, Solid};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
-/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
+/// Moments below this value, kg·m², count as zero: exporters write such values for bodies without inertia.
 const NOTHING: f64 = 1e-18;
 
-/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten
-/// nanometres.
+/// Squared radius of gyration, m², below which the moments of a body with mass also count as zero (a radius
+/// of ten nanometres).
 const SMALLEST: f64 = 1e-16;
 
-/// Relative tolerance of the checks: published figures are rounded.
+/// Relative tolerance of the checks: published values are rounded.
 const TOLERANCE: f64 = 1e-6;
 
-/// An operation on the inertia that is written to the left of it.
+/// Operation on the inertia that is written to its left.
 enum Operation<'a> {
     Add(&'a syntax::Expr),
     Rotate(&'a [syntax::Expr]),
@@ -158,8 +158,8 @@ impl<'g> Scope<'_, 'g> {
         complete.then(|| (row.inertia)(&numbers, axis.unwrap_or_else(|| Vec3::zero(self.graph))))
     }
 
-    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely
-    /// the arguments stand in another order.
+    /// Reports the first argument that is a vector instead of a scalar or vice versa: most likely the
+    /// arguments are in the wrong order.
     fn confused(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
             let mut silent = Diagnostics::unread();
@@ -190,13 +190,13 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// True for a solid with its arguments.
+/// Whether an expression is a solid with its arguments.
 fn is_solid(e: &syntax::Expr) -> bool {
     matches!(&e.kind, ExprKind::Call(Callee { id: Some(Callable::Solid(_)), .. }, _))
 }
 
-/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to
-/// take it anyway.
+/// Reports a constant inertia that is physically impossible for a body of this mass. `hint` is the help on
+/// how to accept the inertia anyway.
 pub fn check_inertia(
     body: &str,
     mass: Option<f64>,
@@ -227,7 +227,7 @@ pub fn check_inertia(
     }
 }
 
-/// A number with about five digits.
+/// Formats a number with about five digits.
 fn brief(x: f64) -> String {
     let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
     match rounded.abs() {
@@ -236,7 +236,7 @@ fn brief(x: f64) -> String {
     }
 }
 
-/// Eigenvalues of a symmetric matrix in ascending order (Jacobi rotations).
+/// Returns the eigenvalues of a symmetric matrix in ascending order (Jacobi rotations).
 fn principal_moments(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     for _ in 0..32 {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {

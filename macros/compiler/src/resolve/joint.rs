@@ -1,5 +1,5 @@
-//! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of
-//! simple ones with massless frames between.
+//! Elementary motions of joints. A joint with several degrees of freedom is a chain of simple joints with
+//! massless links between them.
 
 use super::elementary::Elementary;
 use super::scope::Scope;
@@ -23,7 +23,7 @@ pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     }
 }
 
-/// Returns how a joint is drawn, if it is, and the axes of which it shows the first.
+/// Returns the symbol of a joint in the drawing, if it has one, and the axes of which the first is drawn.
 pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
@@ -33,13 +33,13 @@ pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     Some((kind, axes))
 }
 
-/// The full name of a coordinate.
+/// Returns the full name of a coordinate, `joint.coordinate`.
 pub fn full_name(joint: &str, coordinate: &str) -> String {
     if coordinate.is_empty() { joint.to_string() } else { format!("{joint}.{coordinate}") }
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The motions of a joint in order from parent to child.
+    /// Returns the motions of a joint in order from parent to child.
     pub fn motions(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
         use Elementary::{Slide, Turn};
         let about = self.axes(joint, &joint.about, cx);
@@ -102,7 +102,7 @@ impl<'g> Scope<'_, 'g> {
         Some(vec![Elementary::Helix(axis?, pitch?)])
     }
 
-    /// Two slides in the plane, then a turn about its normal.
+    /// Returns two slides in the plane, followed by a rotation about its normal.
     fn planar(
         &self,
         about: &[Vec3<'g>],
@@ -141,7 +141,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("leave one of them out");
             return None;
         }
-        // The given normal is exact, the product is rounded.
+        // The written normal is exact, the product is rounded.
         let normal = about.first().copied().unwrap_or(normal);
         Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
     }
@@ -168,7 +168,7 @@ pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g
     }
 }
 
-/// True if an expression is zero for all values of the parameters, within rounding.
+/// Whether an expression is zero for all values of the parameters, within rounding.
 fn vanishes(e: Expr<'_>) -> bool {
     (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
 }
@@ -207,7 +207,7 @@ fn several<'a, 'g>(
     None
 }
 
-/// Reports axes that are parallel, or three in a plane: one of the coordinates would do what the others do.
+/// Reports axes that are parallel, or three coplanar ones: one of the coordinates would be redundant.
 fn check_independent(
     axes: &[Vec3<'_>],
     what: &str,
@@ -244,7 +244,7 @@ fn either<'g>(
     }
 }
 
-/// A coordinate of its own.
+/// Returns the coordinate with these indices, with ratio one and offset zero.
 pub fn own_coordinate(q: InQ, v: InV) -> Coordinate {
     Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Limits → bounds of the entries of `q` and `v`. Several limits of one entry hold together.
+//! Limits as bounds of the entries of `q` and `v`. All limits of one entry apply simultaneously.
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;
@@ -26,7 +26,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Reads the limit of an expression, which is a stop, for its mistakes alone.
+    /// Reads the limit of an expression, which is a stop, only to report its errors.
     fn check_stop(&self, limit: &syntax::Limit, cx: &mut Diagnostics) {
         let others = [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)];
         if let Some((key, e)) = others.into_iter().find_map(|(key, e)| Some((key, e.as_ref()?))) {
@@ -44,7 +44,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The values of the four bounds; `None` after a mistake.
+    /// Returns the values of the four bounds; `None` after an error.
     fn bounds(
         &self,
         limit: &syntax::Limit,
@@ -54,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
         let mut good = true;
         let mut read = |e: &Option<Expr>, angle: bool| {
             let e = e.as_ref()?;
-            // A file's numbers are in radians, however many turns they are.
+            // Angles in a file are in radians, without a limit on revolutions.
             let value = match angle && e.place.file.is_none() {
                 true => self.scope.plane_angle(e, cx),
                 false => self.scope.scalar(e, cx),
@@ -71,7 +71,7 @@ impl<'g> Builder<'_, 'g> {
         good.then_some(bounds)
     }
 
-    /// The bounds of a coordinate that bounds of `ratio × q + offset` are.
+    /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
     fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
         let num = |x: f64| self.scope.graph.num(x);
         let own = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
@@ -102,7 +102,8 @@ impl<'g> Builder<'_, 'g> {
                 other.v == found.v && !leaves_room(&tighter(other, &found))
             };
             let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
-            // Of two limits of a file the one that is not the coordinate's own is in the way.
+            // If both limits are from a file, the one that does not belong to the coordinate itself is
+            // reported.
             let own = limit.name.text == name;
             let follower = if own { other.unwrap_or(limit) } else { limit };
             let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
@@ -119,7 +120,7 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The tighter ones of two bounds of one coordinate.
+/// Returns the tighter bounds of two limits of one coordinate.
 fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
     let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
         (Some(a), Some(b)) => Some(a.extreme(which, b)),
@@ -134,12 +135,12 @@ fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
     }
 }
 
-/// The distance between the bounds of a coordinate, if both are numbers.
+/// Returns the distance between the bounds of a coordinate, if both are constant.
 fn room(limit: &Limit<'_>) -> Option<f64> {
     Some(limit.upper?.value()? - limit.lower?.value()?)
 }
 
-/// Reports bounds that nothing can keep.
+/// Reports bounds that no motion satisfies. Returns false then.
 fn check(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
     let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
     if let (Some(low), Some(high), Some(e)) = (from, to, &limit.to)

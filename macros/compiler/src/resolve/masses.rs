@@ -1,4 +1,4 @@
-//! Masses: those of bodies and particles go to the links that carry them.
+//! Masses of bodies and particles, which are added to the links that carry them.
 
 use super::builder::Builder;
 use super::figures::Range;
@@ -14,7 +14,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
     pub fn add_masses(&mut self, cx: &mut Diagnostics) {
         for (k, body) in self.description.bodies.iter().enumerate() {
-            // What a file fixes to the ground enters no equation, whatever figures it has.
+            // Inertial parameters of a body that a file fixes to the ground enter no equation.
             let is_fixed = matches!(self.places[k], Some((None, _)));
             let from_file = body.name.place.file.is_some();
             let mut silent = Diagnostics::new();
@@ -33,7 +33,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Mass, centre of mass and central inertia of a body.
+    /// Returns mass, centre of mass and central inertia of a body.
     fn body_inertia(&self, body: &Body, cx: &mut Diagnostics) -> Option<MassProperties<'g>> {
         let graph = self.scope.graph;
         let name = &body.name.text;
@@ -86,8 +86,7 @@ impl<'g> Builder<'_, 'g> {
         Some(found)
     }
 
-    /// An inertia that is given about another point, about the centre of mass: less by what the mass adds
-    /// there at the distance between them (the parallel-axis theorem).
+    /// Converts an inertia about another point to one about the centre of mass by the parallel-axis theorem.
     fn about_center(
         &self,
         body: &Body,
@@ -113,7 +112,8 @@ impl<'g> Builder<'_, 'g> {
         Some(inertia? - Sym3::point(mass?, com? - about?))
     }
 
-    /// What can be said of a body's figures only where its parameters are known.
+    /// Adds the requirements for inertial parameters that can be checked only at run time, when their
+    /// parameters have values.
     fn require_a_body(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
         for c in com.0 {
             self.scope.require(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
@@ -127,14 +127,14 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the mass of what has this pose on a link to that of the link.
+    /// Adds the mass of an element with this pose on a link to that of the link.
     fn attach(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
         let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
         let sum = &mut self.model.links[link.0].inertia;
         *sum = sum.plus(&added);
     }
 
-    /// Figures may be finite and their products not.
+    /// Reports inertial parameters whose products are not finite.
     pub fn check_finite(&self, cx: &mut Diagnostics) {
         if !cx.is_empty() {
             return;

@@ -7,7 +7,7 @@ use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
 use crate::syntax::{self, Action, Key};
 
-/// Regularisation speed of friction, unless given.
+/// Default regularisation speed of friction, m/s or rad/s.
 const FRICTION_SPEED: f64 = 0.01;
 
 impl<'g> Builder<'_, 'g> {

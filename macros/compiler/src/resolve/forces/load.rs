@@ -1,4 +1,4 @@
-//! Forces and torques from outside: with a value, or as inputs.
+//! Applied forces and torques: with a value, or as inputs.
 
 use crate::diag::Diagnostics;
 use crate::expr::{Function, Vec3};
@@ -10,7 +10,7 @@ use crate::resolve::target::Target;
 use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds a force or a torque: with a value, or as an input.
+    /// Adds a force or a torque, with a value or as an input.
     pub(super) fn add_acting(&mut self, action: &Action, cx: &mut Diagnostics) {
         let torque = action.kind.row().torque;
         let direction = action.get(if torque { Key::About } else { Key::Along });
@@ -84,8 +84,8 @@ impl<'g> Builder<'_, 'g> {
         self.add_load(rate, force, &value.place, cx);
     }
 
-    /// Adds a force along the line of two points, by a value or as an input. It pushes them apart where it is
-    /// positive.
+    /// Adds a force along the line between two points, with a value or as an input. A positive force
+    /// separates the points.
     fn add_force_between(
         &mut self,
         action: &Action,
@@ -152,14 +152,14 @@ impl<'g> Builder<'_, 'g> {
         self.set_input(&action.name.text, input);
     }
 
-    /// Puts an input at its place in the order of declaration.
+    /// Stores an input at its index in the order of declaration.
     fn set_input(&mut self, name: &str, input: Input<'g>) {
         if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
             *slot = input;
         }
     }
 
-    /// An input whose force works on a rate.
+    /// Adds an input as a force on a rate.
     pub fn add_input_load(&mut self, name: &str, rate: crate::expr::Expr<'g>) {
         let input = self.model.inputs.iter().position(|(known, _)| known == name);
         if let Some(k) = input {
@@ -168,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// An input at the point of a body that is somewhere at the moment.
+    /// Adds an input at a point that moves on its body.
     fn add_moving_input(
         &mut self,
         action: &Action,
@@ -232,13 +232,13 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// True for a vector that changes with the configuration or in time.
+/// Whether a vector depends on the configuration or on time.
 fn is_moving(v: Vec3<'_>) -> bool {
     let moves = |s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time);
     symbols_in(&v.0).into_iter().any(moves)
 }
 
-/// Reports a torque on a particle or a point, which has nothing to turn.
+/// Whether a torque can act on an element; reports particles and points, which have no rotation.
 fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedKind::Point {
