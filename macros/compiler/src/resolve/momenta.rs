@@ -10,7 +10,7 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, words};
 
-/// A sum over bodies.
+/// A quantity that is summed over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// Sum of the momenta.
@@ -22,9 +22,9 @@ pub enum Sum {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The momentum, the angular momentum or the kinetic energy of bodies, by their motion relative to the
-    /// ground. With the velocity `v` of a centre of mass, the vector `r` there from a point, and the central
-    /// inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
+    /// Returns the momentum, the angular momentum or the kinetic energy of bodies, for their motion relative
+    /// to the ground. With the velocity `v` of the centre of mass, its position `r` relative to the point,
+    /// and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
     pub fn momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let (text, parts) = (call.name(), call.parts());
         let (count, point) = if sum == Sum::AngularMomentum { (2, " / point") } else { (1, "") };
@@ -69,7 +69,8 @@ impl<'g> Scope<'_, 'g> {
         Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector(momenta) })
     }
 
-    /// `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of bodies.
+    /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
+    /// bodies.
     pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Ok([of, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
@@ -94,9 +95,9 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(sum))
     }
 
-    /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical
-    /// inertia matrix `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the
-    /// parallel-axis theorem); of several bodies the sum.
+    /// Returns the moment `a·J a` (for one direction) or the product `a·J b` of inertia of bodies about a
+    /// point. `J = I + m (r·r 1 − r rᵀ)` is the physical inertia matrix, with the position `r` of the centre
+    /// of mass relative to the point (the parallel-axis theorem). Several bodies are summed.
     pub fn moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let text = call.name();
         let (parts, directions) = match call.arguments {
@@ -124,7 +125,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(sum))
     }
 
-    /// `a·J b` of a body about a point.
+    /// Returns `a·J b` of a body about a point.
     pub fn inertia_about(
         &self,
         (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
@@ -141,7 +142,7 @@ impl<'g> Scope<'_, 'g> {
         a.dot(central * b) + moved
     }
 
-    /// Bodies and particles, one by its name or several in parentheses.
+    /// Returns bodies and particles: one by its name, or several in parentheses.
     pub fn heavy_ones(
         &self,
         e: &syntax::Expr,
@@ -166,7 +167,7 @@ impl<'g> Scope<'_, 'g> {
         all.into_iter().collect()
     }
 
-    /// A body or particle with its mass, centre of mass and central inertia.
+    /// Returns a body or particle with its mass, centre of mass and central inertia.
     pub fn heavy(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<(Placed<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
@@ -175,7 +176,7 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         match (kinematics.places.get(name), kinematics.masses.get(name)) {
             (Some(placed), Some(masses)) => Some((placed.clone(), *masses)),
-            // Its figures could not be read, and that was told.
+            // Its inertial parameters could not be read; the error has been reported.
             (Some(_), None) if !cx.is_empty() && self.bodies.contains(name) => None,
             (Some(_), None) => {
                 cx.error(e.place.clone(), format!("`{name}` has no mass")).help("name a body or a particle");

@@ -1,4 +1,4 @@
-//! Names in expressions: parameters, directions, coordinates, time, inputs, definitions.
+//! Names in expressions: parameters, directions, coordinates, time, inputs and definitions.
 
 use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -9,7 +9,7 @@ use crate::mechanism::{Pose, Quantity};
 use crate::syntax::{self, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// What a known name stands for, with its article.
+    /// Returns the kind of a known name, with its article.
     pub fn what(&self, name: &str) -> Option<&'static str> {
         let is = |list: &[String]| list.iter().any(|known| known == name);
         match name {
@@ -29,20 +29,20 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// True where a name that is not known is met for the first time: later it is no news.
+    /// Whether an unknown name has not been reported yet; records it as reported.
     pub fn is_news(&self, name: &str, cx: &Diagnostics) -> bool {
         !cx.is_read() || self.unknown.borrow_mut().insert(name.to_string())
     }
 
-    /// The value of a name.
+    /// Returns the value of a name.
     pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        // Expressions of a file name its joints, also if the language has another meaning for the name.
+        // Expressions of a file refer to its joints even if the language has another meaning for the name.
         if e.place.file.is_some()
             && let Some(value) = self.coordinate(name, e, cx)
         {
             return value;
         }
-        // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
+        // A parameter with the name of an axis has been reported; its meaning is ambiguous.
         let axis = axis_of_name(name);
         if axis.is_some() && self.parameters.iter().any(|p| p.text == name) {
             return None;
@@ -104,7 +104,7 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// The value of a member.
+    /// Returns the value of a member.
     pub fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let ExprKind::Name(joint) = &inner.kind
             && let Some(value) = self.coordinate_member(joint, member, cx)
@@ -156,7 +156,7 @@ impl<'g> Scope<'_, 'g> {
         self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
     }
 
-    /// A vector given in the axes `x`, `y`, `z` of the place where the expression stands.
+    /// Returns a vector given in the axes `x`, `y`, `z` of the context.
     pub fn own_axes(&self, v: Vec3<'g>) -> Value<'g> {
         Value::Vector(vec![match &self.context.borrow().axes {
             None => (Axes::Own, v),
@@ -164,7 +164,7 @@ impl<'g> Scope<'_, 'g> {
         }])
     }
 
-    /// A vector given in the axes of a body or a frame.
+    /// Returns a vector given in the axes of a body or a frame.
     pub fn named_axes(&self, name: &str, v: Vec3<'g>, at: &Place, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if self.context.borrow().axes.is_none() {
             return Some(Value::Vector(vec![(Axes::Of(name.to_string()), v)]));
@@ -181,8 +181,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// The value of a name that moves: a coordinate, time, an input, a definition. `None` if it is none of
-    /// these.
+    /// Returns the value of a coordinate, time, an input or a definition. The outer `None` means that the
+    /// name is none of these, the inner one an error.
     pub fn moving_name(
         &self,
         name: &str,
@@ -207,7 +207,7 @@ impl<'g> Scope<'_, 'g> {
         Some(self.definition(definition, e, cx))
     }
 
-    /// Returns the value of a coordinate; nothing if no coordinate has the name.
+    /// Returns the value of a coordinate. The outer `None` means that no coordinate has the name.
     fn coordinate(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<Value<'g>>> {
         let found = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
         let c = found?;
@@ -256,7 +256,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("write some of them out");
             return None;
         }
-        // Directions without a name are the ground's, wherever the definition is used.
+        // Unqualified directions in a definition are those of the ground, wherever the definition is used.
         let mut context = self.context.borrow().clone();
         context.defining.push(name.clone());
         context.locals.clear();
@@ -277,7 +277,7 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// `joint.coordinate`; `None` if there is no such coordinate and no joint of that name.
+    /// Returns the value of `joint.coordinate`. The outer `None` means that the coordinate does not exist.
     pub fn coordinate_member(
         &self,
         joint: &str,
@@ -291,7 +291,7 @@ impl<'g> Scope<'_, 'g> {
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
     }
 
-    /// Reports what may not stand here.
+    /// Reports a quantity that the context does not allow. Returns false then.
     pub fn check_allowed(&self, needed: Allowed, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
         if self.allowed() >= needed {
             return true;

@@ -1,4 +1,4 @@
-//! Outputs: expressions that become functions, in the axes that they say.
+//! Outputs: expressions that become functions, resolved in their declared axes.
 
 use super::builder::Builder;
 use super::contact;
@@ -62,7 +62,7 @@ impl<'g> Builder<'_, 'g> {
         Some(pose.rotation.to_child(v).0.to_vec())
     }
 
-    /// The axes of the components of an output.
+    /// Returns the link and the pose of the axes in which the components of an output are resolved.
     pub fn output_axes(
         &self,
         output: &Definition,

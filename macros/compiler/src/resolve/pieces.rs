@@ -1,9 +1,8 @@
-//! Laws in pieces that meet: `if x < border { below } else { above }`.
+//! Continuous piecewise laws: `if x < border { below } else { above }`.
 //!
-//! With `f` the one and `g` the other piece, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`: each piece is
-//! evaluated on its own side alone, so that it need not be defined beyond, and slopes are those of the
-//! pieces. Pieces that do not meet at the border are a mistake: methods of integration, derivatives and
-//! energies take forces to be continuous.
+//! With the pieces `f` and `g`, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`. Each piece is evaluated
+//! only on its own side and need not be defined beyond; slopes are those of the pieces. A discontinuity at
+//! the border is an error: integration methods, derivatives and energies assume continuous forces.
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -16,12 +15,12 @@ use crate::language::Callable;
 use crate::mechanism::Quantity;
 use crate::syntax::{self, ExprKind};
 
-/// How far pieces may be apart where they meet, beside their size.
+/// Maximum difference of the pieces at the border, relative to their magnitude.
 const ROUNDING: f64 = 1e-9;
-/// Sizes of the numbers with which it is tried whether pieces meet.
+/// Magnitudes of the samples with which continuity is tested.
 const SIZES: [f64; 12] = [1.0, 1.0, 1.0, 1.0, 1e-2, 1e2, 1e-1, 1e1, 1e-4, 1e4, 1e-3, 1e3];
 
-/// A law in two pieces, by a symbol for what decides.
+/// A law in two pieces, as expressions of a symbol that replaces the compared expression.
 struct Pieces<'g> {
     symbol: Symbol,
     decides: Expr<'g>,
@@ -37,13 +36,14 @@ impl<'g> Pieces<'g> {
     fn value(&self) -> Expr<'g> {
         let [below, above] = [Extreme::Min, Extreme::Max].map(|side| self.decides.extreme(side, self.border));
         let (first, second) = (self.with(0, self.border), self.with(1, self.border));
-        // Both are what the pieces have in common.
+        // Both equal the common value of the pieces.
         let common = if second.value().is_some() { second } else { first };
         self.with(0, below) + self.with(1, above) - common
     }
 
-    /// The values of both pieces at the border for some numbers with which borders beside it are in order, if
-    /// they differ for any; `Err` if there are no such numbers.
+    /// Returns the values of both pieces at the border, if they differ for any sample. Samples are used only
+    /// if the nested `beside` borders are in order with this border. Returns `Err` if there are no such
+    /// samples.
     fn gap(&self, beside: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
         let at_border = [0, 1].map(|piece| self.with(piece, self.border));
         let mut tried = false;
@@ -67,13 +67,14 @@ impl<'g> Pieces<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The symbol for an expression that decides between pieces which are being read.
+    /// Returns the symbol of an expression that is compared in one of the surrounding piecewise laws.
     pub fn deciding(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
         let context = self.context.borrow();
         context.deciding.iter().rev().find(|(written, _)| written.is_like(e)).map(|(_, symbol)| *symbol)
     }
 
-    /// A law in pieces: what decides, the border, the piece below and that above.
+    /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
+    /// the piece above.
     pub fn pieces(&self, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let [left, right, below, above] = arguments else { return None };
         let compared = (self.scalar(left, cx), self.scalar(right, cx));
@@ -81,7 +82,7 @@ impl<'g> Scope<'_, 'g> {
         let moves = |e: Expr<'g>| {
             symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::of(s), Quantity::Parameter(_)))
         };
-        // The border is what does not move.
+        // The border is the constant operand.
         let turned = !moves(x) && (moves(border) || x.value().is_some());
         let (written, decides, border, pieces) = match turned {
             true => (right, border, x, [above, below]),
@@ -97,7 +98,7 @@ impl<'g> Scope<'_, 'g> {
         self.context.borrow_mut().deciding.push((written.clone(), self.graph.symbol(symbol)));
         let read = pieces.map(|piece| self.scalar(piece, cx));
         self.context.borrow_mut().deciding.pop();
-        // Definitions name what decides in their own words.
+        // Definitions contain the compared expression in resolved form.
         let by_symbol = |e: Expr<'g>| replace_part(e, decides, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
@@ -110,7 +111,8 @@ impl<'g> Scope<'_, 'g> {
         self.check_continuous(&law, &beside, left, right, cx).then(|| law.value())
     }
 
-    /// The borders of pieces within the pieces, by the same expression: false for those below.
+    /// Returns the borders of nested piecewise laws with the same compared expression. The flag is false for
+    /// those in the piece below.
     fn borders(
         &self,
         written: &syntax::Expr,

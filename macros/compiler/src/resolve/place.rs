@@ -1,5 +1,6 @@
-//! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is
-//! already placed. What moves by coordinates or time other than a joint's becomes a link of its own.
+//! Placement of joints, bodies, particles, points and frames. The order is such that every element is placed
+//! relative to elements placed before. A placement that depends on time or on coordinates of its own becomes
+//! a link.
 
 use super::builder::Builder;
 use super::carriers::carries;
@@ -12,10 +13,10 @@ use crate::language::{Callable, Method};
 use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
-/// Something to be placed: an index into its list.
+/// An element to be placed: an index into its list.
 #[derive(Clone, Copy)]
 enum Item {
-    /// By `Order`: joint, child.
+    /// Index into the joints of the [`Order`].
     Joint(usize),
     Frame(usize),
     Point(usize),
@@ -24,7 +25,7 @@ enum Item {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Names the frames of everything that is placed.
+    /// Adds the named frames of all placed elements.
     pub fn add_frames(&mut self) {
         let d = self.description;
         let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
@@ -42,8 +43,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are
-    /// circular.
+    /// Places all elements. Elements wait until those on which they depend are placed; if no progress is
+    /// possible, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
         for (j, child) in &order.joints {
@@ -79,7 +80,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// The names and expressions that an item stands on.
+    /// Returns the names on which the placement of an element depends.
     fn needs(&self, item: Item, order: &Order) -> Vec<String> {
         let d = self.description;
         let mut names = Vec::new();
@@ -87,7 +88,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         match item {
             Item::Joint(k) => {
                 let j = order.joints[k].0;
-                // What is solved for needs the other side of its loop as well.
+                // A joint that is solved for needs the other side of its loop as well.
                 let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
@@ -128,8 +129,8 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     fn report_waiting(&self, rest: &[Item], order: &Order, cx: &mut Diagnostics) {
-        // After another mistake things wait for what failed; that has been said. Joints are read all the
-        // same, so that their own mistakes are reported at once.
+        // After another error, elements may wait for one that failed, which has been reported. Joints are
+        // still resolved, to report their own errors at once.
         if !cx.is_empty() {
             for item in rest {
                 if let Item::Joint(k) = item {
@@ -138,7 +139,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             return;
         }
-        // From one to what it waits for, until it comes round again.
+        // From an element to one for which it waits, until the path is a cycle.
         let next = |at: usize| {
             let needs = self.needs(rest[at], order);
             (0..rest.len()).find(|k| needs.contains(&self.provides(rest[*k], order)))
@@ -163,7 +164,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             .help("its definition is circular: start from the ground or from a body that is held by a joint");
     }
 
-    /// The name of the place that an item provides.
+    /// Returns the name of the element that an item places.
     fn provides(&self, item: Item, order: &Order) -> String {
         match item {
             Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
@@ -171,7 +172,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Places what waits in vain, so that what depends on it is read as well.
+    /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
     fn place_somehow(&mut self, rest: &[Item], order: &Order) {
         for item in rest {
             let name = self.provides(*item, order);
@@ -233,11 +234,11 @@ impl<'a, 'g> Builder<'a, 'g> {
         Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedKind::Body }
     }
 
-    /// Axes of a frame, at the origin of what it starts from.
+    /// Returns the axes of a frame, at the origin of its start frame.
     fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
-        // Axes that follow from a vector or a curve come before those that are turned from them.
+        // Axes defined by a vector or a curve precede further rotations.
         let natural = match frame.rotations.first().map(|first| &first.kind) {
             Some(ExprKind::Call(word, arguments)) => match word.id {
                 Some(Callable::Rotation(rotation)) if rotation.row().natural => {
@@ -262,7 +263,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some((start.link, pose))
     }
 
-    /// A body or a frame by name.
+    /// Returns the placement of a body or a frame by its name.
     fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body or a frame")
@@ -307,7 +308,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         };
         let (link, pose) = match (axes, origin) {
             (Some(axes), Some((link, mut pose))) => {
-                // The axes in those of the link that the origin is given in.
+                // The axes are relative to the link in which the origin is given.
                 pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
                 (link, pose)
             }
@@ -318,7 +319,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.register(&body.name.text, link, pose, PlacedKind::Body);
     }
 
-    /// Orientation of one link in another.
+    /// Returns the orientation of link `link` in link `of`.
     fn rotation_between(&self, of: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let to_ground = |mut at: Option<LinkId>| {
@@ -335,7 +336,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         to_ground(of).inverse().then(&to_ground(link))
     }
 
-    /// A place by name, `place.at(vector)`, or a vector from the ground's origin; `free` as in `offset`.
+    /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
+    /// `offset` for `free`.
     fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
@@ -358,7 +360,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// A place at a vector from another one, with its axes. If they do not matter (`free`) it may get others.
+    /// Returns the placement at a vector from another one, with the same axes. If `free` is set, the axes are
+    /// irrelevant and may differ.
     fn offset(
         &self,
         frame: Placed<'g>,
@@ -370,7 +373,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
+        // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
         if let [(axes, v)] = terms.as_slice()
             && free
             && frame.pose.translation.is_zero()
@@ -383,7 +386,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some((frame.link, Pose { rotation: frame.pose.rotation, translation }))
     }
 
-    /// True if a link's origin stays at the origin of one of its ancestors.
+    /// Whether the origin of a link always coincides with that of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
         let kinematics = self.scope.kinematics.borrow();
         let mut at = link;
@@ -398,7 +401,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// Every name in an expression, with the bases of members and methods.
+/// Collects all names in an expression, including the bases of members and methods.
 fn collect_names(e: &Expr, names: &mut Vec<String>) {
     names.extend(e.parts().into_iter().filter_map(Expr::name).map(str::to_string));
 }

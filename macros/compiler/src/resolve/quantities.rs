@@ -1,5 +1,5 @@
-//! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and
-//! the kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
+//! Kinematic quantities of placed elements: vectors in axes of bodies and frames, points, and slash notation
+//! such as `r(y / x)`, `v(y / x / A)` and `omega(B / A)`.
 
 use super::call::Call;
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
@@ -11,18 +11,18 @@ use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// A vector as a sum over the axes of links. Only where the links are known.
+    /// Returns a vector as a sum over the axes of links. All links must be resolved.
     pub fn terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
         self.vector(e, cx).map(in_links)
     }
 
-    /// Several vectors in common axes.
+    /// Resolves several vectors and expresses them in common axes.
     pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
         let all: Vec<_> = e.iter().map(|e| Some((*e, self.vector(e, cx)?))).collect();
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
-    /// Several vectors that were read, in common axes.
+    /// Expresses several resolved vectors in common axes.
     pub fn in_common_axes(
         &self,
         read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,
@@ -39,7 +39,7 @@ impl<'g> Scope<'_, 'g> {
         Some((Axes::Link(link), all.iter().map(|t| kinematics.resolve(t, link, zero)).collect()))
     }
 
-    /// `rate(coordinate)`, or the rate of what depends on coordinates, velocities and time.
+    /// Resolves `rate(coordinate)`, or the rate of an expression of coordinates, velocities and time.
     pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
             let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
@@ -85,7 +85,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(c.v.expr(self.graph) * self.graph.num(c.ratio)))
     }
 
-    /// `angle(a, b)` in 0…π, or `angle(a, b, n)` directed about `n` in −π…π.
+    /// Resolves `angle(a, b)` in 0…π, or `angle(a, b, n)`, signed about `n`, in −π…π.
     pub fn angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let all: Vec<&syntax::Expr> = call.arguments.iter().collect();
         if !(2..=3).contains(&all.len()) {
@@ -100,7 +100,8 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(sine.atan2(v[0].dot(v[1]))))
     }
 
-    /// Something with a place: a body, a point, a particle, `body.at(vector)`, the ground.
+    /// Returns the placement of an element with a position: a body, a point, a particle, `body.at(vector)` or
+    /// the ground.
     pub fn place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Name(name) if name == GROUND => {
@@ -153,8 +154,9 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Something with a place, or the point of a body that is somewhere at the moment: `body.at(vector)` with
-    /// a vector of any axes and coordinates. Its velocity and acceleration are those of the body there.
+    /// Returns the placement of an element with a position, or of a point that may move on its body:
+    /// `body.at(vector)` with a vector of any axes and coordinates. Velocity and acceleration of such a point
+    /// are those of the body at that position.
     pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
@@ -172,7 +174,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Something with axes: a body or a frame.
+    /// Returns the link of an element with axes: a body or a frame.
     pub fn frame(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a frame").help("name a body or a frame");
@@ -204,7 +206,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the names between the slashes of a kinematic quantity, or reports an error.
+    /// Returns the operands between the slashes of a kinematic quantity, or reports an error.
     fn slashes<'e, const N: usize>(
         &self,
         call: &Call<'e>,
@@ -224,15 +226,15 @@ impl<'g> Scope<'_, 'g> {
         self.check_allowed(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
     }
 
-    /// `r(y / x)`
+    /// Resolves `r(y / x)`, the position of `y` relative to `x`.
     pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x] = self.slashes(call, Allowed::Placement, cx)?;
         let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
         Some(vector(self.kinematics.borrow().between(&y?, &x?)))
     }
 
-    /// `v(y / x / A)`: the velocity of `y` relative to `x`, seen from a frame A that rotates with `ω`:
-    /// `v − ω × r`.
+    /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`: `v −
+    /// ω × r`.
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x, frame] = self.slashes(call, Allowed::Motion, cx)?;
         let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
@@ -240,8 +242,8 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(self.kinematics.borrow().velocity_in(&y?, &x?, frame?, self.graph)))
     }
 
-    /// `a(y / x / A)`: the acceleration of `y` relative to `x`, seen from a frame A that rotates with `ω` and
-    /// `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
+    /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
+    /// and `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
     pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x, frame] = self.slashes(call, Allowed::Acceleration, cx)?;
         let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
@@ -249,14 +251,14 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(self.kinematics.borrow().acceleration_in(&y?, &x?, frame?, self.graph)))
     }
 
-    /// `omega(B / A)`
+    /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 2] = self.slashes(call, Allowed::Motion, cx)?;
         let [b, a] = frames.map(|e| self.frame(e, cx));
         Some(vector(self.kinematics.borrow().turning_in(b?, a?, self.graph)))
     }
 
-    /// `alpha(B / A / C)`
+    /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 3] = self.slashes(call, Allowed::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.frame(e, cx));
@@ -265,7 +267,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl<'g> Kinematics<'g> {
-    /// `v(y / x / frame)`.
+    /// Returns `v(y / x / frame)`.
     pub fn velocity_in(
         &self,
         y: &Placed<'g>,
@@ -282,7 +284,7 @@ impl<'g> Kinematics<'g> {
         v
     }
 
-    /// `a(y / x / frame)`.
+    /// Returns `a(y / x / frame)`.
     pub fn acceleration_in(
         &self,
         y: &Placed<'g>,
@@ -303,13 +305,14 @@ impl<'g> Kinematics<'g> {
         a
     }
 
-    /// `omega(of / frame)`.
+    /// Returns `omega(of / frame)`.
     pub fn turning_in(&self, of: Option<LinkId>, frame: Option<LinkId>, graph: &'g Graph) -> Terms<'g> {
         let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
         vec![(of, w(of)), (frame, -w(frame))]
     }
 
-    /// `alpha(b / a / c)`, with `α` of each frame taken in the ground: `α_b − α_a − ω_c × (ω_b − ω_a)`.
+    /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is `α_b − α_a − ω_c × (ω_b
+    /// − ω_a)`.
     pub fn turning_rate(
         &self,
         b: Option<LinkId>,
@@ -333,12 +336,12 @@ pub(super) fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
 }
 
-/// A vector as a sum over the axes of links.
+/// Converts a vector to a sum over the axes of links.
 pub(super) fn in_links<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
     terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
 }
 
-/// The link of axes; what is not resolved to one belongs to the ground.
+/// Returns the link of axes; unresolved axes belong to the ground.
 fn link_of(axes: &Axes) -> Option<LinkId> {
     match axes {
         Axes::Link(link) => *link,

@@ -1,4 +1,4 @@
-//! A physical matrix by its entries in the axes of a link.
+//! Physical matrices, resolved in the axes of a link.
 
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::mechanism::LinkId;
@@ -6,19 +6,19 @@ use crate::mechanism::LinkId;
 /// A matrix with the link in whose axes its entries are.
 #[derive(Clone, Copy, Debug)]
 pub struct Resolved<'g> {
-    /// The link; the ground if none.
+    /// Link in whose axes the entries are; `None` for the ground.
     pub link: Option<LinkId>,
-    /// The entries.
+    /// Entries of the matrix.
     pub entries: Mat3<'g>,
 }
 
 impl<'g> Resolved<'g> {
-    /// It with a function applied to all entries.
+    /// Returns the matrix with a function applied to all entries.
     pub fn map(self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Resolved<'g> {
         Resolved { entries: Mat3::from_fn(|i, j| f(self.entries.0[i][j])), ..self }
     }
 
-    /// `R M Rᵀ` of the components of vectors in other axes.
+    /// Returns `R M Rᵀ`, the matrix in the axes of `link`; `turn` transforms the components of vectors.
     pub fn turned(self, link: Option<LinkId>, turn: impl Fn(Vec3<'g>) -> Vec3<'g>) -> Resolved<'g> {
         let columns = [0, 1, 2].map(|k| turn(self.entries.column(k)));
         let half = Mat3::from_fn(|i, j| columns[j][i]);

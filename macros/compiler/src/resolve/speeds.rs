@@ -1,5 +1,4 @@
-//! Generalized speeds of the user's choice: invertible linear combinations of the velocities that joints
-//! have.
+//! Generalized speeds declared by the user: invertible linear combinations of the joint velocities.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
@@ -12,7 +11,7 @@ use crate::mechanism::{InV, Pose, Quantity, Speeds};
 use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
 
-/// A speed as it is declared, with its coefficients of all velocities.
+/// A declared speed, with its coefficients of all velocities.
 struct Declared<'a, 'g> {
     name: &'a Name,
     value: &'a syntax::Expr,
@@ -20,7 +19,7 @@ struct Declared<'a, 'g> {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Reads the speeds, and puts them in the place of the velocities that they name.
+    /// Resolves the speeds, and replaces the velocities that they contain.
     pub fn add_speeds(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         if d.speeds.is_empty() || self.releasing.is_some() || !cx.is_empty() {
@@ -40,7 +39,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// The coefficients of a speed; `None` if it is no combination of rates.
+    /// Returns the coefficients of a speed; `None` if it is not a linear combination of rates.
     fn coefficients(&self, name: &Name, value: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let g = self.scope.graph;
         let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
@@ -128,7 +127,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
 
-    /// Whether so many speeds can replace the velocities that they name.
+    /// Whether the number of speeds is that of the velocities that they replace, and they are independent;
+    /// reports an error otherwise.
     fn check_speeds(
         &self,
         declared: &[Declared<'_, 'g>],
@@ -183,7 +183,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// States with their numbers among the parameters.
+/// Returns the states with their indices among the parameters.
 fn d_states<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
     builder.description.states.iter().map(|(name, parameter)| (name.text.as_str(), *parameter))
 }

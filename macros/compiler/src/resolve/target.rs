@@ -1,4 +1,4 @@
-//! What force elements and limits act on: coordinates, places, lengths given by expressions.
+//! Targets of force elements and limits: coordinates, points, and lengths given by expressions.
 
 use super::builder::Builder;
 use super::scope::Placed;
@@ -8,18 +8,18 @@ use crate::language::Method;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
-/// What an element acts on.
+/// Target of a force element.
 pub enum Target<'g> {
-    /// A coordinate; true if it is an angle, nothing if it may be either.
+    /// Coordinate. The flag is true for an angle, `None` if it may be an angle or a length.
     Coordinate(Coordinate, Option<bool>),
-    /// A point of a body, a particle, a named point.
+    /// Point of a body, a particle, or a named point.
     Point(Placed<'g>),
-    /// A length or an angle by an expression.
+    /// Length or angle given by an expression.
     Expression(Stretch<'g>),
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The coordinate that a limit is on, and whether it is an angle, if that is known.
+    /// Returns the coordinate of a limit, and whether it is an angle, if that is known.
     pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
         let joint = on.name().and_then(|name| self.joint_coordinates(name));
         if joint.is_some_and(|coordinates| coordinates.is_empty()) {
@@ -37,7 +37,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
+    /// Resolves `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
     pub fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
             ExprKind::Name(name) => self.named_target(on, name, cx),
@@ -66,7 +66,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A coordinate of its own, a joint with one coordinate, a definition, or a place.
+    /// Resolves a declared coordinate, a joint with one coordinate, a definition, or a placed element.
     fn named_target(&self, on: &Expr, name: &str, cx: &mut Diagnostics) -> Option<Target<'g>> {
         if self.description.coordinates.iter().any(|c| c.name.text == name) {
             let kinematics = self.scope.kinematics.borrow();
@@ -100,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.place(on, cx).map(Target::Point)
     }
 
-    /// `joint.coordinate`.
+    /// Resolves `joint.coordinate`.
     fn coordinate_of_joint(
         &self,
         on: &Expr,
@@ -138,7 +138,7 @@ impl<'g> Builder<'_, 'g> {
         None
     }
 
-    /// A coordinate of its own, by name.
+    /// Returns a declared coordinate by its name.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
         let kinematics = self.scope.kinematics.borrow();
@@ -146,7 +146,7 @@ impl<'g> Builder<'_, 'g> {
         known.map(|(_, c, _)| *c)
     }
 
-    /// Says why nothing can act on a name.
+    /// Reports a name that cannot be a target, with the reason.
     fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
             cx.error(place.clone(), "nothing that acts on the ground has an effect")

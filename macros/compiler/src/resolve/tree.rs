@@ -1,4 +1,5 @@
-//! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
+//! Topology: the joint of each body in the spanning tree, the joints that close loops, and the order in which
+//! links are built.
 
 use super::builder::{BodyIndex, JointedBody};
 use super::scope::Scope;
@@ -7,17 +8,17 @@ pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
-/// The joints in an order in which every parent is placed before its children, with the bodies that they
-/// hold, and the joints that close loops.
+/// Tree joints in an order in which every parent is placed before its children, with the bodies that they
+/// place, and the joints that close loops.
 pub struct Order {
-    /// Joint, child.
+    /// Indices of the joint and of its child.
     pub joints: Vec<(usize, BodyIndex)>,
-    /// Joints whose child has its place already.
+    /// Joints whose child has already been placed.
     pub closing: Vec<usize>,
 }
 
-/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and
-/// those that would let it hang from itself. All others hold their child: they are the spanning tree.
+/// Returns for each joint whether it closes a loop: its child is placed by an earlier joint or has a position
+/// of its own, or is an ancestor of the parent. All other joints form the spanning tree.
 pub fn closing(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
@@ -45,7 +46,7 @@ pub fn closing(description: &Description) -> Vec<bool> {
     closing
 }
 
-/// True if one thing hangs from another.
+/// Whether one element is a descendant of another (or the same).
 fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
     let mut at = Some(carried);
     (0..=parents.len()).any(|_| {
@@ -55,7 +56,7 @@ fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool
     })
 }
 
-/// The name that `body.at(vector)` starts with.
+/// Returns the name at the beginning of `body.at(vector)`.
 pub fn base_name(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),
@@ -64,7 +65,7 @@ pub fn base_name(e: &Expr) -> Option<&str> {
     }
 }
 
-/// Finds the tree of the joints.
+/// Finds the spanning tree of the joints.
 pub fn find_tree(
     description: &Description,
     jointed: &[JointedBody<'_>],
@@ -98,7 +99,7 @@ pub fn find_tree(
         let name = &joint.child.body;
         if joint.parent.body.text == name.text {
             sound = false;
-            // A body called ground was reported.
+            // A body called `ground` has already been reported.
             if jointed.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
@@ -131,8 +132,8 @@ pub fn find_tree(
     sound.then_some(Order { joints: order, closing: loops })
 }
 
-/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from
-/// itself.
+/// Reports a body that is not the child of a tree joint: the joint may have the wrong direction, or the body
+/// may be its own ancestor.
 fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
     let joints = || loops.iter().map(|j| &description.joints[*j]);
@@ -152,8 +153,8 @@ fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &m
     }
 }
 
-/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration
-/// order; what is not reached is left out.
+/// Sorts joints with their parents (`None` for the ground) and children, depth first from the ground,
+/// siblings in declaration order. Unreachable joints are omitted.
 fn sort(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,
