@@ -1,11 +1,11 @@
-//! Force elements: what they act on, and by which law.
+//! Force elements with their targets and laws.
 
 use super::arguments::Arguments;
 use super::{Action, Expr, ExprKind, Name, Target};
 use crate::diag::Diagnostics;
 use crate::language::{ForceKind, Key};
 
-/// Reads a force element by its row.
+/// Reads a force element according to its row in the table.
 pub fn read_action(
     name: &Name,
     kind: ForceKind,
@@ -45,7 +45,7 @@ pub fn read_action(
     Some(Action { name: name.clone(), kind, on: on?, arguments: given })
 }
 
-/// Reports ends that are written as those of a joint or without their keys. True if there are any.
+/// Reports ends with the syntax of a joint, or without keys. Returns true if there are any.
 fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
     let (on, spans) = (kind.row().on, kind.row().between);
     let between = |a: &Expr, b: &Expr| match spans {
@@ -75,7 +75,7 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
     true
 }
 
-/// `on = …`, or `between = (…, …)` where the element can span two points.
+/// Reads `on = …`, or `between = (…, …)` if the element can act between two points.
 fn read_target(
     kind: ForceKind,
     arguments: &mut Arguments,
@@ -140,7 +140,7 @@ fn read_target(
     }
 }
 
-/// Reports a second law of one element; the first of the keys counts.
+/// Reports a second law of an element; the first key is kept.
 fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnostics) {
     let given: Vec<&str> =
         keys.iter().map(|key| key.name()).filter(|key| arguments.place_of(key).is_some()).collect();

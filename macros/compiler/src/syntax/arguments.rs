@@ -1,4 +1,4 @@
-//! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
+//! Arguments of an attribute: parsed without knowledge of the attribute, then taken one by one by its reader.
 
 use super::figures::FileFigures;
 use super::{Expr, ExprKind, Name, words};
@@ -15,8 +15,8 @@ mod slips;
 use parse::parse_arguments;
 use slips::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 
-/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
-/// (of an equilibrium any number), and `key = value` in any order.
+/// Arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
+/// (any number for an equilibrium), and `key = value` in any order.
 pub struct Arguments {
     relation: Option<(Expr, Expr)>,
     equations: Vec<(Expr, Expr)>,
@@ -24,20 +24,20 @@ pub struct Arguments {
     named: Vec<(Name, Value)>,
     seen: Vec<Name>,
     place: Place,
-    /// The element that they belong to.
+    /// Name of the element to which the arguments belong.
     owner: String,
-    /// What its word asks for.
+    /// Grammar of the attribute.
     form: Form,
 }
 
-/// What the arguments of an attribute may be.
+/// Grammar of an attribute's arguments.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Form {
-    /// Two bodies are joined by an arrow.
+    /// Joint: two bodies with an arrow between them.
     Joint,
-    /// Any number of places have values.
+    /// Equilibrium: any number of equations.
     Equilibrium,
-    /// Nothing of this.
+    /// All other attributes.
     Other,
 }
 
@@ -49,7 +49,7 @@ enum Value {
 }
 
 impl Arguments {
-    /// The arguments of `#[word(…)]`.
+    /// Parses the arguments of an attribute.
     pub fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         let is = |word: &str| attribute.path().is_ident(word);
@@ -82,7 +82,7 @@ impl Arguments {
         let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, form)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
-            // The end of the input has no place of its own.
+            // The end of the input has no span.
             Err(error) if error.to_string().starts_with("unexpected end") => {
                 cx.error(span, "unexpected end of the arguments")
                     .help("something is missing behind the last word");
@@ -112,43 +112,43 @@ impl Arguments {
         Some((name, value))
     }
 
-    /// Where a key that was not yet taken stands.
+    /// Returns the span of a key that has not been taken.
     pub fn place_of(&self, key: &str) -> Option<Place> {
         self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
-    /// Drops a key.
+    /// Removes a key.
     pub fn forget(&mut self, key: &str) {
         self.named.retain(|(name, _)| name.text != key);
     }
 
-    /// Drops all keys.
+    /// Removes all keys.
     pub fn forget_all(&mut self) {
         self.named.clear();
     }
 
-    /// Where a key that was taken stood.
+    /// Returns the span of a key that has been taken.
     pub fn seen(&self, key: &str) -> Option<Place> {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
-    /// The expressions without a key, which stay.
+    /// Returns the expressions without a key.
     pub fn plain(&self) -> &[Expr] {
         &self.plain
     }
 
-    /// True if nothing is left.
+    /// Whether no argument remains.
     pub fn is_empty(&self) -> bool {
         self.named.is_empty() && self.plain.is_empty() && self.equations.is_empty() && self.relation.is_none()
     }
 
-    /// The expressions without a key.
+    /// Removes and returns the expressions without a key.
     pub fn take_plain(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
     }
 
-    /// The one place that stands alone where a place has a key: most likely the second of a pair without
-    /// parentheses.
+    /// Removes and returns the only expression without a key if both it and `first` are positions. It is most
+    /// likely the second element of a pair without parentheses.
     pub fn take_second(&mut self, first: &Expr) -> Option<Expr> {
         let is_place =
             |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
@@ -158,15 +158,15 @@ impl Arguments {
         }
     }
 
-    /// Where a word stands alone, without a value.
+    /// Removes an option without a value, and returns its span.
     pub fn word_given(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let at = self.plain.iter().position(is_word)?;
         Some(self.plain.remove(at).place)
     }
 
-    /// Reports a value or parentheses behind a word that stands alone; the word counts as given. True if
-    /// there are any.
+    /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
+    /// true if there are any.
     pub fn check_word(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
         let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
@@ -182,7 +182,7 @@ impl Arguments {
         true
     }
 
-    /// The expression of a key, if given.
+    /// Returns the expression of a key, if the key is present.
     pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
         match self.take(key)? {
             (_, Value::Expr(e)) => Some(e),
@@ -199,7 +199,7 @@ impl Arguments {
         }
     }
 
-    /// The expression of a key that must be there; `example` is what may stand for it.
+    /// Returns the expression of a required key; `example` is a possible value.
     pub fn need_expr(
         &mut self,
         key: &str,
@@ -208,8 +208,8 @@ impl Arguments {
         known: &[&str],
         cx: &mut Diagnostics,
     ) -> Option<Expr> {
-        // A key that is not known is reported as such: most likely it is the missing one. So is a value
-        // without a key.
+        // An unknown key or a value without a key is reported instead, because it is most likely the missing
+        // one.
         if self.place_of(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
@@ -231,7 +231,7 @@ impl Arguments {
         self.take_expr(key, cx)
     }
 
-    /// The expressions of a key: one, or several in parentheses.
+    /// Returns the expressions of a key: one, or several in parentheses.
     pub fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
         match self.take_expr(key, cx) {
             Some(Expr { kind: ExprKind::Tuple(items), .. }) => items,
@@ -240,7 +240,7 @@ impl Arguments {
         }
     }
 
-    /// The word of a key, one of a few.
+    /// Returns the value of a key that is one of a few words.
     pub fn take_word(
         &mut self,
         key: &str,
@@ -275,7 +275,7 @@ impl Arguments {
         }
     }
 
-    /// The string of a key.
+    /// Returns the string of a key.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take(key)? {
             (_, Value::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
@@ -287,7 +287,7 @@ impl Arguments {
         }
     }
 
-    /// The strings of a key, in brackets.
+    /// Returns the strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
         let named = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take(key) {
@@ -306,7 +306,7 @@ impl Arguments {
         }
     }
 
-    /// The figures of a file that are parameters.
+    /// Returns the parameters that replace values of a file.
     pub fn take_figures(&mut self, key: &str) -> Vec<FileFigures> {
         match self.take(key) {
             Some((_, Value::Figures(figures))) => figures,
@@ -314,13 +314,13 @@ impl Arguments {
         }
     }
 
-    /// The relation `a -> b` of what is no joint.
+    /// Returns the relation `a -> b` of an element that is not a joint.
     pub fn take_arrow(&mut self) -> Option<(Expr, Expr)> {
         self.relation.take()
     }
 
-    /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands
-    /// alone.
+    /// Returns the only equation `a = b`. The left side may be a single name; `b` is `None` for an expression
+    /// without an equals sign.
     pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
@@ -336,7 +336,7 @@ impl Arguments {
         first.map(|e| (e, None))
     }
 
-    /// All places with their values, those of one word first.
+    /// Returns all equations; those with a single name on the left side are first.
     pub fn take_values(&mut self) -> Vec<(Expr, Expr)> {
         let mut values = Vec::new();
         let mut rest = Vec::new();
@@ -353,14 +353,14 @@ impl Arguments {
         values
     }
 
-    /// Says which element they belong to.
+    /// Sets the element to which the arguments belong.
     pub fn owned_by(mut self, name: &Name) -> Arguments {
         self.owner.clone_from(&name.text);
         self
     }
 
-    /// Reports what was not taken; `whose` is the element with its article. Arguments with one answer are one
-    /// mistake.
+    /// Reports the remaining arguments; `whose` is the element with its article. Arguments with the same help
+    /// are reported once.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         let (owner, example) = (&self.owner, words::example(whose));
         let mut answers: Vec<String> = Vec::new();
@@ -408,7 +408,7 @@ impl Arguments {
     }
 }
 
-/// What to do where an argument is not known that says something all the same.
+/// Returns the help for an unknown argument with a known meaning.
 fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
     match (whose, name) {
         ("a Body", "rotation" | "axes" | "rpy" | "orientation") => Some(

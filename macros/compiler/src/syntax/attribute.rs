@@ -1,5 +1,5 @@
-//! The struct and its attributes: which fields are parameters, which are elements, and what their attributes
-//! say.
+//! The struct and its attributes: classification of fields as parameters and elements, and parsing of their
+//! attributes.
 
 use super::expression::name;
 use super::field::{check_duplicates, is_known, read_field};
@@ -18,7 +18,8 @@ use proc_macro2::{Span, TokenStream};
 use syn::spanned::Spanned;
 use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 
-/// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
+/// Parses `#[mechanism(arguments)] item`. Returns `None` if the item is not a valid struct; all errors are in
+/// `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
     if !guard::check_arguments(&arguments, cx) || !guard::check_item(&item, cx) {
         return None;
@@ -49,7 +50,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         runtime,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
-    // A type that is not known is told once.
+    // An unknown type is reported once.
     let mut strangers: Vec<Ident> = Vec::new();
     for field in item.fields {
         reading.field(&field);
@@ -73,7 +74,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
-    // The fields that hold figures of a file have its type.
+    // Fields for parameters of a file have the generic scalar type.
     if let (Some(generic), true, true) =
         (&generic, requests.file_parameters, description.parameters.is_empty())
     {
@@ -84,7 +85,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     {
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
-        // It is most likely meant by a type that is not known.
+        // The type parameter is most likely meant by an unknown type.
         if strangers.is_empty() {
             cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
                 "remove the type parameter, or give it to a parameter: then all generated functions use it",
@@ -92,7 +93,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         }
     }
     give_type(&description, &mut shell);
-    // Linear systems have the derivatives by states, which are parameters.
+    // Linear systems include the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
     check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
     Some(Mechanism { description, shell, file, requests, reading })
@@ -129,7 +130,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
     None
 }
 
-/// What to do about an item that is none of Rust's.
+/// Returns the help for an item that is not valid Rust.
 fn how_fields_are_written(error: &syn::Error) -> &'static str {
     match error.to_string().contains("keyword") {
         true => "this is a word of Rust's: name the field otherwise, and write it as `name: Type`",
@@ -139,9 +140,9 @@ fn how_fields_are_written(error: &syn::Error) -> &'static str {
     }
 }
 
-/// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken
-/// away, so that Rust does not complain of them once more, and the names of the types among them are
-/// returned.
+/// Returns the struct's type parameter, if one can be the scalar type, and the names of the other type
+/// parameters. Parameters that cannot be the scalar type are removed, so that the Rust compiler does not
+/// report them again.
 fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
     let (mut found, mut refused) = (None, Vec::new());
     let parameters = std::mem::take(&mut item.generics.params);

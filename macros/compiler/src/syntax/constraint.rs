@@ -1,10 +1,10 @@
-//! Constraints: equations that stay fulfilled, surfaces that touch.
+//! Constraints: equations, and surfaces in contact.
 
 use super::arguments::Arguments;
 use super::{Constraint, ConstraintKind, Description, Name, SlipFriction};
 use crate::diag::Diagnostics;
 
-/// An equation or an expression that stays zero, or a pair of surfaces.
+/// Reads an equation, an expression that remains zero, or a pair of surfaces.
 pub fn read_constraint(
     name: Name,
     kind: ConstraintKind,

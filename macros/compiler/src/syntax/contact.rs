@@ -1,4 +1,4 @@
-//! Contacts: two surfaces that may part, strike, slide and stick.
+//! Unilateral contacts: two surfaces that may separate, collide, slide and stick.
 
 use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
@@ -17,7 +17,7 @@ const KEYS: [&str; 9] = [
     "speed",
 ];
 
-/// What a contact of a file's links is written as.
+/// Syntax of a contact of a file's links.
 pub const TOUCHES: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
 
@@ -98,7 +98,7 @@ pub fn take_restitution(arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
     }
 }
 
-/// How the surfaces yield, if they do.
+/// Returns stiffness and dissipation of compliant surfaces; `None` for rigid ones.
 fn read_softness(
     name: &Name,
     restitution: Option<&Expr>,
@@ -130,8 +130,8 @@ fn read_softness(
     Some(Softness { stiffness, hertz, dissipation, speed })
 }
 
-/// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is
-/// the third shape of one.
+/// Returns the link of `link.collision()`, or `Some(None)` for `collision()`, which denotes all links of the
+/// file. `link.collision(2)` is the third shape of a link.
 pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
         ExprKind::Method(link, word, arguments)
@@ -147,7 +147,7 @@ pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
 }
 
 impl Contact {
-    /// True if collision geometry of a file is to be read.
+    /// Whether the contact uses collision geometry of a file.
     pub fn names_collisions(&self) -> bool {
         [&self.first, &self.second].into_iter().any(|surface| collision(surface).is_some())
     }

@@ -1,6 +1,6 @@
-//! Units, inferred: the dimension of every parameter, coordinate, input and output follows from where it
-//! stands, by unification over exponents of length, mass and time; angles are plain numbers. Runs on what the
-//! user wrote, since values are simplified and know no places.
+//! Inference of units: the dimension of every parameter, coordinate, input and output follows from its use,
+//! by unification over exponents of length, mass and time. Angles are plain numbers. The inference visits the
+//! written expressions, because resolved values are simplified and have no source spans.
 
 mod infer;
 mod owner;
@@ -21,10 +21,10 @@ use places::{Places, Task};
 use std::collections::{BTreeMap, BTreeSet};
 use value::{Anchor, Value};
 
-/// The coordinates that expressions can name: true for an angle.
+/// Coordinates that expressions can name; the flag is true for an angle.
 pub type Coordinates = [(String, Coordinate, bool)];
 
-/// Infers the units of a checked description and reports what cannot have one.
+/// Infers the units of a checked description, and reports contradictions.
 pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: &mut Diagnostics) -> Units {
     let mut inference = Inference::new(d);
     let mut pinned = vec![None; d.parameters.len()];
@@ -40,14 +40,14 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     let mut places = places::collect(d, &definitions, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
-        // A diagram names a body, and has forces and torques.
+        // The expression of a diagram is a body, without a dimension.
         if output.rank == Rank::FreeBody {
             continue;
         }
         let (dimension, locals) = (Dimension::variable(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
-    // A state's rate is the state per second.
+    // The rate of a state is the state per second.
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
@@ -70,7 +70,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
         let each = unknown.iter().map(|v| shown(&mut inference, &Dimension::variable(*v), *v));
         units.tables.push(each.collect());
     }
-    // Figures of a file stand where they do: nothing else could follow from their use.
+    // Inertial parameters of a file have known units, which cannot be inferred from their use.
     let of_file = units.parameters.iter_mut().rev().zip(d.file_units.iter().rev());
     of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
@@ -86,8 +86,8 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     units
 }
 
-/// Gives coordinates, inputs and definitions their known dimensions. Returns the definitions, each after
-/// those that it mentions.
+/// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that
+/// it uses.
 fn name_everything<'a>(
     d: &'a Description,
     coordinates: &Coordinates,
@@ -119,7 +119,7 @@ fn name_everything<'a>(
     definitions
 }
 
-/// Sorts definitions so that each comes after those that it mentions.
+/// Sorts definitions such that each is after those that it uses.
 fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
@@ -154,7 +154,7 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     order.into_iter().filter_map(|k| definitions.get(k)).collect()
 }
 
-/// Infers from all places. Places that give the dimension of one name come first, so that the others are
+/// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
 fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
@@ -168,18 +168,19 @@ fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// Infers from one place.
+/// Infers from one use.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
-    // A definition that is a number is a plain one, unless its uses demand a unit.
+    // A definition that is a number is plain, unless its uses require a unit.
     if !matches!(value, Value::Quantity { .. }) {
         inference.wish(task.dimension);
     }
     inference.locals.clear();
 }
 
-/// True for a product with one named factor, but no definition by coordinates alone: they say what it is.
+/// Whether an expression is a product with a single name that determines its dimension. Products with
+/// coordinates or inputs are excluded.
 fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
     let mut at = e;
     let mut named = 0;
@@ -206,7 +207,8 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
     }
 }
 
-/// How a dimension is written: as where it stands alone, or as everywhere.
+/// Returns the notation of a dimension: the one used where the name is the whole expression, or the default
+/// one.
 fn shown(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
     let known = inference.system.resolve(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
@@ -217,7 +219,7 @@ fn shown(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> S
     }
 }
 
-/// Units of the entries of `q`, `v` and `u`.
+/// Returns the units of the entries of `q`, `v` and `u`.
 fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
@@ -269,7 +271,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
     units
 }
 
-/// Units of a coordinate and of its rate.
+/// Returns the units of a coordinate and of its rate.
 fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
     let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
     let unit = shown(inference, &dimension, v);
@@ -284,7 +286,7 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
     (unit, rate)
 }
 
-/// The unit of a generalized speed.
+/// Returns the unit of a generalized speed.
 fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::variable(v);
     match inference.system.resolve(&dimension) {
@@ -293,7 +295,7 @@ fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
     }
 }
 
-/// Units of a constraint and of its multiplier, whose product with the rate is a power.
+/// Returns the units of a constraint and of its multiplier. The product of multiplier and rate is a power.
 fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
     let configurations = c.residual.is_some();
     let (length, angle, work) = match configurations {
@@ -317,7 +319,7 @@ fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Infere
     [unit, si::unit(&multiplier)]
 }
 
-/// The unit of an input: that of a joint's motor is the motor's.
+/// Returns the unit of an input; for a motor of a joint, that of its force or torque.
 fn of_input(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
     match dimension.unknown.first() {
         Some((v, _)) => shown(inference, dimension, *v),

@@ -1,5 +1,4 @@
-//! The places of a description where expressions stand, each with the dimension that it gives to what stands
-//! there.
+//! Expressions of a description, each with the expected dimension of its argument or field.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::Value;
@@ -15,43 +14,43 @@ use crate::syntax::{
     Member, Target,
 };
 
-/// An expression with the dimension of its place.
+/// An expression with its expected dimension.
 pub struct Task<'a> {
-    /// The expression.
+    /// Expression to visit.
     pub e: &'a Expr,
-    /// Its dimension.
+    /// Expected dimension.
     pub dimension: Dimension,
-    /// How the unit is written at this place; empty if as everywhere.
+    /// Notation of the unit in this context; empty for the default.
     pub unit: &'static str,
-    /// Names that the place has of its own.
+    /// Local names of the expression.
     pub locals: Vec<(&'static str, Dimension)>,
 }
 
-/// All places, as they are collected.
+/// All expressions of a description.
 pub struct Places<'a> {
-    /// The definitions, each after those that it mentions.
+    /// Definitions, each after those that it uses.
     pub definitions: Vec<Task<'a>>,
-    /// The other expressions.
+    /// All other expressions with expected dimensions.
     pub tasks: Vec<Task<'a>>,
-    /// Ends of force elements, which may be placed by vectors.
+    /// Ends of force elements, which may be given by vectors.
     pub points: Vec<&'a Expr>,
-    /// By declared constraint: what its sides are. Nothing of rolling pairs.
+    /// Dimension of both sides of each declared constraint, by index; unused for pairs of surfaces.
     pub sides: Vec<Dimension>,
 }
 
-/// What a force element works on.
+/// Coordinate on which a force element does work.
 struct Work {
     /// Dimension of the coordinate or the distance.
     coordinate: Dimension,
-    /// Units of force, stiffness, damping and inertance there.
+    /// Notation of the units of force, stiffness, damping and inertance.
     units: [&'static str; 4],
 }
 
 const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
 const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
-/// Collects the places of a description, with its `definitions` in order. What comes from a file is all
-/// numbers.
+/// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
+/// because all their values are numbers.
 pub fn collect<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],
@@ -59,7 +58,7 @@ pub fn collect<'a>(
 ) -> Places<'a> {
     let mut places =
         Places { definitions: Vec::new(), tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
-    // Definitions have unknowns of their own, which come with their names.
+    // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
             places.add(&definition.value, &Dimension::variable(*v), "");
@@ -146,7 +145,7 @@ impl<'a> Places<'a> {
         body.at.iter().for_each(|e| self.position(e));
     }
 
-    /// `rod(m, l, y).rotated(…) + [[…], …]`
+    /// Adds an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
     fn inertia(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Array(rows) => {
@@ -171,7 +170,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// `z(angle)`, `eigenaxis(n, angle)`, a matrix.
+    /// Adds rotations: `z(angle)`, `eigenaxis(n, angle)`, or a matrix.
     fn rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
@@ -190,11 +189,11 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A position: a place by name, `place.at(vector)`, or a vector from the ground's origin.
+    /// Adds a position: the name of an element, `place.at(vector)`, or a vector from the ground's origin.
     fn position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
-            // The name of a place has no dimension of its own.
+            // The name of an element has no dimension.
             _ => self.add(e, &LENGTH, "m"),
         }
     }
@@ -241,7 +240,7 @@ impl<'a> Places<'a> {
             _ => ALONG,
         };
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
-        // A force at a point works on a length, a torque on an angle.
+        // A force at a point does work on a length, a torque on an angle.
         let force = match on_point && action.kind.row().torque {
             true => Some(ENERGY),
             false => ENERGY.over(&work.coordinate),
@@ -268,7 +267,7 @@ impl<'a> Places<'a> {
         self.all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
-    /// The value of a coordinate, an input or a state at rest.
+    /// Adds the value at rest of a coordinate, an input or a state.
     fn value(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
         if let Some(known) = coordinate(place, inference) {
             self.add(value, &known, if known.is_plain() { "rad" } else { "" });
@@ -295,11 +294,11 @@ impl<'a> Places<'a> {
                 ForceQuantity::Speed => (q.over(&TIME), ""),
                 ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
                 ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
-                // It belongs to an input, which gets its unit below.
+                // The direction belongs to an input, whose unit is set below.
                 ForceQuantity::Direction => continue,
             };
             let Some(dimension) = dimension else { continue };
-            // Coefficients are no expressions of the stretch or the speed.
+            // Coefficients are not expressions of the stretch or the speed.
             let locals = match (row.locals, key) {
                 (Locals::Stretch, Key::Force | Key::Energy) => {
                     vec![("stretch", q.clone()), ("length", q.clone())]
@@ -318,7 +317,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Both sides are alike, whatever they are; surfaces have arguments of their own.
+    /// Adds both sides of a constraint, which have the same dimension. Surfaces have arguments of their own.
     fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         let side = Dimension::variable(inference.system.variable());
         self.sides.push(side.clone());
@@ -335,7 +334,7 @@ impl<'a> Places<'a> {
         pair.iter().for_each(|surface| self.surface(surface));
     }
 
-    /// A surface of a body, or a point.
+    /// Adds a surface of a body, or a point.
     fn surface(&mut self, surface: &'a Expr) {
         if let Some(link) = collision(surface) {
             self.points.extend(link);
@@ -369,7 +368,8 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Gives an input its unit: times its direction it is a force or a torque. A bare direction has no unit.
+/// Sets the unit of an input: its product with the direction is a force or a torque. A direction without a
+/// length has no unit.
 fn input<'a>(
     action: &'a Action,
     direction: Option<&'a Expr>,
@@ -390,7 +390,7 @@ fn input<'a>(
     }
 }
 
-/// The dimension of the coordinate that an element acts on; none if it acts on a body or a point.
+/// Returns the dimension of the coordinate on which an element acts; `None` if it acts on a body or a point.
 fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
     let meaning = match &e.kind {
         ExprKind::Name(name) => inference.names.get(name),

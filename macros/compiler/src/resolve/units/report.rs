@@ -1,4 +1,4 @@
-//! What does not fit together: one error for each mistake, with the other places in notes.
+//! Errors for contradictory units: one per cause, with the other uses in notes.
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::owner::{place_of, solid_of};
@@ -8,11 +8,11 @@ use crate::language::Builtin;
 use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
-/// Most places of other uses that one mistake shows.
+/// Maximum number of other uses shown for an error.
 const MOST_PLACES: usize = 2;
 
-/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the
-/// same mistake. So are arguments of one solid.
+/// Reports the contradictions. Each parameter is reported once, because further contradictions most likely
+/// have the same cause. The same applies to the arguments of one solid.
 pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
@@ -49,10 +49,10 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
     }
 }
 
-/// Advice on giving a number that multiplies a parameter a unit.
+/// Help on a number with a unit that multiplies a parameter.
 const NUMBER_WITH_UNIT: &str = "a number beside a parameter is a plain factor; one with a unit is a parameter, or has a name: `#[define(9.81)] g: Scalar`";
 
-/// True if a number multiplies or divides something in an expression.
+/// Whether an expression contains a product or quotient with a number.
 fn has_number_as_factor(e: &Expr) -> bool {
     e.parts().into_iter().any(|part| match &part.kind {
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => is_number(a) || is_number(b),
@@ -60,7 +60,7 @@ fn has_number_as_factor(e: &Expr) -> bool {
     })
 }
 
-/// True for an expression that names nothing but pi.
+/// Whether an expression contains no name except pi.
 fn is_number(e: &Expr) -> bool {
     e.parts().into_iter().all(|part| match &part.kind {
         ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
@@ -69,8 +69,7 @@ fn is_number(e: &Expr) -> bool {
     })
 }
 
-/// What is wrong where nothing says which of the things is not what it should be: the definitions among them,
-/// too.
+/// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
 fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> =
@@ -83,7 +82,7 @@ fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
     format!("a factor is missing{or_there}, or two things have one name: name another parameter")
 }
 
-/// The names in what an equation is about, those first that it compares.
+/// Collects the names in the expressions of an equation; the compared expressions are first.
 fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     origin.like.iter().for_each(|e| names_in(e, inference, found));
     if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.at.kind, origin.reason) {
@@ -97,7 +96,7 @@ fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<
     names_in(origin.at, inference, found);
 }
 
-/// The parameters and definitions in an expression, each once, where it first stands.
+/// Collects the parameters and definitions in an expression, each at its first occurrence.
 fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     let mut inner = |e: &'a Expr| names_in(e, inference, found);
     match &e.kind {
@@ -124,7 +123,7 @@ fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variabl
     }
 }
 
-/// One parameter that would have to be two things at once.
+/// Returns the error for a parameter that would need two dimensions.
 fn one_parameter(
     d: &Description,
     mismatch: &Mismatch<'_>,
@@ -136,7 +135,7 @@ fn one_parameter(
     let is = inference.system.resolve(&Dimension::variable(v))?;
     let (found, expected) =
         (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
-    // To be what is expected, the parameter would have to be another thing by this power of the quotient.
+    // The expected dimension requires that of the parameter to change by this power of the quotient.
     let power = mismatch.found.exponent(v).plus(mismatch.expected.exponent(v).negated())?;
     let needed = is.times_power(&expected.over(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
@@ -156,7 +155,8 @@ fn one_parameter(
     Some(error)
 }
 
-/// Returns the error for quantities of different units, at the operator between them, with the origin of each unit.
+/// Returns the error for quantities of different units, at the operator between them, with the origin of each
+/// unit.
 fn several(
     d: &Description,
     mismatch: &Mismatch<'_>,
@@ -183,7 +183,7 @@ fn several(
     Some(diagnostic)
 }
 
-/// Shows where a parameter or a definition has become what it is.
+/// Adds a note on the use that determined the dimension of a parameter or a definition.
 fn show(
     d: &Description,
     here: &Expr,
@@ -202,7 +202,7 @@ fn show(
     };
 }
 
-/// The word of a name.
+/// Returns the text of a name.
 fn text(e: &Expr) -> &str {
     if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }

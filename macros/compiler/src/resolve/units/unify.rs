@@ -1,42 +1,43 @@
-//! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of
-//! length, mass and time.
+//! Dimensions with unknowns, and linear equations between them: unification over exponent vectors of length,
+//! mass and time.
 
 use crate::language::dimension::{Dimension, Variable};
 use crate::language::ratio::Ratio;
 
-/// What became of an equation.
+/// Outcome of adding an equation.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It holds; these unknowns have become known by it.
+    /// The equation is consistent; it determined these unknowns.
     Holds(Vec<Variable>),
-    /// It contradicts those before.
+    /// The equation contradicts earlier ones.
     Contradicts,
-    /// It was too much work, or its numbers too large: nothing was decided.
+    /// The limit of work or of exponents was exceeded; the result is undecided.
     GaveUp,
 }
 
-/// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of
-/// it.
+/// Maximum number of terms visited in total. A mechanism with thousands of parameters needs about a hundredth
+/// of it.
 const MOST_WORK: usize = 1_000_000;
 
-/// The equations so far, solved: every solved unknown in terms of unsolved ones (reduced row echelon form).
+/// Solved equations: every solved unknown in terms of unsolved ones (reduced row echelon form).
 #[derive(Debug, Default)]
 pub struct System {
     solution: Vec<Option<Dimension>>,
-    /// By unsolved unknown, the solved ones that it stands in. May name one that it has dropped out of.
+    /// For each unsolved unknown, the solved ones whose solutions contain it. May include solutions that no
+    /// longer contain it.
     uses: Vec<Vec<Variable>>,
     work: usize,
 }
 
 impl System {
-    /// A new unknown.
+    /// Adds an unknown.
     pub fn variable(&mut self) -> Variable {
         self.solution.push(None);
         self.uses.push(Vec::new());
         self.solution.len() - 1
     }
 
-    /// A dimension in terms of unsolved unknowns.
+    /// Returns a dimension in terms of unsolved unknowns; `None` if the limit of work is exceeded.
     pub fn resolve(&mut self, dimension: &Dimension) -> Option<Dimension> {
         let mut sum = Dimension { unknown: Vec::new(), ..dimension.clone() };
         for (v, e) in &dimension.unknown {
@@ -52,7 +53,7 @@ impl System {
         Some(sum)
     }
 
-    /// Demands that two dimensions are the same.
+    /// Equates two dimensions.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
         let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
         let Some(quotient) = quotient else { return Outcome::GaveUp };
@@ -65,7 +66,7 @@ impl System {
         }
     }
 
-    /// Solves `quotient = 1` for an unknown in it and puts the solution in wherever it stands.
+    /// Solves `quotient = 1` for one of its unknowns, and substitutes the solution.
     fn solve(&mut self, pivot: Variable, exponent: Ratio, quotient: &Dimension) -> Option<Vec<Variable>> {
         let rest = quotient.times_power(&Dimension::variable(pivot), exponent.negated())?;
         let value = rest.power(exponent.negated().inverse()?)?;

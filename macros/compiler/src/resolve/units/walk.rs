@@ -1,4 +1,4 @@
-//! The walk over an expression: what its parts are, and what must be alike.
+//! Traversal of an expression: values of its subexpressions, and equations between their dimensions.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::{Anchor, Value, product};
@@ -9,7 +9,7 @@ use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
-    /// The dimension of an expression.
+    /// Returns the value of an expression.
     pub fn value(&mut self, e: &'a Expr) -> Value {
         match &e.kind {
             ExprKind::Number(n) => Value::Number(*n),
@@ -42,7 +42,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A coordinate of a joint, or the axis of a frame.
+    /// Returns the value of a coordinate of a joint, or of an axis of a frame.
     fn member(&self, inner: &Expr, member: &Name) -> Value {
         let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
@@ -51,7 +51,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Demands that two values are alike; returns what they are.
+    /// Equates the dimensions of two values; returns the common value.
     fn alike(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
         let (Value::Quantity { dimension, anchor }, Value::Quantity { dimension: other, anchor: second }) =
             (&a, &b)
@@ -64,7 +64,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The common dimension of several expressions.
+    /// Returns the common value of several expressions.
     fn all_alike(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
         let mut first: Option<&Expr> = None;
         let mut common = Value::Number(0.0);
@@ -80,8 +80,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A sum of any number of terms. If a term has a parameter or an input, terms of open dimension take the
-    /// expected one, so that the error points at the other term.
+    /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
+    /// unknown dimension get the expected one, so that an error is reported at the other term.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut at = e;
@@ -112,8 +112,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A product or quotient of any number of factors, those in parentheses among them: `a / (2 * b)` is
-    /// `a / 2 / b`.
+    /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
+    /// are flattened: `a / (2 * b)` is `a / 2 / b`.
     fn product(&mut self, e: &'a Expr) -> Value {
         let mut factors = Vec::new();
         let mut rest = vec![(false, e)];
@@ -139,7 +139,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The product of factors; those marked divide.
+    /// Returns the product of factors; marked ones are divisors.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
         let (value, free) = product(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
@@ -157,7 +157,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The value of a call: of a table first, then of what the language has.
+    /// Returns the value of a call: of a table, otherwise of a function of the language.
     fn call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.lookup(&unknown, arguments);
@@ -176,7 +176,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The value of a function of the language.
+    /// Returns the value of a function of the language.
     fn function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
         let [first, others @ ..] = arguments else {
             return match rule {
@@ -223,7 +223,7 @@ impl<'a> Inference<'a> {
                 _ => Value::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
-                // Of a vector, as seen from a frame, whose name has no dimension.
+                // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, of, frame, _) if self.is_frame(frame) => match self.value(of)
                 {
                     Value::Direction => Value::quantity(RATE),
@@ -249,7 +249,7 @@ impl<'a> Inference<'a> {
                 let directions: Vec<Value> = others.iter().map(|a| self.value(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
                     true => Value::quantity(INERTIA),
-                    // Vectors that have a unit count with it.
+                    // Vectors with a unit would contribute it.
                     false => Value::Unknown,
                 }
             }
@@ -270,12 +270,12 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Infers from expressions whose values do not matter.
+    /// Infers from expressions whose values are not used.
     fn visit(&mut self, e: &'a [Expr]) {
         e.iter().for_each(|e| drop(self.value(e)));
     }
 
-    /// True for the name of a body or a frame, which is no quantity.
+    /// Whether an expression is the name of a body or a frame, which has no dimension.
     fn is_frame(&self, e: &Expr) -> bool {
         let is_value = |name: &str| {
             self.names.contains_key(name)
@@ -285,7 +285,7 @@ impl<'a> Inference<'a> {
         e.name().is_some_and(|name| !is_value(name))
     }
 
-    /// The value of a table, whose variables have the units of their axes wherever it is called.
+    /// Returns the value of a table. Its variables have the same units in all calls.
     fn lookup(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
         let Some((value, variables)) = unknown.split_last() else { return Value::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
@@ -294,7 +294,8 @@ impl<'a> Inference<'a> {
         Value::Quantity { dimension: Dimension::variable(*value), anchor: Anchor::Parameter }
     }
 
-    /// An elementary function: magnitudes and roots of any quantity, all others of plain numbers.
+    /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
+    /// numbers.
     fn elementary(&mut self, f: Function, a: &'a Expr) -> Value {
         match f {
             Function::Abs => return self.value(a),
@@ -318,8 +319,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the
-    /// end.
+    /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
+    /// base is plain.
     fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
         let base = self.value(a);
         let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
@@ -336,7 +337,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Infers from the places between slashes, `y / x`, which may be placed by vectors.
+    /// Infers from the operands between slashes, `y / x`, which may be given by vectors.
     fn points(&mut self, e: &'a Expr) {
         let mut at = e;
         while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
@@ -346,7 +347,7 @@ impl<'a> Inference<'a> {
         self.point(at);
     }
 
-    /// A place: `body.at(vector)`.
+    /// Infers from a point: `body.at(vector)`.
     pub fn point(&mut self, e: &'a Expr) {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
             self.point(base);
@@ -357,7 +358,7 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// A quantity divided by one of this dimension; anything else as it is.
+/// Returns a quantity divided by another dimension; other values are unchanged.
 fn quotient(value: Value, by: &Dimension) -> Value {
     match value {
         Value::Quantity { dimension, anchor } => match dimension.over(by) {

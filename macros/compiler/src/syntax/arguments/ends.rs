@@ -1,10 +1,10 @@
-//! The two ends of a joint: `parent -> child`, and what is written instead of it.
+//! The two ends of a joint: `parent -> child`, and common errors in their place.
 
 use super::{Arguments, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 
-/// Names for the two ends of a thing in other tools.
+/// Names of the two ends of an element in other tools.
 const ENDS: [(&str, &str); 14] = [
     ("parent", "child"),
     ("from", "to"),
@@ -23,7 +23,7 @@ const ENDS: [(&str, &str); 14] = [
 ];
 
 impl Arguments {
-    /// The relation `parent -> child`.
+    /// Returns the relation `parent -> child`, or reports an error.
     pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
         if self.relation.is_none() {
             let (place, ends) = self.seeming_ends(known);
@@ -38,8 +38,8 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away
-    /// if it has keys.
+    /// Returns the likely ends of a joint without an arrow, and the span of the error. Ends with keys are
+    /// removed.
     fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
         let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
         if let Some((place, a, b)) = self.take_ends() {
@@ -70,7 +70,7 @@ impl Arguments {
         (name.place, ends)
     }
 
-    /// Two ends with names of their own, such as `from = a, to = b`.
+    /// Removes and returns two ends with keys of their own, such as `from = a, to = b`.
     pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
         let given = |key: &str| {
             self.named.iter().any(|(name, value)| name.text == key && matches!(value, Value::Expr(_)))

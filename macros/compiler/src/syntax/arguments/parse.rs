@@ -1,4 +1,4 @@
-//! The grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
+//! Grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
 
 use super::slips::{no_arrow, no_comma, text_alone};
 use super::{Arguments, Form, Value};
@@ -9,7 +9,7 @@ use proc_macro2::Span;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, bracketed, token};
 
-/// Parses the arguments of an attribute at a place.
+/// Parses the arguments of an attribute; errors at the end of the input have the given span.
 pub fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::Result<Arguments> {
     let mut arguments = Arguments {
         relation: None,
@@ -97,7 +97,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     Ok(())
 }
 
-/// Names in quotes, with commas between them.
+/// Parses quoted names, separated by commas.
 fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     let mut texts = Vec::new();
     while !input.is_empty() {

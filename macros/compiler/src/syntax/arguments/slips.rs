@@ -1,4 +1,4 @@
-//! Slips in the grammar of arguments, and what is most likely meant.
+//! Common errors in the grammar of arguments, with their corrections.
 
 use super::{Arguments, Value};
 use crate::diag::{Diagnostics, one_of, syn_error};
@@ -9,7 +9,7 @@ use syn::ext::IdentExt;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
 
-/// Reports an expression that stands where `name = value` should.
+/// Reports an expression in the place of `name = value`.
 pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     if let Some(word) = e.name().filter(|word| known.contains(word)) {
         cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
@@ -30,7 +30,7 @@ pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     };
 }
 
-/// The error where an argument should end: most likely a comma is missing.
+/// Error for input after an argument; most likely a comma is missing.
 pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
     if input.peek(Token![;]) {
         return syn_error(input.span(), "expected `,`", "arguments are separated by `,`");
@@ -49,7 +49,7 @@ pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
     }
 }
 
-/// The error at a text that stands alone.
+/// Error for a string without a key.
 pub fn text_alone(text: &LitStr) -> syn::Error {
     let value = text.value();
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
@@ -60,8 +60,7 @@ pub fn text_alone(text: &LitStr) -> syn::Error {
     syn_error(text.span(), "expected an expression, found a text", "write it without quotes")
 }
 
-/// The error at what stands in the place of the arrow of a joint, or of the sign behind the name of an
-/// argument.
+/// Error for a missing `->` of a joint, or a missing `=` after an argument name, at the token found instead.
 pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> Option<syn::Error> {
     let is_place =
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
@@ -95,14 +94,14 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
     None
 }
 
-/// True for `->>`.
+/// Whether the next tokens are `->>`.
 fn is_double(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
 
-/// The error at a number with a decimal comma: the value of an argument ends in a whole number, and another
-/// one follows.
+/// Error for a number with a decimal comma: the value of an argument ends in an integer, and another one
+/// follows.
 pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
@@ -124,7 +123,7 @@ pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
     None
 }
 
-/// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.
+/// Returns the elements of a list of strings, quoted, for a string or names without brackets or quotes.
 pub fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
     match value {
         Value::Text(text) => Some(quoted(&text.value())),
