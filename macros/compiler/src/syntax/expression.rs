@@ -1,5 +1,5 @@
-//! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser
-//! whose depth is bounded.
+//! Parser of expressions: Rust's grammar of numbers, names, calls, fields and the four operations, with
+//! bounded depth.
 
 use super::{BinaryOp, Callee, Expr, ExprKind, Member, Name, guard};
 use crate::diag::{Place, syn_error};
@@ -17,10 +17,10 @@ const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { 
 /// A parsed expression with its size.
 struct Parsed(Expr, Size);
 
-/// Bounds of an expression's size, which every walk over it relies on.
+/// Size of an expression, whose bounds limit the recursion of every traversal.
 #[derive(Clone, Copy, Default)]
 struct Size {
-    /// Nesting of operands, arguments and pieces; left operands of operators are not nested in them.
+    /// Nesting of operands, arguments and pieces; left operands of operators are not nested.
     depth: usize,
     /// Longest path of operators, members and calls.
     length: usize,
@@ -33,12 +33,12 @@ impl Size {
         Self { depth: self.depth.max(other.depth), length: self.length.max(other.length) }
     }
 
-    /// Returns the size of an expression that these operands are nested in.
+    /// Returns the size of an expression in which these operands are nested.
     fn around(self) -> Self {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
-    /// Returns the size of a longer chain of the same depth.
+    /// Returns the size of a chain that is longer by one, at the same depth.
     fn longer(self) -> Self {
         Self { length: self.length + 1, ..self }
     }
@@ -49,12 +49,12 @@ pub fn parse_expr(input: ParseStream<'_>) -> syn::Result<Expr> {
     parse_sum(input).map(|p| p.0)
 }
 
-/// Parses a name as written, keywords included.
+/// Parses a name, including keywords.
 pub fn parse_name(input: ParseStream<'_>) -> syn::Result<Name> {
     Ident::parse_any(input).map(|ident| name(&ident))
 }
 
-/// The name of an identifier.
+/// Converts an identifier to a name.
 pub fn name(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
@@ -104,7 +104,8 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
 }
 
-/// The operand behind an operator: at the end of the input there is no token to show but the operator.
+/// Parses the operand after an operator. An error at the end of the input is reported at the operator,
+/// because no other token is left.
 fn behind(
     operator: Span,
     input: ParseStream<'_>,
@@ -207,7 +208,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     Err(no_expression(input))
 }
 
-/// One branch `if left < right { piece }` of a law in pieces.
+/// One branch `if left < right { piece }` of a piecewise law.
 struct Branch {
     keyword: Span,
     left: Parsed,
@@ -216,9 +217,9 @@ struct Branch {
     piece: Parsed,
 }
 
-/// Parses `if a < b { below } else { above }` into a call of `IF` with the operands of the comparison, the
-/// piece below and the piece above the border; `a > b` swaps the pieces. Further branches `else if` are
-/// nested in the last argument.
+/// Parses `if a < b { below } else { above }` into a call of `IF`. Its arguments are the operands of the
+/// comparison, the piece below and the piece above the border; `a > b` swaps the pieces. Further branches
+/// `else if` are nested in the last argument.
 fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
@@ -272,7 +273,7 @@ fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     Ok(Branch { keyword, left, right, is_less, piece })
 }
 
-/// An expression in braces, and where they close.
+/// Parses an expression in braces; returns it with the position of the closing brace.
 fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
     let content;
     let close = braced!(content in input).span.close();
@@ -283,7 +284,7 @@ fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
     if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected(&content)) }
 }
 
-/// An expression that a macro of the user's hands on: it stays together without parentheses.
+/// Parses an expression passed on by a macro of the user: it is one operand without parentheses.
 fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let TokenTree::Group(group) = input.parse()? else { return Err(no_expression(input)) };
     let whole = |inner: ParseStream<'_>| {
@@ -293,7 +294,7 @@ fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
     whole.parse2(group.stream())
 }
 
-/// The error where an expression should begin.
+/// Error for a missing expression.
 fn no_expression(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {
@@ -318,7 +319,7 @@ fn no_expression(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
-/// The error where an expression should end or go on.
+/// Error for an unexpected token after an expression.
 pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     let message = "expected `,` or an operator";
     let help = if input.peek(Token![->]) {
@@ -349,7 +350,7 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
-/// A text in quotes.
+/// Returns a text in quotes.
 pub fn quoted(text: &str) -> String {
     format!("\"{text}\"")
 }
@@ -359,7 +360,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let (digits, suffix) = match &literal {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
-        // Words like others: what is expected in their place says so.
+        // Words; the error at their use is more helpful.
         Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE),
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a text";
@@ -381,7 +382,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
 }
 
-/// Parses expressions in parentheses; returns their common size and the closing parenthesis with them.
+/// Parses expressions in parentheses; returns them with their common size and the closing parenthesis.
 fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
     let content;
     let close = parenthesized!(content in input).span.close();
@@ -389,8 +390,8 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span
     Ok((items, size, close))
 }
 
-/// Parses comma-separated expressions to the end; returns their common size, and whether a comma follows the
-/// last one.
+/// Parses comma-separated expressions to the end; returns their common size, and whether the last one is
+/// followed by a comma.
 fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> {
     let (mut items, mut size, mut trailing) = (Vec::new(), Size::default(), false);
     while !content.is_empty() {

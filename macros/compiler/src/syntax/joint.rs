@@ -1,4 +1,4 @@
-//! Joints: their ends, axes and figures.
+//! Joints: their ends, axes and pitch.
 
 use super::arguments::Arguments;
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
@@ -53,7 +53,7 @@ pub fn read_joint(
     })
 }
 
-/// One axis or several. Three numbers in parentheses are a vector, which is written otherwise.
+/// Reads one or several axes. Three numbers in parentheses are an error: a vector has brackets.
 fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Vec<Expr>> {
     let axes = arguments.take_list(key, cx);
     let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal).collect();
@@ -72,7 +72,7 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
     None
 }
 
-/// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
+/// Reads an end of a joint: `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
 fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
     match e.kind {
         ExprKind::Name(text) => {

@@ -1,6 +1,6 @@
-//! Lists of elements: `leg: [Body; 2]` stands for two fields, `leg_0` and `leg_1`. In the attributes of a
-//! list `i` counts its elements, and everywhere `leg[1]` and `leg[i + 1]` name one of them. What comes after
-//! sees plain fields only.
+//! Lists of elements: `leg: [Body; 2]` is expanded into two fields, `leg_0` and `leg_1`. In the attributes of
+//! a list, `i` is the index of the element. Everywhere, `leg[1]` and `leg[i + 1]` denote one element. Later
+//! stages see plain fields only.
 
 use super::element::{ATTRIBUTES, is_one_of};
 use crate::diag::Diagnostics;
@@ -9,23 +9,23 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
 
-/// What counts the elements of a list.
+/// Index of a list's element in its attributes.
 const INDEX: &str = "i";
-/// Most elements of all lists together.
+/// Maximum number of elements of all lists together.
 const MAX_LIST_ELEMENTS: usize = 4096;
-/// Most tokens that lists may be written out to.
+/// Maximum number of tokens after expansion.
 const MOST_TOKENS: usize = 1_000_000;
-/// Most tokens in brackets behind the name of a list.
+/// Maximum number of tokens in brackets after the name of a list.
 const LONGEST: usize = 64;
 
-/// The lists of a struct: name and number of elements.
+/// Lists of a struct, with their numbers of elements.
 pub struct Lists {
     lists: Vec<(String, usize)>,
     tokens: usize,
 }
 
 impl Lists {
-    /// Writes the lists among the fields out, and says which there were.
+    /// Expands the lists among the fields, and returns them.
     pub fn write_out(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
         let Fields::Named(named) = fields else { return lists };
@@ -49,7 +49,7 @@ impl Lists {
         lists
     }
 
-    /// The number of elements of a field that is a list; 0 of one that cannot be written out.
+    /// Returns the number of elements of a field that is a list; 0 for an invalid list.
     fn read(&mut self, field: &Field, cx: &mut Diagnostics) -> Option<usize> {
         let (Type::Array(array), Some(ident)) = (&field.ty, &field.ident) else { return None };
         if matches!(&*array.elem, Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("f32"))
@@ -81,7 +81,7 @@ impl Lists {
         Some(count)
     }
 
-    /// No other field can have the name of what counts.
+    /// Reports a field with the name of the index.
     fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
         let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
         if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
@@ -90,7 +90,7 @@ impl Lists {
         }
     }
 
-    /// One element of a list as a field of its own.
+    /// Returns one element of a list as a separate field.
     fn element(&mut self, list: &Field, k: usize, cx: &mut Diagnostics) -> Field {
         let mut field = list.clone();
         if let Type::Array(array) = &list.ty {
@@ -110,7 +110,7 @@ impl Lists {
         }
     }
 
-    /// Tokens with names in place of `leg[1]`, and numbers in place of what counts.
+    /// Replaces `leg[1]` by the element's name, and the index by its value.
     pub fn rewrite(
         &mut self,
         tokens: TokenStream,
@@ -159,7 +159,7 @@ impl Lists {
         written.into_iter().collect()
     }
 
-    /// What a word becomes, with what stands in brackets behind it, if that belongs to it.
+    /// Returns the replacement of a word, and whether the brackets after it were consumed.
     fn word(
         &self,
         word: &Ident,
@@ -180,7 +180,7 @@ impl Lists {
             return (word.clone().into(), false);
         };
         let Some(group) = brackets else {
-            // A list that could not be read, or the name of an argument.
+            // An invalid list, or the name of an argument.
             if *count > 0 && ends {
                 let error = cx.error(word.span(), format!("`{text}` is a list of {count}"));
                 match index {
@@ -194,7 +194,7 @@ impl Lists {
         (element_name(&text, k, word.span()).into(), true)
     }
 
-    /// The value of what stands in brackets behind the name of a list.
+    /// Returns the value of the index in brackets after the name of a list.
     fn number(
         &self,
         list: &str,
@@ -233,7 +233,7 @@ impl Lists {
     }
 }
 
-/// The name of an element: `leg_1` of `leg`.
+/// Returns the name of an element: `leg_1` of `leg`.
 fn element_name(list: &str, k: usize, span: Span) -> Ident {
     Ident::new(&format!("{list}_{k}"), span)
 }
@@ -242,12 +242,12 @@ fn is_punct(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
 }
 
-/// Where an expression of Rust begins.
+/// Returns the span of the first token of a Rust expression.
 fn span(e: &Expr) -> Span {
     e.to_token_stream().into_iter().next().map_or_else(Span::call_site, |token| token.span())
 }
 
-/// The whole number that an expression is; none beyond what a machine counts to, or divided without a rest.
+/// Returns the value of an integer expression; `None` for overflow and division by zero.
 fn value(e: &Expr, index: Option<usize>) -> Option<i64> {
     match e {
         Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse().ok(),

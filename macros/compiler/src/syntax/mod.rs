@@ -1,5 +1,6 @@
-//! Tokens → what the user wrote, with the place of every word. Knows Rust's grammar and the names of the
-//! language's elements; no mechanics. Imported files arrive in the same [`Description`].
+//! Parser from tokens to the unresolved description, with the source position of every word. Depends on
+//! Rust's grammar and the names of the language's elements, not on mechanics. Imported files produce the same
+//! [`Description`].
 
 pub mod action;
 pub mod arguments;
@@ -44,5 +45,5 @@ pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
 pub use twice::second_definition;
 
-/// What stands after a state's name in that of the function for its rate.
+/// Suffix of a state's name in the name of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

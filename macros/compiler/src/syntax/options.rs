@@ -1,5 +1,5 @@
-//! What the arguments of `#[mechanism(…)]` ask for: gravity, a file with what is read of it, formulation,
-//! more functions.
+//! Options of `#[mechanism(…)]`: gravity, an imported file with its options, formulation, and optional
+//! functions.
 
 use super::arguments::Arguments;
 use super::figures::{self, FileFigures};
@@ -10,10 +10,10 @@ use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, Scal
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 
-/// Most that `snap` may change a frame by, rad and m.
+/// Maximum of the tolerance `snap`, rad and m.
 const LARGEST_SNAP: f64 = 0.01;
 
-/// The options that have a value.
+/// Options with a value.
 const OPTIONS: [&str; 21] = [
     "gravity",
     "friction_speed",
@@ -38,7 +38,7 @@ const OPTIONS: [&str; 21] = [
     "equations",
 ];
 
-/// Reads the arguments; those that belong to a file, if one is named.
+/// Reads the arguments. Returns the options of the imported file, if there is one.
 pub fn read_options(
     arguments: TokenStream,
     description: &mut Description,
@@ -118,7 +118,7 @@ pub fn read_options(
     })
 }
 
-/// `contacts = file | ignore`: what touches what, of a format that says it.
+/// Reads `contacts = file | ignore`: whether contacts of the file are included, for a format that has them.
 fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
     let place = arguments.place_of("contacts");
     let asked =
@@ -131,7 +131,7 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
     asked && other.is_none()
 }
 
-/// `urdf = "…"` or `mjcf = "…"`.
+/// Reads `urdf = "…"`, `mjcf = "…"` or `sdf = "…"`.
 fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
     let mut found: Option<(FileFormat, Name)> = None;
     for format in FileFormat::ALL {
@@ -146,7 +146,7 @@ fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFor
     found
 }
 
-/// `inputs = joints | actuators | none`: joints are the motors of a format that declares none.
+/// Reads `inputs = joints | actuators | none`. The default for a format without motors is `joints`.
 fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> InputOption {
     let words: &[&str] = match format {
         Some(FileFormat::Mjcf) => &["actuators", "joints", "none"],
@@ -162,8 +162,8 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
     }
 }
 
-/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of
-/// them.
+/// Reads `inertia = check | trust | none`. Without inertia there are no dynamics; options that need them are
+/// reported.
 fn read_inertias(
     arguments: &mut Arguments,
     asked: &[(&str, Place)],
@@ -188,7 +188,7 @@ fn read_inertias(
     }
 }
 
-/// The tolerance of `snap`: a positive number, small beside an angle that is meant.
+/// Reads the tolerance of `snap`: a positive number, small compared with intended angles.
 fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     match e.kind {
         ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
@@ -200,7 +200,7 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     }
 }
 
-/// `parameters = inertial("trunk")`. Without inertia there are no mass properties.
+/// Reads `parameters = inertial("trunk")`. Without inertia there are no mass properties.
 fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnostics) -> Vec<FileFigures> {
     let mut found = figures::check(arguments.take_figures("parameters"), cx);
     found.retain(|figures| {
@@ -215,7 +215,7 @@ fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnost
     found
 }
 
-/// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.
+/// Reads `formulation = multipliers | speeds`; a list of independent velocities implies the latter.
 fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
     let place = arguments.place_of("independent");
     let independent = arguments.take_list("independent", cx);
@@ -232,12 +232,12 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     }
 }
 
-/// The words of [`Requests`] among the arguments.
+/// Takes the options of [`Requests`] from the arguments.
 fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
     REQUESTS.iter().filter_map(|word| Some((*word, arguments.word_given(word)?))).collect()
 }
 
-/// What the words among the arguments ask for.
+/// Returns the requested functions, and reports unknown or meaningless options.
 fn read_requests(
     asked: &[(&str, Place)],
     mistaken: &[&str],

@@ -1,5 +1,5 @@
-//! What of a mechanism can be read in spite of mistakes of grammar: everything that has to do with none of
-//! them. What is said of it is true however they are mended, so that all mistakes are told in one round.
+//! Parts of a mechanism that can be checked in spite of errors of grammar: everything that does not depend on
+//! them. Their errors are independent of the corrections, so that all errors are reported at once.
 
 use super::{Body, Description, Formulation, Name, RATE_OF_STATE};
 use crate::diag::nearest;
@@ -8,19 +8,19 @@ use quote::ToTokens;
 use std::collections::BTreeSet;
 use syn::Field;
 
-/// Arguments of `#[mechanism]` that say what the fields are held against.
+/// Options of `#[mechanism]` with which fields are checked.
 const FAR: [&str; 2] = ["urdf", "inertia"];
 
-/// The words of one field.
+/// Words in the attributes of one field.
 struct Words {
     name: Name,
     words: BTreeSet<String>,
-    /// It is a body that joints place: whatever else is said of it, its name stands for it.
+    /// Whether it is a body placed by joints; its name is then known in spite of errors in its attribute.
     body: bool,
     broken: bool,
 }
 
-/// The words of the attribute and of every field, and which of them could be read.
+/// Words of the attribute and of every field, and which of them could be read.
 #[derive(Default)]
 pub struct Reading {
     fields: Vec<Words>,
@@ -28,7 +28,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Takes note of a field.
+    /// Records a field.
     pub fn field(&mut self, field: &Field) {
         let mut words = BTreeSet::new();
         for attribute in &field.attrs {
@@ -40,34 +40,35 @@ impl Reading {
         self.fields.extend(name.map(|name| Words { name, words, body, broken: false }));
     }
 
-    /// Nothing of it can be read.
+    /// Marks the whole mechanism as unreadable.
     pub fn lose(&mut self) {
         self.lost = true;
     }
 
-    /// The last field could not be read as it stands.
+    /// Marks the last field as unreadable.
     pub fn blame_last(&mut self) {
         if let Some(field) = self.fields.last_mut() {
             field.broken = true;
         }
     }
 
-    /// A name stands for two things.
+    /// Marks fields with an ambiguous name as unreadable.
     pub fn blame(&mut self, name: &str) {
         for field in self.fields.iter_mut().filter(|field| field.name.text == name) {
             (field.broken, field.body) = (true, false);
         }
     }
 
-    /// The attribute's own arguments could not be read as they stand.
+    /// Marks the mechanism as unreadable if the arguments of the attribute, which could not be read, contain
+    /// an option with which fields are checked.
     pub fn blame_arguments(&mut self, arguments: TokenStream) {
         let mut words = BTreeSet::new();
         collect(arguments, &mut words);
         self.lost |= words.iter().any(|word| nearest(word, &FAR).is_some() || FAR.contains(&word.as_str()));
     }
 
-    /// The description without what has a mistake, or names something that has. `None` if nothing is left to
-    /// be read.
+    /// Returns the description without unreadable fields and without those that depend on them. `None` if
+    /// nothing remains.
     pub fn rest(&self, whole: &Description) -> Option<Description> {
         if self.lost {
             return None;
@@ -92,11 +93,11 @@ impl Reading {
         d.frames.retain(|f| kept(&f.name));
         d.points.retain(|p| kept(&p.name));
         d.definitions.retain(|d| kept(&d.name));
-        // Speeds replace velocities all together.
+        // Speeds replace velocities only all together.
         if d.speeds.iter().any(|name| !kept(name)) {
             d.speeds.clear();
         }
-        // Rates of states stand among the outputs.
+        // Rates of states are among the outputs.
         let is_lost_rate =
             |name: &str| name.strip_suffix(RATE_OF_STATE).is_some_and(|state| lost.contains(state));
         d.outputs.retain(|d| kept(&d.name) && !is_lost_rate(&d.name.text));
@@ -108,8 +109,8 @@ impl Reading {
         (!d.bodies.is_empty() || !d.particles.is_empty()).then_some(d)
     }
 
-    /// The names of fields that cannot be read, those that name them, and so on; and bodies that are known by
-    /// name alone.
+    /// Returns the names of unreadable fields and of all fields that depend on them; and bodies of which only
+    /// the name is known.
     fn lost_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
         let mut lost = BTreeSet::new();
         let mut bodies: Vec<&Name> = Vec::new();
@@ -133,12 +134,12 @@ impl Reading {
     }
 }
 
-/// A body of which nothing but its name is known.
+/// Returns a body without mass and inertia.
 fn massless(name: &Name) -> Body {
     Body { name: name.clone(), mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }
 
-/// All words among tokens.
+/// Collects all identifiers among tokens.
 fn collect(tokens: TokenStream, words: &mut BTreeSet<String>) {
     for token in tokens {
         match token {

@@ -1,4 +1,4 @@
-//! The tables: what is said → what is meant.
+//! Tables of synonyms with their meanings.
 
 use crate::language::Words;
 use crate::language::elements::words::RATIO;
@@ -15,7 +15,7 @@ const TOUCH: &str = "surfaces that may part are a `Contact`: `#[contact(ball.sph
 const TIME: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
 const CONSTRAINT: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
-/// Types of fields, without the word `joint`.
+/// Types of fields, without the suffix `joint`.
 pub const ELEMENTS: Words = &[
     ("mass", "a mass is a `Body` if it has a size or turns, `Particle` if it is a point"),
     (
@@ -77,7 +77,7 @@ pub const OPTIONS: Words = &[
     ("trustinertia", "did you mean `inertia = trust`?"),
 ];
 
-/// Words of `#[mechanism]` that stand alone.
+/// Options of `#[mechanism]` without a value.
 pub const REQUESTS: Words = &[
     (
         "derivative jacobian jacobians gradient gradients linearize linearise linearization linear sensitivity autodiff diff",
@@ -102,13 +102,13 @@ pub const REQUESTS: Words = &[
     ),
 ];
 
-/// Ways to keep constraints.
+/// Formulations of constrained motion.
 pub const FORMULATIONS: Words = &[
     ("lagrange lagrangian lagrangemultipliers dae multiplier", "multipliers"),
     ("kane independent minimal reduced speed ode", "speeds"),
 ];
 
-/// Functions of expressions.
+/// Functions in expressions.
 pub const FUNCTIONS: Words = &[
     ("arctan", "atan"),
     ("arcsin", "asin"),
@@ -171,7 +171,7 @@ pub const NAMES: Words = &[
     ),
 ];
 
-/// Greek letters, for names that spell them.
+/// Greek letters, with the names that replace them.
 pub const GREEK: &[(&str, &str)] = &[
     ("α", "alpha"),
     ("β", "beta"),
@@ -202,7 +202,7 @@ pub const SOLIDS: Words = &[
     ("matrix tensor full", "write the matrix itself, `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`"),
 ];
 
-/// What stands behind the dot of a body.
+/// Methods of a body.
 pub const METHODS: Words = &[
     ("pos position point offset translate translated from shift origin", "at"),
     ("rotate rot rotation turned turn tilted rpy", "rotated"),
@@ -220,7 +220,7 @@ pub const MEMBERS: Words = &[
     ),
 ];
 
-/// Words for the body at hand.
+/// Words for the current body.
 pub const OWN: Words = &[("body this own local frame me", "the axes at hand are `x`, `y` and `z` alone")];
 
 /// Methods of numbers and coordinates.
