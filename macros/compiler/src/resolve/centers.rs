@@ -22,8 +22,8 @@ struct Relative<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest, `ω ×
-    /// v / ω²`, with the velocity `v` of the origin.
+    /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest,
+    /// `ω × v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);

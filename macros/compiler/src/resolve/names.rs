@@ -182,7 +182,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of a coordinate, time, an input or a definition. The outer `None` means that the
-    /// name is none of these, the inner one an error.
+    /// name has another meaning, the inner one an error.
     pub fn moving_name(
         &self,
         name: &str,
@@ -256,7 +256,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("write some of them out");
             return None;
         }
-        // Unqualified directions in a definition are those of the ground, wherever the definition is used.
+        // Unqualified directions in a definition are those of the ground in all its uses.
         let mut context = self.context.borrow().clone();
         context.defining.push(name.clone());
         context.locals.clear();

@@ -233,8 +233,8 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(self.kinematics.borrow().between(&y?, &x?)))
     }
 
-    /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`: `v −
-    /// ω × r`.
+    /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
+    /// `v − ω × r`.
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x, frame] = self.slashes(call, Allowed::Motion, cx)?;
         let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
@@ -311,8 +311,8 @@ impl<'g> Kinematics<'g> {
         vec![(of, w(of)), (frame, -w(frame))]
     }
 
-    /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is `α_b − α_a − ω_c × (ω_b
-    /// − ω_a)`.
+    /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is
+    /// `α_b − α_a − ω_c × (ω_b − ω_a)`.
     pub fn turning_rate(
         &self,
         b: Option<LinkId>,

@@ -187,7 +187,7 @@ pub struct Kinematics<'g> {
     pub charts: Vec<Chart>,
     /// Twists of the links; set after all links are placed.
     pub twists: Vec<Spatial<'g>>,
-    /// By joint: its index, and the axes of its frame on the parent, in which its reactions are resolved.
+    /// Index of each joint, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
     /// Forces and moments between the surfaces of each contact.
     pub touches: BTreeMap<String, Exerted<'g>>,

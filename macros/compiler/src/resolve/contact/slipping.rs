@@ -1,6 +1,6 @@
 //! Surfaces that touch and slip, with Coulomb friction: `slips(surface, surface), friction = μ, speed = v₀`.
-//! The normal force `λ` keeps the surfaces in contact. The force in the tangent plane is `−μ |λ| s / √(|s|² +
-//! v₀²)` for the slip velocity `s`: Coulomb's law, regularised around zero slip.
+//! The normal force `λ` keeps the surfaces in contact. The force in the tangent plane is
+//! `−μ |λ| s / √(|s|² + v₀²)` for the slip velocity `s`: Coulomb's law, regularised around zero slip.
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;

@@ -18,8 +18,8 @@ impl<'g> Builder<'_, 'g> {
         self.push_friction(stretch.rate, all.map(|key| action.get(key)), action.on.place(), cx);
     }
 
-    /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous friction:
-    /// `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
+    /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
+    /// friction: `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
     pub fn push_friction(
         &mut self,
         v: Expr<'g>,

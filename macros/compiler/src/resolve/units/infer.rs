@@ -188,7 +188,7 @@ impl<'a> Inference<'a> {
             _ => self.value(e),
         };
         let Value::Quantity { dimension: found, anchor } = value else { return value };
-        // The expression is then a multiple of a number 1 with any unit.
+        // An expression of coordinates may have an implicit factor of one, with any unit.
         if anchor == Anchor::Motion && self.differ(&found, dimension) {
             return Value::Unknown;
         }
