@@ -3,7 +3,7 @@
 
 use super::builder::Builder;
 use super::quantities::{in_links, vector};
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
@@ -52,7 +52,7 @@ impl<'g> Scope<'_, 'g> {
                 let entries = self.kinematics.borrow().matrix_in(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
                 let rates = self.rates(function, &of.place, &all, cx)?;
-                return Some(Value::Matrix(Resolved {
+                return Some(Value::Matrix(ResolvedMatrix {
                     link,
                     entries: Mat3::from_fn(|i, j| rates[3 * i + j]),
                 }));

@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
 const MAX_VELOCITIES: usize = 128;
 /// Maximum number of unused parameters that are reported separately.
-const TOLD_ONE_BY_ONE: usize = 3;
+const MAX_SEPARATE_REPORTS: usize = 3;
 
 /// Help for mechanisms with too many velocities.
 const TOO_MANY: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
@@ -44,7 +44,7 @@ pub fn build_model<'g>(
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
-    let joints = reaction::to_release(&model);
+    let joints = reaction::joints_to_release(&model);
     if !joints.is_empty() {
         let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
         for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
@@ -82,14 +82,14 @@ fn build<'g>(
         None => builder.check_joints(cx),
     }
     builder.add_masses(cx);
-    match order.and_then(|order| Some((order, builder.know_motion()?))) {
+    match order.and_then(|order| Some((order, builder.compute_motion()?))) {
         Some((order, moving)) => {
             builder.add_drives(moving, cx);
             builder.add_actions(moving, cx);
             builder.add_limits(cx);
             let solved = builder.add_solved(cx);
             let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
-            builder.know_slipping();
+            builder.record_slipping_power();
             builder.add_contacts(moving, cx);
             builder.check_acceleration_forces(cx);
             builder.add_expressions(constrained, cx);
@@ -209,11 +209,11 @@ impl<'a, 'g> Builder<'a, 'g> {
             speeds: &description.speeds,
             context: Context::new(Allowed::Constant, None).into(),
             kinematics: Kinematics::default().into(),
-            single: description.scalar == ScalarType::F32,
-            unknown: BTreeSet::new().into(),
-            failed: BTreeSet::new().into(),
-            constrains: false.into(),
-            known: BTreeMap::new().into(),
+            is_f32: description.scalar == ScalarType::F32,
+            reported_names: BTreeSet::new().into(),
+            reported_definitions: BTreeSet::new().into(),
+            in_holonomic_constraint: false.into(),
+            definition_values: BTreeMap::new().into(),
             requirements: Vec::new().into(),
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
@@ -252,7 +252,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             releasing: None,
             joint_frames: BTreeMap::new(),
             applied: Vec::new(),
-            touching: BTreeMap::new(),
+            contact_points: BTreeMap::new(),
             moved_by_place: Vec::new(),
             frame_links: Vec::new(),
             partials: Partials::default(),
@@ -278,7 +278,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
         // Many unused parameters are reported as one error.
         if let [first, rest @ ..] = unused.as_slice()
-            && rest.len() >= TOLD_ONE_BY_ONE
+            && rest.len() >= MAX_SEPARATE_REPORTS
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
             cx.error(first.place.clone(), format!("nothing uses the parameters {}", all_of(&list)))
@@ -316,7 +316,7 @@ fn read_gravity<'g>(
             *axes = Axes::Own;
         }
     }
-    scope.own_sum(terms, e, cx)
+    scope.own_axes_sum(terms, e, cx)
 }
 
 /// Reports names that have another meaning in expressions.

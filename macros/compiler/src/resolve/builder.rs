@@ -1,7 +1,7 @@
 //! The mechanism under construction, with queries about its elements.
 
-use super::figures::Range;
 use super::joint::full_name;
+use super::range::ValueRange;
 use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{self, Rotation, Vec3};
@@ -73,7 +73,7 @@ pub struct Builder<'a, 'g> {
     /// Links of frames that move relative to the link in which they are defined.
     pub frame_links: Vec<LinkId>,
     /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.
-    pub touching: BTreeMap<String, Terms<'g>>,
+    pub contact_points: BTreeMap<String, Terms<'g>>,
     /// Partial derivatives of the poses of the links so far.
     pub partials: Partials<'g>,
     /// Index of the group of constraints that is being added.
@@ -119,7 +119,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
-                let range = Range::of(&self.description.scalar);
+                let range = ValueRange::of_scalar(&self.description.scalar);
                 let place = || format!("the place of a joint on `{}`", end.body.text);
                 v.0.iter().for_each(|c| self.scope.require(Rule::Length, place, &[*c]));
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
@@ -131,7 +131,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
-    pub fn somewhere(&self, moves: bool) -> Pose<'g> {
+    pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
         let g = self.scope.graph;
         let mut translation = Vec3::numbers(g, [0.731, 0.417, 0.593]);
         if moves {

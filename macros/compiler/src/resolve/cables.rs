@@ -27,14 +27,14 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }
-        let (frame, radius, axis) = self.round(surface, cx)?;
-        let [a, b] = ends.map(|end| self.place_now(end, cx));
+        let (frame, radius, axis) = self.cable_surface(surface, cx)?;
+        let [a, b] = ends.map(|end| self.current_place(end, cx));
         let (a, b) = (a?, b?);
         let kinematics = self.kinematics.borrow();
-        let from = |p: &Placed<'g>| {
-            kinematics.resolve(&kinematics.between(p, &frame), frame.link, Vec3::zero(self.graph))
+        let from_center = |p: &Placed<'g>| {
+            kinematics.resolve(&kinematics.position_between(p, &frame), frame.link, Vec3::zero(self.graph))
         };
-        let (a, b) = (from(&a), from(&b));
+        let (a, b) = (from_center(&a), from_center(&b));
         let (across, rise) = match axis {
             None => ([a, b], self.graph.zero()),
             Some(n) => {
@@ -58,18 +58,18 @@ impl<'g> Scope<'_, 'g> {
         };
         let square = radius.square();
         let tangents = [a, b].map(|p| (p.dot(p) - square).sqrt());
-        let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
-        let wound = tangents[0] + tangents[1] + radius * touched;
+        let contact_angle = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
+        let wrapped = tangents[0] + tangents[1] + radius * contact_angle;
         let straight = (a - b).length();
         // One if the cable touches, otherwise zero. The derivative is zero.
-        let touches = touched.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
-        let flat = straight + touches * (wound - straight);
+        let touches = contact_angle.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
+        let flat = straight + touches * (wrapped - straight);
         let length = if rise.is_zero() { flat } else { (flat.square() + rise.square()).sqrt() };
         Some(Value::Scalar(length))
     }
 
     /// Returns the pose, the radius and the axis of a sphere or cylinder; a sphere has no axis.
-    fn round(
+    fn cable_surface(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -124,14 +124,14 @@ fn check_outside(
     end: &syntax::Expr,
     across: Vec3<'_>,
     radius: Expr<'_>,
-    round: bool,
+    is_cylinder: bool,
     cx: &mut Diagnostics,
 ) -> Option<()> {
     let (Some(square), Some(radius)) = (across.dot(across).value(), radius.value()) else { return Some(()) };
     if square >= radius * radius {
         return Some(());
     }
-    let (surface, middle) = if round { ("cylinder", "axis") } else { ("sphere", "centre") };
+    let (surface, middle) = if is_cylinder { ("cylinder", "axis") } else { ("sphere", "centre") };
     cx.error(end.place.clone(), format!("this end of the cable lies inside of the {surface}"))
         .help(format!("it is {:.4} m from the {middle}, and the radius is {radius} m", square.sqrt()));
     None

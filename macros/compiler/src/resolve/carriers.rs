@@ -4,14 +4,14 @@ use crate::syntax::{Description, Expr, ExprKind, Target};
 
 /// Whether the axes of a particle are used: by a joint on it, by `name.at(…)` or `name.x`, or by a force on
 /// it.
-pub fn carries(d: &Description, name: &str) -> bool {
+pub fn uses_axes(d: &Description, name: &str) -> bool {
     let is_name = |e: &Expr| e.name() == Some(name);
-    let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));
+    let acts_on_particle = |target: &Target| matches!(target, Target::On(e) if is_name(e));
     d.joints.iter().any(|joint| joint.parent.body.text == name)
         || d.points.iter().filter_map(|p| p.on.as_ref()).any(is_name)
         || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(is_name)
         || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(is_name)
-        || d.actions.iter().any(|action| on(&action.on))
+        || d.actions.iter().any(|action| acts_on_particle(&action.on))
         || expressions(d).into_iter().any(|e| names_axes(e, name))
 }
 

@@ -101,12 +101,12 @@ impl<'g> Scope<'_, 'g> {
         let here = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
             let a = kinematics.acceleration_in(&place, &from, by, self.graph);
-            [here(&a), here(&kinematics.turning_rate(link, by, by, self.graph))]
+            [here(&a), here(&kinematics.angular_acceleration_in(link, by, by, self.graph))]
         });
         Some(Relative {
             link,
             v: here(&kinematics.velocity_in(&place, &from, by, self.graph)),
-            w: here(&kinematics.turning_in(link, by, self.graph)),
+            w: here(&kinematics.angular_velocity_in(link, by, self.graph)),
             rates,
         })
     }
@@ -121,11 +121,11 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }
-        let heavy = self.heavy(body, cx)?;
-        let about = self.place_now(about, cx)?;
+        let body_with_mass = self.body_with_mass(body, cx)?;
+        let about = self.current_place(about, cx)?;
         let n = self.terms(axis, cx)?;
         let kinematics = self.kinematics.borrow();
-        let (placed, (mass, com, central)) = &heavy;
+        let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
             cx.error(body.place.clone(), format!("`{}` has no mass", body.spelt()))
                 .help("name a body with a `mass`");
@@ -135,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
         let length = kinematics.resolve(&n, link, zero).length();
         let n: Terms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
         let pose = Pose { translation: placed.pose.point(*com), ..placed.pose.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about);
+        let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
         let [axis_here, arm] = [&n, &between].map(|terms| kinematics.resolve(terms, link, zero));
         drop(kinematics);
         let arm = arm + -(axis_here * axis_here.dot(arm));
@@ -160,7 +160,7 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        let moment = self.inertia_about(&heavy, &about, [&n, &n]);
+        let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector(vec![(link, arm * share)]))
     }

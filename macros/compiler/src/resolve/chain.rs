@@ -32,11 +32,11 @@ impl<'g> Builder<'_, 'g> {
         let start = self.joint_parent(&joint.parent.body, cx);
         // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::default_motions(self.scope.graph, joint));
-        let on_parent = on_parent.unwrap_or_else(|| self.somewhere(false));
-        let on_child = on_child.unwrap_or_else(|| self.somewhere(false));
+        let on_parent = on_parent.unwrap_or_else(|| self.substitute_pose(false));
+        let on_child = on_child.unwrap_or_else(|| self.substitute_pose(false));
         if let Some((link, pose)) = start {
             let frame = pose.then(&on_parent);
-            self.transmit(j, link, &frame.rotation);
+            self.record_transmission(j, link, &frame.rotation);
             let placed = Placed { link, pose: frame.clone(), kind: PlacedKind::Body };
             self.joint_frames.insert(j, placed);
             let (joints, _) = self.releasing.unwrap_or_default();
@@ -46,7 +46,7 @@ impl<'g> Builder<'_, 'g> {
             };
             let (link, pose) = match self.solving_loop(j) {
                 Some(_) => {
-                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.somewhere(true));
+                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.substitute_pose(true));
                     self.link_if_moving(link, frame.then(&solved))
                 }
                 None => self.add_chain(j, &motions, link, frame),
@@ -90,8 +90,8 @@ impl<'g> Builder<'_, 'g> {
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
         for (value, what) in [(damping, "damping"), (friction, "friction")] {
-            let figure = || format!("the {what} of `{}`", joint.name.text);
-            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, figure, &[*value]));
+            let quantity = || format!("the {what} of `{}`", joint.name.text);
+            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, quantity, &[*value]));
         }
         self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));

@@ -46,13 +46,13 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Clos
             };
             d.joints.iter().enumerate().find(holds).map(|(k, _)| k)
         };
-        let taken = |k: usize| found.iter().any(|e| e.sides.contains(&k));
-        let solved = |k: &usize| {
+        let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
+        let can_be_solved = |k: &usize| {
             matches!(d.joints[*k].kind, JointKind::Pin | JointKind::Sleeve)
                 && d.joints[*k].mimic.is_none()
-                && !taken(*k)
+                && !is_in_other_loop(*k)
         };
-        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(solved));
+        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         match (joint.kind, sides) {
             (JointKind::Pin, [Some(a), Some(b)]) if a != b && pins > 0 => {
@@ -96,24 +96,24 @@ impl<'g> Builder<'_, 'g> {
         let a = self.side(first, ends[pin], &frame, cx)?;
         let b = self.side(second, ends[1 - pin], &frame, cx)?;
         let (away, other) = self.joint_frame(second, cx)?;
-        let normal = self.seen_from(&frame, away.link, away.pose.rotation.to_parent(other));
-        let still = |e: Expr<'g>| always(e, 0.0);
+        let normal = self.in_frame(&frame, away.link, away.pose.rotation.to_parent(other));
+        let vanishes = |e: Expr<'g>| always(e, 0.0);
         let in_plane = match b.slide {
-            None => normal.cross(axis).0.iter().all(|e| still(*e)),
-            Some(slide) => still(slide.dot(axis)),
+            None => normal.cross(axis).0.iter().all(|e| vanishes(*e)),
+            Some(slide) => vanishes(slide.dot(axis)),
         };
-        if !in_plane || !still((b.base + b.point - a.point).dot(axis)) {
+        if !in_plane || !vanishes((b.base + b.point - a.point).dot(axis)) {
             cx.error(place.clone(), "this loop does not lie in one plane").help(HELP);
             return None;
         }
         let [(_, e1), (_, e2)] = perpendicular(axis);
-        let flat = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
-        let meeting = meeting(&a, &b, branch, &flat);
+        let planar = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
+        let closing_point = closing_point(&a, &b, branch, &planar);
         if j == first {
-            let angle = turned(flat(a.point), meeting);
-            return Some(self.turn(axis, angle));
+            let angle = angle_between(planar(a.point), closing_point);
+            return Some(self.rotation_pose(axis, angle));
         }
-        let reached = e1 * meeting[0] + e2 * meeting[1] - b.base;
+        let reached = e1 * closing_point[0] + e2 * closing_point[1] - b.base;
         Some(match b.slide {
             // Slide by the remaining distance, in the axes of the second joint.
             Some(slide) => {
@@ -122,12 +122,12 @@ impl<'g> Builder<'_, 'g> {
             }
             None => {
                 let sense = normal.dot(axis);
-                self.turn(other, turned(flat(b.point), flat(reached)) * sense)
+                self.rotation_pose(other, angle_between(planar(b.point), planar(reached)) * sense)
             }
         })
     }
 
-    fn turn(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
+    fn rotation_pose(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
         Pose { rotation: Rotation::eigenaxis(axis, angle), translation: Vec3::zero(self.scope.graph) }
     }
 
@@ -149,17 +149,17 @@ impl<'g> Builder<'_, 'g> {
         let on_child = self.endpoint(&joint.child, cx)?;
         let closing = self.endpoint(end, cx)?.translation;
         let point = on_child.inverse().point(closing);
-        let out = |v| self.seen_from(frame, own.link, own.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.borrow().between(&own, frame);
+        let in_first_frame = |v| self.in_frame(frame, own.link, own.pose.rotation.to_parent(v));
+        let terms = self.scope.kinematics.borrow().position_between(&own, frame);
         let zero = Vec3::zero(self.scope.graph);
-        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(frame, *link, *v));
-        let slide = (joint.kind == JointKind::Sleeve).then(|| out(axis));
-        Some(Side { base, point: out(point), slide })
+        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.in_frame(frame, *link, *v));
+        let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
+        Some(Side { base, point: in_first_frame(point), slide })
     }
 
     /// Transforms a vector from the axes of a link to those of a frame. Released joints count as closed: the
     /// solution is that of the original mechanism.
-    fn seen_from(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
+    fn in_frame(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
@@ -171,30 +171,30 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Returns the point in the plane at which both sides meet, relative to the origin of the first joint.
-fn meeting<'g>(
+fn closing_point<'g>(
     a: &Side<'g>,
     b: &Side<'g>,
     branch: Expr<'g>,
-    flat: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
+    planar: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
 ) -> [Expr<'g>; 2] {
     let square = |v: [Expr<'g>; 2]| v[0].square() + v[1].square();
-    let reach = square(flat(a.point));
+    let reach = square(planar(a.point));
     if let Some(slide) = b.slide {
         // The line w + s x, |w + s x| = |a|.
-        let (w, s) = (flat(b.base + b.point), flat(slide));
+        let (w, s) = (planar(b.base + b.point), planar(slide));
         let along = w[0] * s[0] + w[1] * s[1];
         let x = branch * (along.square() - square(w) + reach).sqrt() - along;
         return [w[0] + s[0] * x, w[1] + s[1] * x];
     }
     // `part` is the fraction along the line between the origins, `height` the offset perpendicular to it.
-    let d = flat(b.base);
+    let d = planar(b.base);
     let distance = square(d);
-    let part = (distance + reach - square(flat(b.point))) * 0.5 / distance;
+    let part = (distance + reach - square(planar(b.point))) * 0.5 / distance;
     let height = branch * (reach / distance - part.square()).sqrt();
     [d[0] * part - d[1] * height, d[1] * part + d[0] * height]
 }
 
 /// Returns the angle from one direction to another.
-fn turned<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
+fn angle_between<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
     (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1])
 }

@@ -4,9 +4,9 @@
 
 use super::builder::Builder;
 use super::closed_form::Solved;
+use super::corrections;
 use super::motion::Moving;
 use super::scope::{Allowed, Context, Value};
-use super::slips;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::replace;
@@ -36,7 +36,7 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             for j in closing {
                 self.check_joint(&self.description.joints[*j], cx);
-                self.transmit(*j, None, &Rotation::identity(self.scope.graph));
+                self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
             }
             for constraint in &self.description.constraints {
                 self.check_constraint(constraint, cx);
@@ -74,7 +74,7 @@ impl<'g> Builder<'_, 'g> {
             return Constrained(());
         }
         for j in &solved {
-            self.transmit(*j, None, &Rotation::identity(self.scope.graph));
+            self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
         }
         if let Some((_, kept)) = self.releasing {
             self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
@@ -92,10 +92,10 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        self.scope.constrains.set(true);
+        self.scope.in_holonomic_constraint.set(true);
         let rows = self.difference(constraint, Allowed::Placement, cx);
-        self.scope.constrains.set(false);
-        for (name, residual) in self.without_idle(rows) {
+        self.scope.in_holonomic_constraint.set(false);
+        for (name, residual) in self.without_vanishing(rows) {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
@@ -108,16 +108,16 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the components of a vector without those that vanish identically, such as the component normal
     /// to the plane of a planar mechanism. If all vanish, all are returned.
-    fn without_idle(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
-        let is_idle = |e: &Expr<'g>| {
+    fn without_vanishing(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
+        let is_vanishing = |e: &Expr<'g>| {
             let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
             symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
         };
-        let (idle, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_idle(e));
+        let (vanishing, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
         if rest.is_empty() {
-            return idle;
+            return vanishing;
         }
-        self.model.redundant.extend(idle.into_iter().map(|(name, _)| name));
+        self.model.redundant.extend(vanishing.into_iter().map(|(name, _)| name));
         rest
     }
 
@@ -126,10 +126,10 @@ impl<'g> Builder<'_, 'g> {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {
             ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
-                self.scope.constrains.set(holonomic);
+                self.scope.in_holonomic_constraint.set(holonomic);
                 let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
                 let _ = self.difference(constraint, allowed, cx);
-                self.scope.constrains.set(false);
+                self.scope.in_holonomic_constraint.set(false);
             }
             ConstraintKind::Rolling | ConstraintKind::Slipping => self.check_pair(constraint, cx),
         }
@@ -137,11 +137,11 @@ impl<'g> Builder<'_, 'g> {
 
     fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
         let rows = self.difference(constraint, Allowed::Motion, cx);
-        for (name, rate) in self.without_idle(rows) {
+        for (name, rate) in self.without_vanishing(rows) {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
-            let is = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+            let contains = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
                 symbols_in(e).into_iter().any(|s| f(Quantity::of(s)))
             };
             if gradient.is_empty() {
@@ -149,12 +149,12 @@ impl<'g> Builder<'_, 'g> {
                     .help("a constraint on coordinates is a `Holonomic` one");
                 return;
             }
-            if is(&[rate], |q| matches!(q, Quantity::Input(_))) {
+            if contains(&[rate], |q| matches!(q, Quantity::Input(_))) {
                 cx.error(place.clone(), "a constraint contains no input")
                     .help("a motion that is given is an expression of time `t`");
                 return;
             }
-            let linear = match is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+            let linear = match contains(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
                 true => linear_form(rate, &gradient),
                 false => Some(rate),
             };
@@ -186,7 +186,7 @@ impl<'g> Builder<'_, 'g> {
             if let (Some(side), Some(other)) = (side, other)
                 && allowed == Allowed::Placement
                 && turns(side)
-                && !slips::check_angle(other, cx)
+                && !corrections::check_angle(other, cx)
             {
                 return Vec::new();
             }
@@ -226,7 +226,7 @@ impl<'g> Builder<'_, 'g> {
 /// do not depend on them. Returns `None` if they depend on velocities.
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
     // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
-    let at = |e: Expr<'g>, pattern: u64| {
+    let evaluate = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::of(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
             Quantity::Velocity(_) => sample(s, pattern),
@@ -234,17 +234,18 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
         })
     };
     let is_constant = |e: Expr<'g>| {
-        let first = at(e, 0);
-        let near = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
-        first.is_finite() && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| near(at(e, *p)))
+        let first = evaluate(e, 0);
+        let is_close = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
+        first.is_finite()
+            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate(e, *p)))
     };
-    let with = |e: Expr<'g>, value: f64| {
+    let substitute = |e: Expr<'g>, value: f64| {
         replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| e.num(value)))
     };
-    let rest = with(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !at(rest, 0).is_finite() {
+    let rest = substitute(rate, 0.0);
+    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(rest, 0).is_finite() {
         return None;
     }
     let g = rate.graph();
-    Some(gradient.iter().fold(rest, |sum, (k, c)| sum + with(*c, 1.0) * Quantity::Velocity(*k).expr(g)))
+    Some(gradient.iter().fold(rest, |sum, (k, c)| sum + substitute(*c, 1.0) * Quantity::Velocity(*k).expr(g)))
 }

@@ -192,11 +192,11 @@ impl<'g> Scope<'_, 'g> {
         let by = Vec3(moves.map(|s| self.graph.symbol(s)));
         let pose = Pose { translation: placed.pose.translation + by, ..placed.pose.clone() };
         let moved = Placed { pose, ..placed.clone() };
-        self.known.borrow_mut().clear();
+        self.definition_values.borrow_mut().clear();
         self.kinematics.borrow_mut().places.insert(name.to_string(), moved);
         let value = self.scalar(of, cx);
         self.kinematics.borrow_mut().places.insert(name.to_string(), placed.clone());
-        self.known.borrow_mut().clear();
+        self.definition_values.borrow_mut().clear();
         let value = value?;
         let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient = Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).of(value))));

@@ -143,9 +143,10 @@ impl<'g> Builder<'_, 'g> {
                 let tensor = inertia.diagonal.into_iter().chain(inertia.off);
                 let is_point = inertia.diagonal.iter().all(|i| i.is_zero());
                 let kind = if is_point { PieceKind::Point } else { PieceKind::Inertia };
-                let figures = std::iter::once(mass).chain(tensor);
-                let figures: Vec<Expr<'g>> = if is_point { Vec::new() } else { figures.collect() };
-                solids = vec![(kind, entries(&[com]).into_iter().chain(figures).collect())];
+                let inertial_parameters = std::iter::once(mass).chain(tensor);
+                let inertial_parameters: Vec<Expr<'g>> =
+                    if is_point { Vec::new() } else { inertial_parameters.collect() };
+                solids = vec![(kind, entries(&[com]).into_iter().chain(inertial_parameters).collect())];
             }
             pieces.extend(solids.into_iter().map(|(kind, numbers)| Piece {
                 name: name.clone(),
@@ -217,7 +218,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds joints, and bars from a body's first joint to its other joints and to its centre of mass.
     fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
-        let mut held: Vec<(&str, Vec3<'g>)> = Vec::new();
+        let mut joint_positions: Vec<(&str, Vec3<'g>)> = Vec::new();
         for joint in &self.description.joints {
             let (Some((parent, on_parent)), Some((_, on_child))) =
                 (self.end(&joint.parent), self.end(&joint.child))
@@ -227,7 +228,7 @@ impl<'g> Builder<'_, 'g> {
             for (body, place) in
                 [(&joint.parent.body, on_parent.translation), (&joint.child.body, on_child.translation)]
             {
-                held.push((&body.text, place));
+                joint_positions.push((&body.text, place));
             }
             let Some((kind, axis)) = self.joint_kind(joint) else { continue };
             let mut numbers = entries(&[on_parent.translation]);
@@ -238,7 +239,7 @@ impl<'g> Builder<'_, 'g> {
         for (k, body) in self.description.bodies.iter().enumerate() {
             let name = &body.name.text;
             let Some(frame) = self.body_frame(name).filter(|_| !shown.contains(name)) else { continue };
-            let mut places = held.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
+            let mut places = joint_positions.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
             let Some(first) = places.next() else { continue };
             let com = self.masses.get(k).copied().flatten().map(|(_, com, _)| com);
             for other in places.chain(com).filter(|other| !(*other - first).is_zero()) {

@@ -2,7 +2,7 @@
 //! body.
 
 use super::builder::Builder;
-use super::forces::{Law, report_lost};
+use super::forces::{Law, report_unused_input};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -30,7 +30,7 @@ impl<'g> Builder<'_, 'g> {
         for (joint, weight) in drive.on.terms() {
             match self.weighted(&joint.text, *weight) {
                 Some(coordinate) => terms.push(coordinate),
-                None => report_lost(&drive.name, cx),
+                None => report_unused_input(&drive.name, cx),
             }
         }
         if let DriveLaw::Input(unit) = drive.law {
@@ -106,9 +106,9 @@ impl<'g> Builder<'_, 'g> {
             }),
             Some(against) => {
                 let zero = Vec3::zero(g);
-                let between = kinematics.between(&on, against);
+                let between = kinematics.position_between(&on, against);
                 let path = kinematics.resolve(&between, against.link, zero).dot(force);
-                let turning = kinematics.turning_in(on.link, against.link, g);
+                let turning = kinematics.angular_velocity_in(on.link, against.link, g);
                 let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
                 time_derivative(self.model.space(), path) + turning
             }

@@ -20,8 +20,8 @@ enum Variable {
 impl<'g> Builder<'_, 'g> {
     /// Adds all equilibria to the model.
     pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
-        let rubs = |action: &Action| action.kind == ForceKind::Friction;
-        let dry = self.description.actions.iter().any(rubs);
+        let is_friction = |action: &Action| action.kind == ForceKind::Friction;
+        let dry = self.description.actions.iter().any(is_friction);
         for declared in &self.description.equilibria {
             if dry {
                 cx.error(
@@ -136,7 +136,7 @@ impl<'g> Builder<'_, 'g> {
         let known: Vec<&str> =
             self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
         let follows = self.scope.joints.iter().any(|joint| joint == text);
-        let what = self.scope.what(text);
+        let what = self.scope.kind_of_name(text);
         let error = cx.error(place.place.clone(), format!("`{text}` has no value at rest of its own"));
         match (own.as_slice(), what) {
             ([first, ..], _) => error.help(format!("its coordinates have: write `{first} = …`")),

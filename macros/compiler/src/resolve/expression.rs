@@ -1,8 +1,8 @@
 //! Resolution of written expressions into expressions of the graph: names are looked up, and scalars, vectors
 //! and matrices are distinguished.
 
+use super::corrections::VECTOR;
 use super::scope::{Axes, Scope, Value};
-use super::slips::VECTOR;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind};
@@ -27,11 +27,11 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// Returns the value of a vector expression in the attribute's own axes.
     pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
-        self.vector(e, cx).and_then(|terms| self.own_sum(terms, e, cx))
+        self.vector(e, cx).and_then(|terms| self.own_axes_sum(terms, e, cx))
     }
 
     /// Returns the sum of a vector's terms, which must all be in the attribute's own axes.
-    pub fn own_sum(
+    pub fn own_axes_sum(
         &self,
         terms: Vec<(Axes, Vec3<'g>)>,
         e: &syntax::Expr,
@@ -86,7 +86,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         let mut operations = Vec::new();
         let mut first = e;
         while let ExprKind::Binary(op, left, right, _) = &first.kind
-            && self.deciding(first).is_none()
+            && self.compared_symbol(first).is_none()
         {
             operations.push((*op, &**right, first));
             first = left;
@@ -103,13 +103,13 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// Returns the value of an expression that is not a binary operation.
     fn operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        if let Some(symbol) = self.deciding(e) {
+        if let Some(symbol) = self.compared_symbol(e) {
             return Some(Value::Scalar(symbol));
         }
         match &e.kind {
             ExprKind::Number(n) => {
                 let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
-                if self.single && (small || n.abs() > f64::from(f32::MAX)) {
+                if self.is_f32 && (small || n.abs() > f64::from(f32::MAX)) {
                     let what = if small { "small" } else { "large" };
                     cx.error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
                         .help("use `f64`, or other units");

@@ -7,7 +7,7 @@
 
 use super::builder::Builder;
 use super::holders::name_of;
-use super::power::Counts;
+use super::power::ForceCounts;
 use super::reaction::RELEASED;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
 use crate::diag::Diagnostics;
@@ -33,7 +33,7 @@ struct Wrench<'g> {
 }
 
 /// Body of a diagram.
-struct Freed<'g> {
+struct FreedBody<'g> {
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
@@ -45,7 +45,7 @@ struct Freed<'g> {
 }
 
 /// An action: name, origin, point of action, and wrench.
-type Acting<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
+type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
 
 impl<'g> Builder<'_, 'g> {
     /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
@@ -65,7 +65,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Records the generalized forces of a new element on the coordinates of released joints. `before` counts
     /// the elements of the model before it.
-    pub fn know_applied(&mut self, before: &Counts, name: &str) {
+    pub fn record_applied(&mut self, before: &ForceCounts, name: &str) {
         let Some((joints, _)) = self.releasing else { return };
         if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
             return;
@@ -94,7 +94,7 @@ impl<'g> Builder<'_, 'g> {
             let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * a(k));
             add(element.rate, -(element.inertance * change));
         }
-        for force in &m.acceleration_forces[before.by_acceleration..] {
+        for force in &m.acceleration_forces[before.acceleration_forces..] {
             let value = force.factors.iter().fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * a(*k));
             add(force.rate, value);
         }
@@ -112,12 +112,12 @@ impl<'g> Builder<'_, 'g> {
         let named =
             |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
         let Some((released, _)) = self.releasing else { return Some(named(Vec::new(), empty)) };
-        let at = |number: &usize| released.iter().position(|open| open == number);
+        let released_index = |number: &usize| released.iter().position(|open| open == number);
         let joints: Vec<(usize, bool)> =
-            holders.iter().filter_map(|(number, holds)| Some((at(number)?, *holds))).collect();
+            holders.iter().filter_map(|(number, holds)| Some((released_index(number)?, *holds))).collect();
         let (link, mass, center) = self.rigid_part(&name, &joints, output, cx)?;
-        let body = Freed { name, link, mass, center, joints, axes };
-        let mut all: Vec<Acting<'g>> = self.gravity_on(&body).into_iter().collect();
+        let body = FreedBody { name, link, mass, center, joints, axes };
+        let mut all: Vec<DiagramAction<'g>> = self.gravity_on(&body).into_iter().collect();
         all.extend(self.elements_on(&body));
         all.extend(self.joints_on(&body));
         all.extend(self.constraints_on(&body));
@@ -137,7 +137,8 @@ impl<'g> Builder<'_, 'g> {
     fn check_free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<String> {
         let ground = Some((None, Pose::identity(self.scope.graph)));
         let e = &output.value;
-        self.scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.heavy(e, cx))?;
+        self.scope
+            .in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
         let name = e.name()?;
         if self.holders_of(name).iter().all(|(_, holds)| !holds) {
             cx.error(e.place.clone(), format!("nothing holds `{name}` that could be released"))
@@ -197,7 +198,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
-    fn arm_to(&self, body: &Freed<'g>, place: &Terms<'g>) -> Vec3<'g> {
+    fn arm_to(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let mut terms = place.clone();
         let center = kinematics.position(body.center.link, body.center.pose.translation);
@@ -215,7 +216,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.kinematics.borrow().position(placed.link, placed.pose.translation)
     }
 
-    fn gravity_on(&self, body: &Freed<'g>) -> Option<Acting<'g>> {
+    fn gravity_on(&self, body: &FreedBody<'g>) -> Option<DiagramAction<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         let weight = self.model.gravity * body.mass;
         if weight.is_zero() {
@@ -226,12 +227,12 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
-    fn on_body(&self, body: &Freed<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
+    fn wrench_on_body(&self, body: &FreedBody<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
         let mut sum = Wrench { force: zero, torque: zero };
         for (at, holds) in &body.joints {
             let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * at + k + i]));
-            let Some(w) = self.at_joint(body, *at, part(0), part(3)) else { continue };
+            let Some(w) = self.joint_wrench(body, *at, part(0), part(3)) else { continue };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
             sum.force += w.force * sign;
             sum.torque += w.torque * sign;
@@ -241,28 +242,34 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
     /// frame of the joint.
-    fn at_joint(&self, body: &Freed<'g>, at: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<Wrench<'g>> {
+    fn joint_wrench(
+        &self,
+        body: &FreedBody<'g>,
+        at: usize,
+        force: Vec3<'g>,
+        torque: Vec3<'g>,
+    ) -> Option<Wrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
             return Some(Wrench { force: zero, torque: zero });
         }
         let j = self.releasing?.0.get(at)?;
         let frame = self.joint_frames.get(j)?;
-        let out = |v: Vec3<'g>| {
+        let in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
             self.scope.kinematics.borrow().resolve(&terms, body.axes.0, zero)
         };
-        let (force, torque) = (out(force), out(torque));
+        let (force, torque) = (in_result_axes(force), in_result_axes(torque));
         let arm = self.arm_to(body, &self.position_of(frame));
         Some(Wrench { force, torque: torque + arm.cross(force) })
     }
 
-    fn elements_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    fn elements_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let mut all = Vec::new();
         for (name, forces) in &self.applied {
             let forces = self.with_released_at_rest(forces);
-            let wrench = self.on_body(body, &forces);
-            if !self.acts(&wrench, &forces) {
+            let wrench = self.wrench_on_body(body, &forces);
+            if !self.is_nonzero(&wrench, &forces) {
                 continue;
             }
             let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
@@ -279,11 +286,11 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the point of the body at which an element acts, if it acts at a single point.
-    fn place_of_element(&self, body: &Freed<'g>, name: &str) -> Option<Terms<'g>> {
+    fn place_of_element(&self, body: &FreedBody<'g>, name: &str) -> Option<Terms<'g>> {
         let action = self.description.actions.iter().find(|action| action.name.text == name)?;
         let mut unread = Diagnostics::unread();
         let mut here = |e: &syntax::Expr| {
-            let placed = self.scope.place_now(e, &mut unread)?;
+            let placed = self.scope.current_place(e, &mut unread)?;
             (placed.link == body.link).then(|| self.position_of(&placed))
         };
         let row = action.kind.row();
@@ -301,7 +308,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the reactions of the tree's joints on the body, and those of elements placed by `at` and
     /// `frame`.
-    fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    fn joints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
         let mut all = Vec::new();
@@ -315,19 +322,19 @@ impl<'g> Builder<'_, 'g> {
             };
             let Some(frame) = self.joint_frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
-            let out = |k: usize| {
+            let reaction_part = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
                 self.scope.kinematics.borrow().resolve(&terms, body.axes.0, Vec3::zero(g))
             };
-            let wrench = Wrench { force: out(0), torque: out(3) };
+            let wrench = Wrench { force: reaction_part(0), torque: reaction_part(3) };
             all.push((name, origin, Some(self.position_of(frame)), wrench));
         }
         all
     }
 
     /// Returns the wrenches of constraints and of loop-closing joints on the body.
-    fn constraints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    fn constraints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
         let first = self.model.nv() - open;
@@ -349,30 +356,30 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
         }
-        let act = |(name, forces): (String, Vec<Expr<'g>>)| {
+        let action_of = |(name, forces): (String, Vec<Expr<'g>>)| {
             let forces = self.with_released_at_rest(&forces);
-            let wrench = self.on_body(body, &forces);
-            if !self.acts(&wrench, &forces) {
+            let wrench = self.wrench_on_body(body, &forces);
+            if !self.is_nonzero(&wrench, &forces) {
                 return None;
             }
             let joint = self.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
                 let place = self.end_on(body, [&joint.parent, &joint.child]);
-                let wrench = self.moved_to(body, place.as_ref(), wrench);
+                let wrench = self.wrench_about(body, place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
-            let place = self.touching.get(&name).cloned();
+            let place = self.contact_points.get(&name).cloned();
             let wrench = match &place {
                 Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
                 None => wrench,
             };
             Some((name, Origin::Constraint, place, wrench))
         };
-        by_name.into_iter().filter_map(act).collect()
+        by_name.into_iter().filter_map(action_of).collect()
     }
 
     /// Returns the wrenches of unilateral contacts on the body.
-    fn contacts_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    fn contacts_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
         let first = self.model.nv() - open;
@@ -387,9 +394,9 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
             let forces = self.with_released_at_rest(&forces);
-            let wrench = self.on_body(body, &forces);
-            if self.acts(&wrench, &forces) {
-                let place = self.touching.get(&contact.name).cloned();
+            let wrench = self.wrench_on_body(body, &forces);
+            if self.is_nonzero(&wrench, &forces) {
+                let place = self.contact_points.get(&contact.name).cloned();
                 let wrench = match &place {
                     Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
                     None => wrench,
@@ -401,7 +408,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the position of the end of a joint that belongs to the body.
-    fn end_on(&self, body: &Freed<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+    fn end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::unread();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
@@ -412,7 +419,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the wrench about another point of the body.
-    fn moved_to(&self, body: &Freed<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
+    fn wrench_about(&self, body: &FreedBody<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_to(body, place);
         Wrench { torque: w.torque - arm.cross(w.force), ..w }
@@ -420,7 +427,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
     /// carries cancel up to rounding.
-    fn acts(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
+    fn is_nonzero(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
         let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;

@@ -41,12 +41,12 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => e.name().map(str::to_string),
             };
-            let known = || self.model.velocities.iter().map(|(name, _)| name.as_str());
-            match known().position(|v| Some(v) == name.as_deref()) {
+            let velocity_names = || self.model.velocities.iter().map(|(name, _)| name.as_str());
+            match velocity_names().position(|v| Some(v) == name.as_deref()) {
                 Some(k) => independent.push(k),
                 None => {
                     cx.error(e.place.clone(), "expected a velocity")
-                        .suggest(name.as_deref().unwrap_or(""), known());
+                        .suggest(name.as_deref().unwrap_or(""), velocity_names());
                     return;
                 }
             }

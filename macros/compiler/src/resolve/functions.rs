@@ -1,9 +1,9 @@
 //! Calls of functions in expressions, and their values: one match arm per function.
 
 use super::call::Call;
+use super::corrections::{DOMAIN, check_angle, degrees};
 use super::momenta::Sum;
 use super::scope::{Axes, Scope, Value};
-use super::slips::{DOMAIN, check_angle, degrees};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
 use crate::kinematics::unit;

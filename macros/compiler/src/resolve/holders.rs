@@ -9,12 +9,12 @@ use crate::syntax::{self, Description, GROUND, Rank};
 
 /// Returns the index of a body's placement among the releasable connections: joints are first, then bodies,
 /// then particles.
-pub fn of_body(d: &Description, body: usize) -> usize {
+pub fn body_placement(d: &Description, body: usize) -> usize {
     d.joints.len() + body
 }
 
 /// Returns the index of a particle's placement among the releasable connections.
-pub fn of_particle(d: &Description, particle: usize) -> usize {
+pub fn particle_placement(d: &Description, particle: usize) -> usize {
     d.joints.len() + d.bodies.len() + particle
 }
 
@@ -79,12 +79,12 @@ impl<'g> Builder<'_, 'g> {
             let numbers = self.moved_by_place.iter().map(|(number, _)| *number);
             numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
         };
-        let on = |name: &str| {
+        let carrier_name = |name: &str| {
             let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
             let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
             tree::base_name(point.or(particle.filter(|_| !moves(name)))?)
         };
-        (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
+        (0..=d.points.len() + d.particles.len()).fold(name, |at, _| carrier_name(at).unwrap_or(at))
     }
 
     /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is

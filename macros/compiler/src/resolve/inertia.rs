@@ -8,11 +8,11 @@ use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
 /// Moments below this value, kg·m², count as zero: exporters write such values for bodies without inertia.
-const NOTHING: f64 = 1e-18;
+const ZERO_MOMENT: f64 = 1e-18;
 
 /// Squared radius of gyration, m², below which the moments of a body with mass also count as zero (a radius
 /// of ten nanometres).
-const SMALLEST: f64 = 1e-16;
+const MIN_GYRATION_SQUARED: f64 = 1e-16;
 
 /// Relative tolerance of the checks: published values are rounded.
 const TOLERANCE: f64 = 1e-6;
@@ -137,7 +137,7 @@ impl<'g> Scope<'_, 'g> {
                 .help(format!("write `{}`", solid.usage()));
             return None;
         }
-        if self.confused(solid, arguments, cx) {
+        if self.report_swapped(solid, arguments, cx) {
             return None;
         }
         let (mut numbers, mut axis, mut complete) = (Vec::new(), None, true);
@@ -160,7 +160,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports the first argument that is a vector instead of a scalar or vice versa: most likely the
     /// arguments are in the wrong order.
-    fn confused(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+    fn report_swapped(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
             let mut silent = Diagnostics::unread();
             let found = match (self.value(argument, &mut silent), kind.is_direction()) {
@@ -208,8 +208,8 @@ pub fn check_inertia(
     let Some(m) = inertia.full().values() else { return };
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
-    let list = moments.map(brief).join(", ");
-    if scale <= NOTHING.max(SMALLEST * mass.unwrap_or(0.0)) {
+    let list = moments.map(rounded_text).join(", ");
+    if scale <= ZERO_MOMENT.max(MIN_GYRATION_SQUARED * mass.unwrap_or(0.0)) {
         return;
     }
     if moments[0] < -TOLERANCE * scale {
@@ -228,7 +228,7 @@ pub fn check_inertia(
 }
 
 /// Formats a number with about five digits.
-fn brief(x: f64) -> String {
+fn rounded_text(x: f64) -> String {
     let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
     match rounded.abs() {
         size if size == 0.0 || (1e-3..1e6).contains(&size) => rounded.to_string(),

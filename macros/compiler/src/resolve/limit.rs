@@ -17,10 +17,10 @@ impl<'g> Builder<'_, 'g> {
             }
             let Some((coordinate, angle)) = self.coordinate(&limit.on, cx) else { continue };
             let bounds =
-                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check(limit, bounds, cx));
+                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check_bounds(limit, bounds, cx));
             if let Some(bounds) = bounds {
                 let found = self.limit_of(&coordinate, bounds);
-                self.bound(limit, found, &known, cx);
+                self.add_bounds(limit, found, &known, cx);
                 known.push((limit, found));
             }
         }
@@ -40,7 +40,7 @@ impl<'g> Builder<'_, 'g> {
                 "add `restitution = e`, from 0 to 1: the part of the speed that is left when the bound is struck",
             );
         } else if let Some(bounds) = self.bounds(limit, false, cx) {
-            check(limit, &bounds, cx);
+            check_bounds(limit, &bounds, cx);
         }
     }
 
@@ -74,8 +74,8 @@ impl<'g> Builder<'_, 'g> {
     /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
     fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
         let num = |x: f64| self.scope.graph.num(x);
-        let own = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
-        let (from, to) = (from.map(own), to.map(own));
+        let to_coordinate = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
+        let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
         let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
         let speed = speed.map(|speed| speed / num(c.ratio.abs()));
         let effort = effort.map(|effort| effort * num(c.ratio.abs()));
@@ -83,7 +83,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
-    fn bound(
+    fn add_bounds(
         &mut self,
         limit: &syntax::Limit,
         found: Limit<'g>,
@@ -95,11 +95,11 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let both = tighter(known, &found);
-        let leaves_room = |limit: &Limit<'_>| room(limit).is_none_or(|room| room > 0.0);
-        if leaves_room(known) && leaves_room(&found) && !leaves_room(&both) {
+        let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
+        if has_range(known) && has_range(&found) && !has_range(&both) {
             let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
             let contradicts = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
-                other.v == found.v && !leaves_room(&tighter(other, &found))
+                other.v == found.v && !has_range(&tighter(other, &found))
             };
             let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
             // If both limits are from a file, the one that does not belong to the coordinate itself is
@@ -136,12 +136,12 @@ fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
 }
 
 /// Returns the distance between the bounds of a coordinate, if both are constant.
-fn room(limit: &Limit<'_>) -> Option<f64> {
+fn range_width(limit: &Limit<'_>) -> Option<f64> {
     Some(limit.upper?.value()? - limit.lower?.value()?)
 }
 
 /// Reports bounds that no motion satisfies. Returns false then.
-fn check(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
+fn check_bounds(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
     let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
     if let (Some(low), Some(high), Some(e)) = (from, to, &limit.to)
         && low > high

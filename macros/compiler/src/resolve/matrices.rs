@@ -3,7 +3,7 @@
 
 use super::call::{Call, flatten};
 use super::quantities::{in_links, vector};
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
@@ -13,25 +13,25 @@ use crate::syntax::{self, BinaryOp, GROUND};
 
 impl<'g> Kinematics<'g> {
     /// Returns a matrix in the axes of another link.
-    pub fn matrix_in(&self, m: Resolved<'g>, link: Option<LinkId>) -> Resolved<'g> {
-        if m.link == link { m } else { m.turned(link, |v| change_axes(&self.joints, v, m.link, link)) }
+    pub fn matrix_in(&self, m: ResolvedMatrix<'g>, link: Option<LinkId>) -> ResolvedMatrix<'g> {
+        if m.link == link { m } else { m.in_axes(link, |v| change_axes(&self.joints, v, m.link, link)) }
     }
 
     /// Returns the entries of a matrix in the axes of a frame on a link, column by column.
     pub fn matrix_entries(
         &self,
-        m: Resolved<'g>,
+        m: ResolvedMatrix<'g>,
         link: Option<LinkId>,
         axes: &Rotation<'g>,
     ) -> Vec<Expr<'g>> {
-        let here = self.matrix_in(m, link).turned(link, |v| axes.to_child(v));
+        let here = self.matrix_in(m, link).in_axes(link, |v| axes.to_child(v));
         (0..3).flat_map(|k| here.entries.column(k).0).collect()
     }
 }
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the value of a matrix expression.
-    pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Resolved<'g>> {
+    pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<ResolvedMatrix<'g>> {
         match self.value(e, cx)? {
             Value::Matrix(m) => Some(m),
             other => {
@@ -48,8 +48,8 @@ impl<'g> Scope<'_, 'g> {
         let Some((link, pose)) = self.context.borrow().axes.clone() else {
             return self.no_matrix(&e.place, cx);
         };
-        let own = Resolved { link, entries };
-        Some(Value::Matrix(own.turned(link, |v| pose.rotation.to_parent(v))))
+        let own = ResolvedMatrix { link, entries };
+        Some(Value::Matrix(own.in_axes(link, |v| pose.rotation.to_parent(v))))
     }
 
     /// Reports a matrix in a context that does not allow matrices.
@@ -71,7 +71,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `identity()`.
     pub fn identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [] = self.take_matrix(call, cx)?;
-        Some(Value::Matrix(Resolved { link: None, entries: Mat3::identity(self.graph) }))
+        Some(Value::Matrix(ResolvedMatrix { link: None, entries: Mat3::identity(self.graph) }))
     }
 
     /// Resolves `projector(n)`: `n nᵀ / n·n`, the projection onto a line.
@@ -79,28 +79,28 @@ impl<'g> Scope<'_, 'g> {
         let [a] = self.take_matrix(call, cx)?;
         let (link, [a]) = self.vectors([a], cx)?;
         let square = a.dot(a);
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
     }
 
     /// Resolves `skew(a)`, with `skew(a) * b = cross(a, b)`.
     pub fn skew(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a] = self.take_matrix(call, cx)?;
         let (link, [a]) = self.vectors([a], cx)?;
-        Some(Value::Matrix(Resolved { link, entries: Mat3::skew(a) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::skew(a) }))
     }
 
     /// Resolves `outer(a, b)`: `a bᵀ`.
     pub fn outer(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a, b] = self.take_matrix(call, cx)?;
         let (link, [a, b]) = self.vectors([a, b], cx)?;
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
     }
 
     /// Resolves `transpose(M)`.
     pub fn transpose(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?;
-        Some(Value::Matrix(Resolved { entries: m.entries.transpose(), ..m }))
+        Some(Value::Matrix(ResolvedMatrix { entries: m.entries.transpose(), ..m }))
     }
 
     /// Resolves `trace(M)`.
@@ -135,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
         let zero = Vec3::zero(self.graph);
         let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
         let entry = |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(entry) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry) }))
     }
 
     /// Returns the axes of a placed body or frame.
@@ -158,8 +158,8 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let about = self.place_now(about, cx)?;
+        let bodies = self.bodies_with_mass(of, cx)?;
+        let about = self.current_place(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
         let axis = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
         let entries = Mat3::from_fn(|i, j| {
@@ -168,7 +168,7 @@ impl<'g> Scope<'_, 'g> {
                 sum + self.inertia_about(body, &about, [&axis(i), &axis(j)])
             })
         });
-        Some(Value::Matrix(Resolved { link, entries }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries }))
     }
 
     /// Returns sums, differences and products with a matrix.
@@ -189,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
                     BinaryOp::Sub => a.entries - b,
                     _ => a.entries * b,
                 };
-                Value::Matrix(Resolved { entries, ..a })
+                Value::Matrix(ResolvedMatrix { entries, ..a })
             }
             (BinaryOp::Mul, Value::Matrix(m), Value::Vector(v)) => {
                 let v = kinematics.resolve(&in_links(v), m.link, Vec3::zero(self.graph));

@@ -41,9 +41,9 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(parts[0], cx)?;
+        let bodies = self.bodies_with_mass(parts[0], cx)?;
         let about = match parts.get(1) {
-            Some(e) => Some(self.place_now(e, cx)?),
+            Some(e) => Some(self.current_place(e, cx)?),
             None => None,
         };
         let kinematics = self.kinematics.borrow();
@@ -62,7 +62,7 @@ impl<'g> Scope<'_, 'g> {
                 continue;
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
-            let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
+            let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
             let r = kinematics.resolve(&between, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
@@ -76,8 +76,8 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let from = self.place_now(from, cx)?;
+        let bodies = self.bodies_with_mass(of, cx)?;
+        let from = self.current_place(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
             cx.error(of.place.clone(), "what has no mass has no centre of mass")
@@ -88,7 +88,7 @@ impl<'g> Scope<'_, 'g> {
         let mut sum = Vec::new();
         for (placed, (mass, com, _)) in bodies {
             let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
-            let between = kinematics.between(&Placed { pose, ..placed }, &from);
+            let between = kinematics.position_between(&Placed { pose, ..placed }, &from);
             let share = mass / total;
             sum.extend(between.into_iter().map(|(link, r)| (link, r * share)));
         }
@@ -115,8 +115,8 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let about = self.place_now(about, cx)?;
+        let bodies = self.bodies_with_mass(of, cx)?;
+        let about = self.current_place(about, cx)?;
         let a = self.terms(a, cx)?;
         let b = others.first().map_or_else(|| Some(a.clone()), |b| self.terms(b, cx))?;
         let sum = bodies
@@ -135,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
+        let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
         let [a, b, r] = [a, b, &between].map(|parts| kinematics.resolve(parts, link, zero));
         let central = placed.pose.rotation.sym_to_parent(*central);
         let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
@@ -143,32 +143,36 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns bodies and particles: one by its name, or several in parentheses.
-    pub fn heavy_ones(
+    pub fn bodies_with_mass(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Vec<(Placed<'g>, MassProperties<'g>)>> {
         let (ExprKind::Tuple(items) | ExprKind::Array(items)) = &e.kind else {
-            return Some(vec![self.heavy(e, cx)?]);
+            return Some(vec![self.body_with_mass(e, cx)?]);
         };
         if items.is_empty() {
             cx.error(e.place.clone(), "expected bodies, found none").help("write `(first, second)`");
             return None;
         }
-        let twice = |k: usize| {
+        let is_duplicate = |k: usize| {
             items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
         };
-        if let Some(k) = (0..items.len()).find(|k| twice(*k)) {
+        if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
             cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].spelt()))
                 .help("name each body once");
             return None;
         }
-        let all: Vec<_> = items.iter().map(|item| self.heavy(item, cx)).collect();
+        let all: Vec<_> = items.iter().map(|item| self.body_with_mass(item, cx)).collect();
         all.into_iter().collect()
     }
 
     /// Returns a body or particle with its mass, centre of mass and central inertia.
-    pub fn heavy(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<(Placed<'g>, MassProperties<'g>)> {
+    pub fn body_with_mass(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<(Placed<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
             return None;
@@ -183,7 +187,7 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             (None, _) => {
-                if self.is_news(name, cx) {
+                if self.is_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
                     let error = cx.error(e.place.clone(), format!("unknown body `{name}`"));
                     words::point(error, words::BODIES, name, &known);

@@ -5,14 +5,14 @@ use crate::kinematics::{accelerations, twists};
 use crate::mechanism::Quantity;
 
 /// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
-/// by [`Builder::know_motion`].
+/// by [`Builder::compute_motion`].
 #[derive(Clone, Copy)]
 pub struct Moving(());
 
 impl<'g> Builder<'_, 'g> {
     /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
     /// element has not been placed.
-    pub fn know_motion(&mut self) -> Option<Moving> {
+    pub fn compute_motion(&mut self) -> Option<Moving> {
         if !self.is_placed() {
             return None;
         }

@@ -10,7 +10,7 @@ use crate::syntax::{self, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the kind of a known name, with its article.
-    pub fn what(&self, name: &str) -> Option<&'static str> {
+    pub fn kind_of_name(&self, name: &str) -> Option<&'static str> {
         let is = |list: &[String]| list.iter().any(|known| known == name);
         match name {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
@@ -30,8 +30,8 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Whether an unknown name has not been reported yet; records it as reported.
-    pub fn is_news(&self, name: &str, cx: &Diagnostics) -> bool {
-        !cx.is_read() || self.unknown.borrow_mut().insert(name.to_string())
+    pub fn is_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
+        !cx.is_read() || self.reported_names.borrow_mut().insert(name.to_string())
     }
 
     /// Returns the value of a name.
@@ -70,7 +70,7 @@ impl<'g> Scope<'_, 'g> {
                 format!("`{name}` is a table, which has a value for its variables alone"),
             )
             .help(format!("write `{name}({variables})`"));
-        } else if let Some(what) = self.what(name) {
+        } else if let Some(what) = self.kind_of_name(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
         } else if let Some(
@@ -92,7 +92,7 @@ impl<'g> Scope<'_, 'g> {
             if self.allowed() >= Allowed::Motion {
                 known.extend(self.inputs.iter().map(|i| i.text.as_str()));
             }
-            if !self.is_news(name, cx) {
+            if !self.is_first_report(name, cx) {
                 return None;
             }
             let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
@@ -126,14 +126,14 @@ impl<'g> Scope<'_, 'g> {
             if self.report_joint_member(body, inner, member, cx) {
                 return None;
             }
-            if let Some(what) = self.what(body) {
+            if let Some(what) = self.kind_of_name(body) {
                 cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
                     .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
                 return None;
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
             let known: Vec<&str> = known.collect();
-            if !self.is_news(body, cx) {
+            if !self.is_first_report(body, cx) {
                 return None;
             }
             let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
@@ -222,7 +222,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
-        if cx.is_read() && self.failed.borrow().contains(name) {
+        if cx.is_read() && self.reported_definitions.borrow().contains(name) {
             return None;
         }
         let outermost = self.context.borrow().defining.is_empty();
@@ -231,16 +231,16 @@ impl<'g> Scope<'_, 'g> {
             (name.clone(), context.allowed, context.axes.is_some())
         };
         if outermost {
-            self.known.borrow_mut().clear();
-        } else if let Some(known) = self.known.borrow().get(&key) {
+            self.definition_values.borrow_mut().clear();
+        } else if let Some(known) = self.definition_values.borrow().get(&key) {
             return known.clone();
         }
         let before = cx.len();
         let value = self.define(d, e, cx);
         if value.is_none() && cx.is_read() && cx.len() > before {
-            self.failed.borrow_mut().insert(name.clone());
+            self.reported_definitions.borrow_mut().insert(name.clone());
         }
-        self.known.borrow_mut().insert(key, value.clone());
+        self.definition_values.borrow_mut().insert(key, value.clone());
         value
     }
 
@@ -260,7 +260,7 @@ impl<'g> Scope<'_, 'g> {
         let mut context = self.context.borrow().clone();
         context.defining.push(name.clone());
         context.locals.clear();
-        context.deciding.clear();
+        context.compared.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
         let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
         if value.rank() == d.rank {
@@ -302,7 +302,7 @@ impl<'g> Scope<'_, 'g> {
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
-        if self.allowed() == Allowed::Placement && motion && self.constrains.get() {
+        if self.allowed() == Allowed::Placement && motion && self.in_holonomic_constraint.get() {
             cx.error(place.clone(), format!("{what} cannot stand here"))
                 .help("a constraint on velocities is a `Nonholonomic`");
             return false;

@@ -18,7 +18,7 @@ impl<'g> Builder<'_, 'g> {
                 continue;
             }
             if let Some(values) = self.output(output, cx) {
-                if !contact::stands_alone(&values) {
+                if !contact::has_consistent_forces(&values) {
                     cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
                         .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
                     continue;

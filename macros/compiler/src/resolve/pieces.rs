@@ -21,38 +21,42 @@ const ROUNDING: f64 = 1e-9;
 const SIZES: [f64; 12] = [1.0, 1.0, 1.0, 1.0, 1e-2, 1e2, 1e-1, 1e1, 1e-4, 1e4, 1e-3, 1e3];
 
 /// A law in two pieces, as expressions of a symbol that replaces the compared expression.
-struct Pieces<'g> {
+struct PiecewiseLaw<'g> {
     symbol: Symbol,
-    decides: Expr<'g>,
+    compared: Expr<'g>,
     border: Expr<'g>,
     pieces: [Expr<'g>; 2],
 }
 
-impl<'g> Pieces<'g> {
-    fn with(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
+impl<'g> PiecewiseLaw<'g> {
+    fn substitute(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
         replace(self.pieces[piece], &|s| (s == self.symbol).then_some(x))
     }
 
     fn value(&self) -> Expr<'g> {
-        let [below, above] = [Extreme::Min, Extreme::Max].map(|side| self.decides.extreme(side, self.border));
-        let (first, second) = (self.with(0, self.border), self.with(1, self.border));
+        let [below, above] =
+            [Extreme::Min, Extreme::Max].map(|side| self.compared.extreme(side, self.border));
+        let (first, second) = (self.substitute(0, self.border), self.substitute(1, self.border));
         // Both equal the common value of the pieces.
         let common = if second.value().is_some() { second } else { first };
-        self.with(0, below) + self.with(1, above) - common
+        self.substitute(0, below) + self.substitute(1, above) - common
     }
 
     /// Returns the values of both pieces at the border, if they differ for any sample. Samples are used only
-    /// if the nested `beside` borders are in order with this border. Returns `Err` if there are no such
+    /// if the nested `nested_borders` borders are in order with this border. Returns `Err` if there are no such
     /// samples.
-    fn gap(&self, beside: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
-        let at_border = [0, 1].map(|piece| self.with(piece, self.border));
+    fn gap(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
+        let at_border = [0, 1].map(|piece| self.substitute(piece, self.border));
         let mut tried = false;
         for (seed, size) in (0_u64..).zip(SIZES) {
             let number = |e: Expr<'g>| eval_one(e, &|s| size * sample(s, seed));
             let border = number(self.border);
             let in_order = |(is_above, other): &(bool, Expr<'g>)| (number(*other) >= border) == *is_above;
             let found = at_border.map(number);
-            if !beside.iter().all(in_order) || !border.is_finite() || found.iter().any(|x| !x.is_finite()) {
+            if !nested_borders.iter().all(in_order)
+                || !border.is_finite()
+                || found.iter().any(|x| !x.is_finite())
+            {
                 continue;
             }
             tried = true;
@@ -68,9 +72,9 @@ impl<'g> Pieces<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the symbol of an expression that is compared in one of the surrounding piecewise laws.
-    pub fn deciding(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
+    pub fn compared_symbol(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
         let context = self.context.borrow();
-        context.deciding.iter().rev().find(|(written, _)| written.is_like(e)).map(|(_, symbol)| *symbol)
+        context.compared.iter().rev().find(|(written, _)| written.is_like(e)).map(|(_, symbol)| *symbol)
     }
 
     /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
@@ -84,31 +88,31 @@ impl<'g> Scope<'_, 'g> {
         };
         // The border is the constant operand.
         let turned = !moves(x) && (moves(border) || x.value().is_some());
-        let (written, decides, border, pieces) = match turned {
+        let (written, compared, border, pieces) = match turned {
             true => (right, border, x, [above, below]),
             false => (left, x, border, [below, above]),
         };
-        if decides.value().is_some() {
+        if compared.value().is_some() {
             cx.error(left.place.to(&right.place), "this comparison of two numbers is always the same")
                 .help("keep the piece that holds alone");
             return None;
         }
-        let depth = self.context.borrow().deciding.len();
+        let depth = self.context.borrow().compared.len();
         let symbol = Quantity::Deciding(depth).symbol();
-        self.context.borrow_mut().deciding.push((written.clone(), self.graph.symbol(symbol)));
+        self.context.borrow_mut().compared.push((written.clone(), self.graph.symbol(symbol)));
         let read = pieces.map(|piece| self.scalar(piece, cx));
-        self.context.borrow_mut().deciding.pop();
+        self.context.borrow_mut().compared.pop();
         // Definitions contain the compared expression in resolved form.
-        let by_symbol = |e: Expr<'g>| replace_part(e, decides, self.graph.symbol(symbol));
+        let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
             cx.error(left.place.to(&right.place), "the border between the pieces moves with what decides")
                 .help("solve the comparison: what decides on one side, the border on the other");
             return None;
         }
-        let law = Pieces { symbol, decides, border, pieces: pieces_read };
-        let beside = self.borders(written, pieces, cx);
-        self.check_continuous(&law, &beside, left, right, cx).then(|| law.value())
+        let law = PiecewiseLaw { symbol, compared, border, pieces: pieces_read };
+        let nested_borders = self.borders(written, pieces, cx);
+        self.check_continuous(&law, &nested_borders, left, right, cx).then(|| law.value())
     }
 
     /// Returns the borders of nested piecewise laws with the same compared expression. The flag is false for
@@ -138,18 +142,18 @@ impl<'g> Scope<'_, 'g> {
 
     fn check_continuous(
         &self,
-        law: &Pieces<'g>,
-        beside: &[(bool, Expr<'g>)],
+        law: &PiecewiseLaw<'g>,
+        nested_borders: &[(bool, Expr<'g>)],
         left: &syntax::Expr,
         right: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> bool {
         let place = left.place.to(&right.place);
         let (a, b) = (left.spelt(), right.spelt());
-        match law.gap(beside) {
+        match law.gap(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {
-                let plain = |piece: usize| law.with(piece, law.border).value().is_some();
+                let plain = |piece: usize| law.substitute(piece, law.border).value().is_some();
                 let values = match plain(0) && plain(1) {
                     true => format!(": they are {first} and {second} there"),
                     false => String::new(),

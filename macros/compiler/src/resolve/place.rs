@@ -3,7 +3,7 @@
 //! a link.
 
 use super::builder::Builder;
-use super::carriers::carries;
+use super::carriers::uses_axes;
 use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
@@ -73,7 +73,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             if rest.len() == before {
                 self.report_waiting(&rest, order, cx);
-                self.place_somehow(&rest, order);
+                self.place_substitutes(&rest, order);
                 return;
             }
             waiting = rest;
@@ -173,10 +173,10 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
-    fn place_somehow(&mut self, rest: &[Item], order: &Order) {
+    fn place_substitutes(&mut self, rest: &[Item], order: &Order) {
         for item in rest {
             let name = self.provides(*item, order);
-            let (link, pose) = self.link_if_moving(None, self.somewhere(true));
+            let (link, pose) = self.link_if_moving(None, self.substitute_pose(true));
             let (kind, held) = match item {
                 Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
                 Item::Body(k) => (PlacedKind::Body, Some(*k)),
@@ -198,7 +198,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 self.place_joint(j, child, cx);
             }
             Item::Frame(k) => {
-                let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) =
+                    self.frame_place(k, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
                 self.register(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
@@ -213,7 +214,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                     Some(at) => self.offset(frame, at, false, cx),
                     None => Some((frame.link, frame.pose)),
                 });
-                let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = place.unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (link, pose) = self.link_if_moving(link, pose);
                 self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
@@ -221,10 +222,10 @@ impl<'a, 'g> Builder<'a, 'g> {
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
-                let free = !carries(d, &p.name.text);
+                let free = !uses_axes(d, &p.name.text);
                 let (link, pose) =
-                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.link_of_place(holders::of_particle(d, k), link, pose);
+                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
+                let (link, pose) = self.link_of_place(holders::particle_placement(d, k), link, pose);
                 self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
@@ -282,7 +283,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 None
             }
             None => {
-                if !self.scope.is_news(name, cx) {
+                if !self.scope.is_first_report(name, cx) {
                     return None;
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
@@ -312,9 +313,9 @@ impl<'a, 'g> Builder<'a, 'g> {
                 pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
                 (link, pose)
             }
-            _ => (None, self.somewhere(true)),
+            _ => (None, self.substitute_pose(true)),
         };
-        let (link, pose) = self.link_of_place(holders::of_body(self.description, k), link, pose);
+        let (link, pose) = self.link_of_place(holders::body_placement(self.description, k), link, pose);
         self.places[k] = Some((link, pose.clone()));
         self.register(&body.name.text, link, pose, PlacedKind::Body);
     }

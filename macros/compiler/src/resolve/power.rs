@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::call::Call;
-use super::scope::{Allowed, Delivered, Scope, Value};
+use super::scope::{Allowed, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
@@ -12,7 +12,7 @@ use crate::syntax::{self, Description, Name};
 
 /// Number of forces of each kind in the model.
 #[derive(Clone, Copy, PartialEq)]
-pub struct Counts {
+pub struct ForceCounts {
     pub(super) springs: usize,
     pub(super) dashpots: usize,
     pub(super) frictions: usize,
@@ -20,13 +20,13 @@ pub struct Counts {
     pub(super) potentials: usize,
     pub(super) dissipations: usize,
     pub(super) inertances: usize,
-    pub(super) by_acceleration: usize,
+    pub(super) acceleration_forces: usize,
 }
 
-impl Counts {
+impl ForceCounts {
     /// Counts the forces of a model.
-    pub fn of(model: &Model<'_>) -> Counts {
-        Counts {
+    pub fn of_model(model: &Model<'_>) -> ForceCounts {
+        ForceCounts {
             springs: model.springs.len(),
             dashpots: model.dashpots.len(),
             frictions: model.frictions.len(),
@@ -34,13 +34,13 @@ impl Counts {
             potentials: model.potentials.len(),
             dissipations: model.dissipations.len(),
             inertances: model.inertances.len(),
-            by_acceleration: model.acceleration_forces.len(),
+            acceleration_forces: model.acceleration_forces.len(),
         }
     }
 }
 
 /// Whether an output or a definition contains the power of an element.
-pub fn is_asked(d: &Description, element: &Name) -> bool {
+pub fn is_power_used(d: &Description, element: &Name) -> bool {
     let names = |e: &syntax::Expr| {
         e.parts().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
@@ -56,9 +56,9 @@ pub fn is_asked(d: &Description, element: &Name) -> bool {
 impl<'g> Builder<'_, 'g> {
     /// Returns the power of the forces that an element has added since `before`: products of forces and
     /// rates, and the rate of decrease of energies along the motion.
-    pub fn power_since(&self, before: &Counts, element: &str) -> Delivered<'g> {
-        let (m, now) = (&self.model, Counts::of(&self.model));
-        if now.inertances > before.inertances || now.by_acceleration > before.by_acceleration {
+    pub fn power_since(&self, before: &ForceCounts, element: &str) -> ElementPower<'g> {
+        let (m, now) = (&self.model, ForceCounts::of_model(&self.model));
+        if now.inertances > before.inertances || now.acceleration_forces > before.acceleration_forces {
             return Err("its force depends on accelerations");
         }
         let mut power = m.graph.zero();
@@ -93,7 +93,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Records the power of slipping contacts for outputs: that of their friction, which follows from the
     /// normal force.
-    pub fn know_slipping(&mut self) {
+    pub fn record_slipping_power(&mut self) {
         let g = self.model.graph;
         for (k, constraint) in self.model.constraints.iter().enumerate() {
             if constraint.friction.is_empty() {
@@ -142,10 +142,10 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `power(element)`: the power, in W, that a force element, an input or a contact supplies to
     /// the bodies. Negative power is dissipated or stored.
     pub fn power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let known = || self.actions.iter().map(String::as_str);
+        let element_names = || self.actions.iter().map(String::as_str);
         let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a force element").suggest("", known());
+            cx.error(e.place.clone(), "expected a force element").suggest("", element_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
@@ -160,9 +160,9 @@ impl<'g> Scope<'_, 'g> {
             }
             None => {
                 // An element with an error has no power; the error has been reported.
-                if !self.actions.iter().any(|action| action == name) && self.is_news(name, cx) {
+                if !self.actions.iter().any(|action| action == name) && self.is_first_report(name, cx) {
                     let error = cx.error(e.place.clone(), format!("unknown force element `{name}`"));
-                    error.suggest(name, known());
+                    error.suggest(name, element_names());
                     if error.is_bare() {
                         error.help("name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`");
                     }

@@ -29,7 +29,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Axes, Vec<Vec3<'g>>)> {
         if self.context.borrow().axes.is_none() {
-            let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_sum(terms, e, cx)).collect();
+            let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_axes_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
         let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| in_links(terms)).collect();
@@ -67,7 +67,7 @@ impl<'g> Scope<'_, 'g> {
                 drop(kinematics);
                 return self.rate_of_value(call.place, argument, cx).map(Value::Scalar);
             }
-            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_news(&name, cx) {
+            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
                 return None;
             }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
@@ -137,12 +137,12 @@ impl<'g> Scope<'_, 'g> {
     }
 
     fn unknown_place(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
-        if let Some(what) = self.what(name).filter(|w| *w != "a body") {
+        if let Some(what) = self.kind_of_name(name).filter(|w| *w != "a body") {
             cx.error(place.clone(), format!("`{name}` is {what}, which has no place"))
                 .help("name a body, a particle or a point");
             return;
         }
-        if !self.is_news(name, cx) {
+        if !self.is_first_report(name, cx) {
             return;
         }
         let kinematics = self.kinematics.borrow();
@@ -157,12 +157,12 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the placement of an element with a position, or of a point that may move on its body:
     /// `body.at(vector)` with a vector of any axes and coordinates. Velocity and acceleration of such a point
     /// are those of the body at that position.
-    pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    pub fn current_place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
-                let base = self.place_now(base, cx)?;
+                let base = self.current_place(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);
                 let at = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
@@ -191,7 +191,7 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             None => {
-                if !self.is_news(name, cx) {
+                if !self.is_first_report(name, cx) {
                     return None;
                 }
                 let kinematics = self.kinematics.borrow();
@@ -207,7 +207,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the operands between the slashes of a kinematic quantity, or reports an error.
-    fn slashes<'e, const N: usize>(
+    fn slash_operands<'e, const N: usize>(
         &self,
         call: &Call<'e>,
         allowed: Allowed,
@@ -228,16 +228,16 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `r(y / x)`, the position of `y` relative to `x`.
     pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x] = self.slashes(call, Allowed::Placement, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
-        Some(vector(self.kinematics.borrow().between(&y?, &x?)))
+        let [y, x] = self.slash_operands(call, Allowed::Placement, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
+        Some(vector(self.kinematics.borrow().position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
     /// `v − ω × r`.
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slashes(call, Allowed::Motion, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let [y, x, frame] = self.slash_operands(call, Allowed::Motion, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
         Some(vector(self.kinematics.borrow().velocity_in(&y?, &x?, frame?, self.graph)))
     }
@@ -245,24 +245,24 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
     /// and `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
     pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slashes(call, Allowed::Acceleration, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let [y, x, frame] = self.slash_operands(call, Allowed::Acceleration, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
         Some(vector(self.kinematics.borrow().acceleration_in(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 2] = self.slashes(call, Allowed::Motion, cx)?;
+        let frames: [_; 2] = self.slash_operands(call, Allowed::Motion, cx)?;
         let [b, a] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().turning_in(b?, a?, self.graph)))
+        Some(vector(self.kinematics.borrow().angular_velocity_in(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 3] = self.slashes(call, Allowed::Acceleration, cx)?;
+        let frames: [_; 3] = self.slash_operands(call, Allowed::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().turning_rate(b?, a?, c?, self.graph)))
+        Some(vector(self.kinematics.borrow().angular_acceleration_in(b?, a?, c?, self.graph)))
     }
 }
 
@@ -276,9 +276,9 @@ impl<'g> Kinematics<'g> {
         graph: &'g Graph,
     ) -> Terms<'g> {
         let mut v = self.velocity(y);
-        v.extend(minus(self.velocity(x)));
+        v.extend(negated(self.velocity(x)));
         if let Some(l) = frame {
-            let r = self.resolve(&self.between(y, x), frame, Vec3::zero(graph));
+            let r = self.resolve(&self.position_between(y, x), frame, Vec3::zero(graph));
             v.push((frame, -self.twists[l.0].angular.cross(r)));
         }
         v
@@ -293,11 +293,11 @@ impl<'g> Kinematics<'g> {
         graph: &'g Graph,
     ) -> Terms<'g> {
         let mut a = self.acceleration(y);
-        a.extend(minus(self.acceleration(x)));
+        a.extend(negated(self.acceleration(x)));
         if let Some(l) = frame {
             let zero = Vec3::zero(graph);
             let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
-            let r = self.resolve(&self.between(y, x), frame, zero);
+            let r = self.resolve(&self.position_between(y, x), frame, zero);
             let v = self.resolve(&self.velocity_in(y, x, frame, graph), frame, zero);
             let coriolis = w.cross(v);
             a.push((frame, -(dw.cross(r) + w.cross(w.cross(r)) + coriolis + coriolis)));
@@ -306,14 +306,19 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Returns `omega(of / frame)`.
-    pub fn turning_in(&self, of: Option<LinkId>, frame: Option<LinkId>, graph: &'g Graph) -> Terms<'g> {
+    pub fn angular_velocity_in(
+        &self,
+        of: Option<LinkId>,
+        frame: Option<LinkId>,
+        graph: &'g Graph,
+    ) -> Terms<'g> {
         let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
         vec![(of, w(of)), (frame, -w(frame))]
     }
 
     /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is
     /// `α_b − α_a − ω_c × (ω_b − ω_a)`.
-    pub fn turning_rate(
+    pub fn angular_acceleration_in(
         &self,
         b: Option<LinkId>,
         a: Option<LinkId>,
@@ -322,13 +327,13 @@ impl<'g> Kinematics<'g> {
     ) -> Terms<'g> {
         let zero = Vec3::zero(graph);
         let rate = |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
-        let w = self.resolve(&self.turning_in(b, a, graph), c, zero);
+        let w = self.resolve(&self.angular_velocity_in(b, a, graph), c, zero);
         let turns = c.map_or(zero, |l| self.twists[l.0].angular);
         vec![(b, rate(b)), (a, -rate(a)), (c, -turns.cross(w))]
     }
 }
 
-fn minus<'g>(terms: Terms<'g>) -> Terms<'g> {
+fn negated<'g>(terms: Terms<'g>) -> Terms<'g> {
     terms.into_iter().map(|(l, v)| (l, -v)).collect()
 }
 

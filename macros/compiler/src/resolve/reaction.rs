@@ -20,7 +20,7 @@ pub const RELEASED: usize = 6;
 /// Returns the joints to release: those whose reactions are outputs, and all releasable connections of bodies
 /// with free-body diagrams. If there are any, joints solved for in closed form are added, because their
 /// reactions determine those of the loop-closing joints.
-pub fn to_release(model: &Model<'_>) -> Vec<usize> {
+pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
@@ -40,7 +40,7 @@ pub fn to_release(model: &Model<'_>) -> Vec<usize> {
 
 impl<'g> Builder<'_, 'g> {
     /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
-    pub fn transmit(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
+    pub fn record_transmission(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
         let name = self.description.joints[j].name.text.clone();
         self.scope.kinematics.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
     }
@@ -76,12 +76,12 @@ impl<'g> Scope<'_, 'g> {
     /// load of the parent on the child at the origin of the joint's frame.
     pub fn reaction(&self, call: &Call<'_>, offset: usize, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let kinematics = self.kinematics.borrow();
-        let known = || kinematics.transmissions.keys().map(String::as_str);
+        let joint_names = || kinematics.transmissions.keys().map(String::as_str);
         let name = match call.arguments {
             [e] => match &e.kind {
                 ExprKind::Name(name) => name,
                 _ => {
-                    cx.error(e.place.clone(), "expected a joint").suggest("", known());
+                    cx.error(e.place.clone(), "expected a joint").suggest("", joint_names());
                     return None;
                 }
             },
@@ -91,9 +91,9 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
-            if self.is_news(name, cx) {
+            if self.is_first_report(name, cx) {
                 let error = cx.error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
-                error.suggest(name, known());
+                error.suggest(name, joint_names());
                 if error.is_bare() {
                     error.help(format!("name the joint, as in `{}(hinge)`", call.name()));
                 }

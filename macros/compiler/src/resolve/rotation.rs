@@ -1,7 +1,7 @@
 //! Written rotations and matrices.
 
+use super::corrections::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
 use super::scope::Scope;
-use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always;
 use crate::expr::{Expr, Mat3, Rotation};

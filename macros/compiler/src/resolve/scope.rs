@@ -1,7 +1,7 @@
 //! Scopes for the resolution of expressions: declared names, elements placed so far with their motion, and
 //! the quantities on which an expression may depend.
 
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes};
 use crate::mechanism::{Chart, Coordinate, LinkId, Pose, Requirement};
@@ -45,23 +45,23 @@ pub struct Scope<'a, 'g> {
     pub kinematics: RefCell<Kinematics<'g>>,
     /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
     /// missing.
-    pub unknown: RefCell<BTreeSet<String>>,
+    pub reported_names: RefCell<BTreeSet<String>>,
     /// Whether numbers are `f32`.
-    pub single: bool,
+    pub is_f32: bool,
     /// Definitions whose errors have been reported.
-    pub failed: RefCell<BTreeSet<String>>,
+    pub reported_definitions: RefCell<BTreeSet<String>>,
     /// Whether a constraint on configurations is being resolved.
-    pub constrains: std::cell::Cell<bool>,
+    pub in_holonomic_constraint: std::cell::Cell<bool>,
     /// Values of definitions used by the definition that is being evaluated. Each is evaluated once, even if
     /// several others use it.
-    pub known: RefCell<Known<'g>>,
+    pub definition_values: RefCell<DefinitionValues<'g>>,
     /// Conditions on values that depend on parameters, recorded so far.
     pub requirements: RefCell<Vec<Requirement<'g>>>,
 }
 
 /// Values of definitions, by name, allowed quantities, and whether unqualified axes are those of the ground;
 /// `None` for definitions with errors.
-pub type Known<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
+pub type DefinitionValues<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
 
 /// Axes in which a vector is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub enum Value<'g> {
     /// Physical vector.
     Vector(Vec<(Axes, Vec3<'g>)>),
     /// Physical matrix.
-    Matrix(Resolved<'g>),
+    Matrix(ResolvedMatrix<'g>),
 }
 
 impl Value<'_> {
@@ -131,7 +131,7 @@ pub struct Context<'g> {
     pub locals: Vec<(&'static str, Expr<'g>)>,
     /// Compared expressions of the piecewise laws that are being resolved, as written, with the symbols that
     /// replace them.
-    pub deciding: Vec<(syntax::Expr, Expr<'g>)>,
+    pub compared: Vec<(syntax::Expr, Expr<'g>)>,
     /// Definitions that are being evaluated.
     pub defining: Vec<String>,
 }
@@ -139,7 +139,7 @@ pub struct Context<'g> {
 impl<'g> Context<'g> {
     /// Returns a context without local names.
     pub fn new(allowed: Allowed, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
-        Context { allowed, axes, locals: Vec::new(), deciding: Vec::new(), defining: Vec::new() }
+        Context { allowed, axes, locals: Vec::new(), compared: Vec::new(), defining: Vec::new() }
     }
 
     /// Returns the context with these local names.
@@ -190,9 +190,9 @@ pub struct Kinematics<'g> {
     /// Index of each joint, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
     /// Forces and moments between the surfaces of each contact.
-    pub touches: BTreeMap<String, Exerted<'g>>,
+    pub contact_loads: BTreeMap<String, ContactLoads<'g>>,
     /// Power of each force element that an output uses.
-    pub powers: BTreeMap<String, Delivered<'g>>,
+    pub powers: BTreeMap<String, ElementPower<'g>>,
     /// Accelerations of the links; set after all links are placed.
     pub accelerations: Vec<Spatial<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
@@ -201,7 +201,7 @@ pub struct Kinematics<'g> {
 
 /// Forces and moments of the second surface of a contact on the first, each in the axes of a link.
 #[derive(Debug, Default)]
-pub struct Exerted<'g> {
+pub struct ContactLoads<'g> {
     /// Forces at all points.
     pub forces: Vec<(Option<LinkId>, Vec3<'g>)>,
     /// Moments of friction against spin and rolling.
@@ -210,15 +210,15 @@ pub struct Exerted<'g> {
     pub power: Option<Expr<'g>>,
 }
 
-impl<'g> Exerted<'g> {
+impl<'g> ContactLoads<'g> {
     /// Adds power.
-    pub fn deliver(&mut self, power: Expr<'g>) {
+    pub fn add_power(&mut self, power: Expr<'g>) {
         self.power = Some(self.power.map_or(power, |sum| sum + power));
     }
 }
 
 /// Power of a force element, or the reason why it is unavailable.
-pub type Delivered<'g> = Result<Expr<'g>, &'static str>;
+pub type ElementPower<'g> = Result<Expr<'g>, &'static str>;
 
 /// A vector as a sum over the axes of links.
 pub type Terms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
@@ -242,7 +242,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Returns `r(y / x)`; links that carry both points cancel.
-    pub fn between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
+    pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
         let mut sum = self.position(y.link, y.pose.translation);
         for (axes, v) in self.position(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {

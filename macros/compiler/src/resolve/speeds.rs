@@ -12,7 +12,7 @@ use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
 
 /// A declared speed, with its coefficients of all velocities.
-struct Declared<'a, 'g> {
+struct DeclaredSpeed<'a, 'g> {
     name: &'a Name,
     value: &'a syntax::Expr,
     row: Vec<Expr<'g>>,
@@ -25,13 +25,13 @@ impl<'a, 'g> Builder<'a, 'g> {
         if d.speeds.is_empty() || self.releasing.is_some() || !cx.is_empty() {
             return;
         }
-        let declared: Vec<Declared<'a, 'g>> = d
+        let declared: Vec<DeclaredSpeed<'a, 'g>> = d
             .speeds
             .iter()
             .filter_map(|name| {
                 let definition = d.definitions.iter().find(|definition| definition.name.text == name.text)?;
                 let row = self.coefficients(name, &definition.value, cx)?;
-                Some(Declared { name, value: &definition.value, row })
+                Some(DeclaredSpeed { name, value: &definition.value, row })
             })
             .collect();
         if cx.is_empty() {
@@ -53,7 +53,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 .help("a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), body.x)`");
             return None;
         }
-        let state = |k: usize| d_states(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
+        let state =
+            |k: usize| state_indices(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
         for symbol in symbols_in(&row) {
             let (what, help) = match Quantity::of(symbol) {
                 Quantity::Velocity(_) => (
@@ -90,7 +91,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some(row)
     }
 
-    fn replace_velocities(&mut self, declared: &[Declared<'_, 'g>], cx: &mut Diagnostics) {
+    fn replace_velocities(&mut self, declared: &[DeclaredSpeed<'_, 'g>], cx: &mut Diagnostics) {
         let rows: Vec<Vec<Expr<'g>>> = declared.iter().map(|speed| speed.row.clone()).collect();
         let named = speeds::named_columns(&self.model, &rows);
         if !self.check_speeds(declared, &rows, &named, cx) {
@@ -110,9 +111,9 @@ impl<'a, 'g> Builder<'a, 'g> {
         };
         let g = self.scope.graph;
         let identity = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
-        let whole = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
-            let at = |k: usize| named.iter().position(|n| *n == k);
-            let entry = |i: usize, j: usize| match (at(i), at(j)) {
+        let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
+            let named_index = |k: usize| named.iter().position(|n| *n == k);
+            let entry = |i: usize, j: usize| match (named_index(i), named_index(j)) {
                 (Some(i), Some(j)) => block[i][j],
                 _ => identity(i, j),
             };
@@ -122,7 +123,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         for (k, speed) in named.iter().zip(declared) {
             self.model.velocities[*k] = (speed.name.text.clone(), speed.name.place.clone());
         }
-        let (of_rates, rates) = (whole(&block), whole(&inverse));
+        let (of_rates, rates) = (full_matrix(&block), full_matrix(&inverse));
         let replaced = named.into_iter().map(InV).collect();
         self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
@@ -131,7 +132,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// reports an error otherwise.
     fn check_speeds(
         &self,
-        declared: &[Declared<'_, 'g>],
+        declared: &[DeclaredSpeed<'_, 'g>],
         rows: &Vec<Vec<Expr<'g>>>,
         named: &[usize],
         cx: &mut Diagnostics,
@@ -184,6 +185,6 @@ impl<'a, 'g> Builder<'a, 'g> {
 }
 
 /// Returns the states with their indices among the parameters.
-fn d_states<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
+fn state_indices<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
     builder.description.states.iter().map(|(name, parameter)| (name.text.as_str(), *parameter))
 }

@@ -53,7 +53,7 @@ impl<'g> Builder<'_, 'g> {
                     self.report_target(name, &inner.place, cx);
                     return None;
                 }
-                self.scope.place_now(on, cx).map(Target::Point)
+                self.scope.current_place(on, cx).map(Target::Point)
             }
             ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
                 self.expression_stretch(on, cx).map(Target::Expression)
@@ -118,7 +118,7 @@ impl<'g> Builder<'_, 'g> {
                     .help(format!("write `on = {joint}` and give a direction, or name a joint"));
                 return None;
             }
-            if self.scope.is_news(joint, cx) {
+            if self.scope.is_first_report(joint, cx) {
                 let known = self.joint_names();
                 let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
                 error.suggest(joint, known.iter().map(String::as_str));
@@ -151,17 +151,17 @@ impl<'g> Builder<'_, 'g> {
         if name == GROUND {
             cx.error(place.clone(), "nothing that acts on the ground has an effect")
                 .help("name a body that moves, or one of its points: `on = body.at(length * x)`");
-        } else if self.scope.what(name) == Some("a joint") {
+        } else if self.scope.kind_of_name(name) == Some("a joint") {
             cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
                 .help(format!("write `on = {name}`, or name a point of a body"));
-        } else if let Some(what) = self.scope.what(name) {
+        } else if let Some(what) = self.scope.kind_of_name(name) {
             cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
                 .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
         } else {
             let mut known = self.joint_names();
             known.extend(self.placeable.iter().cloned());
             known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
-            if !self.scope.is_news(name, cx) {
+            if !self.scope.is_first_report(name, cx) {
                 return;
             }
             let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));

@@ -3,7 +3,7 @@
 
 use super::builder::Builder;
 use super::constraint::Constrained;
-use super::power::Counts;
+use super::power::ForceCounts;
 use super::scope::{Allowed, Context};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -65,7 +65,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        let terms = kinematics.between(&second, &first);
+        let terms = kinematics.position_between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = kinematics.resolve(&terms, axes, zero);
         // The test for a common line ignores released joints.
@@ -96,9 +96,9 @@ impl<'g> Builder<'_, 'g> {
         for (name, e) in &d.energies {
             let context = Context::new(Allowed::Placement, ground());
             let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.model.potentials.extend(energy);
-            self.know_applied(&before, &name.text);
+            self.record_applied(&before, &name.text);
         }
         for (name, e) in &d.dissipations {
             let context = Context::new(Allowed::Motion, ground());
@@ -108,9 +108,9 @@ impl<'g> Builder<'_, 'g> {
                 cx.error(e.place.clone(), "this contains no velocity, and has no effect")
                     .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
             }
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.model.dissipations.extend(function);
-            self.know_applied(&before, &name.text);
+            self.record_applied(&before, &name.text);
         }
         self.add_outputs(cx);
         // Unused definitions are checked as well.
@@ -155,12 +155,12 @@ fn always_zero(r: Vec3<'_>) -> bool {
 
 /// Returns the direction of a vector, if it is the same for all coordinates and parameters.
 fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
-    let at = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
-    let first = at(0);
+    let evaluate = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
+    let first = evaluate(0);
     let norm = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let e = [first[0] / norm, first[1] / norm, first[2] / norm];
     let parallel = (1..5).all(|seed| {
-        let v = at(seed);
+        let v = evaluate(seed);
         let along: f64 = (0..3).map(|k| v[k] * e[k]).sum();
         let size = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         (0..3).all(|k| (v[k] - along * e[k]).abs() <= 1e-12 * size)

@@ -37,7 +37,7 @@ pub fn closing(description: &Description) -> Vec<bool> {
         let known = child == GROUND
             || parents.contains_key(child)
             || description.points.iter().any(|p| p.name.text == child);
-        let closes = known || (parent != child && carries(&parents, child, parent));
+        let closes = known || (parent != child && is_descendant(&parents, child, parent));
         if !closes {
             parents.insert(child, parent);
         }
@@ -47,7 +47,7 @@ pub fn closing(description: &Description) -> Vec<bool> {
 }
 
 /// Whether one element is a descendant of another (or the same).
-fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
+fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
     let mut at = Some(carried);
     (0..=parents.len()).any(|_| {
         let here = at;
@@ -86,19 +86,19 @@ pub fn find_tree(
             }
         }
     };
-    let mut is_held = vec![false; jointed.len()];
+    let mut is_attached = vec![false; jointed.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
-    let mut sound = true;
+    let mut is_valid = true;
     let closing = closing(description);
     for (j, joint) in description.joints.iter().enumerate() {
         let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {
-            sound = false;
+            is_valid = false;
             continue;
         };
         let name = &joint.child.body;
         if joint.parent.body.text == name.text {
-            sound = false;
+            is_valid = false;
             // A body called `ground` has already been reported.
             if jointed.iter().any(|h| h.name.text == GROUND) {
                 continue;
@@ -109,32 +109,32 @@ pub fn find_tree(
         }
         match child {
             Some(child) if !closing[j] => {
-                is_held[child] = true;
+                is_attached[child] = true;
                 ends.push((j, parent, child));
             }
             _ => loops.push(j),
         }
     }
-    if !sound {
+    if !is_valid {
         return None;
     }
     let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in jointed.iter().enumerate() {
-        if !is_held[k] && !is_placed(k) {
+        if !is_attached[k] && !is_placed(k) {
             if !description.partial {
-                report_unheld(description, body.name, &loops, cx);
+                report_unattached(description, body.name, &loops, cx);
             }
-            sound = false;
+            is_valid = false;
         }
     }
     let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
     let order = sort(&ends, jointed.len(), &roots);
-    sound.then_some(Order { joints: order, closing: loops })
+    is_valid.then_some(Order { joints: order, closing: loops })
 }
 
 /// Reports a body that is not the child of a tree joint: the joint may have the wrong direction, or the body
 /// may be its own ancestor.
-fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
+fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
     let joints = || loops.iter().map(|j| &description.joints[*j]);
     if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
@@ -177,7 +177,7 @@ fn sort(
 
 fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
-    if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
+    if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
             .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
         return;
@@ -193,7 +193,7 @@ fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>,
         return;
     }
     let known: Vec<&str> = jointed.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
-    if !scope.is_news(&name.text, cx) {
+    if !scope.is_first_report(&name.text, cx) {
         return;
     }
     let error = cx.error(place, format!("unknown body `{}`", name.text));

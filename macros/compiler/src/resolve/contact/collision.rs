@@ -1,6 +1,6 @@
 //! Collision geometry of the links of a file, as surfaces of contacts.
 
-use super::surface::{Form, Surface};
+use super::surface::{Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
 use crate::resolve::builder::Builder;
@@ -75,11 +75,11 @@ impl<'g> Builder<'_, 'g> {
         let pose = frame.pose.then(&self.endpoint(&part.on, cx)?);
         let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
         let form = match part.shape {
-            Shape::Sphere(radius) => Form::Sphere(length(radius)),
-            Shape::Cuboid(edges) => Form::Cuboid(edges.map(length)),
-            Shape::Cylinder(radius, along) => Form::Drum(length(radius), length(along), z),
-            Shape::Capsule(radius, along) => Form::Capsule(length(radius), length(along), z),
-            Shape::Ellipsoid(radii) => Form::Ellipsoid(radii.map(length)),
+            Shape::Sphere(radius) => SurfaceForm::Sphere(length(radius)),
+            Shape::Cuboid(edges) => SurfaceForm::Cuboid(edges.map(length)),
+            Shape::Cylinder(radius, along) => SurfaceForm::Drum(length(radius), length(along), z),
+            Shape::Capsule(radius, along) => SurfaceForm::Capsule(length(radius), length(along), z),
+            Shape::Ellipsoid(radii) => SurfaceForm::Ellipsoid(radii.map(length)),
             Shape::Mesh => return None,
         };
         Some(Surface { frame: Placed { pose, ..frame }, form })

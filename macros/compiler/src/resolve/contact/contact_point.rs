@@ -4,7 +4,7 @@
 //! of the surface.
 
 use super::surface::Sheet;
-use super::{Contact, Pair, farthest};
+use super::{PointContact, SurfacePair, support_point};
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::expr::diff::Derivative;
@@ -30,21 +30,21 @@ impl<'g> Builder<'_, 'g> {
         let zero = Vec3::zero(self.scope.graph);
         let in_link = self.scope.kinematics.borrow().resolve(&terms, frame.link, zero);
         let at = frame.pose.rotation.to_child(in_link);
-        let own = |q: Quantity| match q {
+        let is_allowed = |q: Quantity| match q {
             Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
             q => matches!(q, Quantity::Parameter(_)),
         };
-        if !symbols_in(&at.0).into_iter().all(|s| own(Quantity::of(s))) {
+        if !symbols_in(&at.0).into_iter().all(|s| is_allowed(Quantity::of(s))) {
             cx.error(point.place.clone(), "the points of a surface depend on its two coordinates alone")
                 .help("parameters may stand there as well, and the axes of the surface's own body");
             return None;
         }
-        let along = |c: &Coordinate| {
+        let derivatives = |c: &Coordinate| {
             let mut d =
                 Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
             at.map(|e| d.of(e))
         };
-        let tangents = [along(&first), along(&second)];
+        let tangents = [derivatives(&first), derivatives(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {
             cx.error(point.place.clone(), "these points are no surface: they do not move with both coordinates")
                 .help("write the points by two coordinates, as in `surface(u, w, u * x + w * y + u * w / size * z)`");
@@ -56,12 +56,13 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the coordinate with this name, which must be declared as a field of its own.
     fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let kinematics = self.scope.kinematics.borrow();
-        let known = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
+        let coordinate_names = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
         let name = e.name().unwrap_or("");
-        let found = kinematics.coordinates.iter().find(|(n, ..)| n == name && known().any(|k| k == name));
-        if found.is_none() && (name.is_empty() || self.scope.is_news(name, cx)) {
+        let found =
+            kinematics.coordinates.iter().find(|(n, ..)| n == name && coordinate_names().any(|k| k == name));
+        if found.is_none() && (name.is_empty() || self.scope.is_first_report(name, cx)) {
             cx.error(e.place.clone(), "expected a coordinate of the surface")
-                .suggest(name, known())
+                .suggest(name, coordinate_names())
                 .help("declare it as a field of its own: `u: Coordinate`");
         }
         found.map(|(_, c, _)| *c)
@@ -69,20 +70,24 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the contact of a convex body, with the distances that determine the coordinates of the
     /// surface.
-    pub(super) fn contact_point(&self, pair: &Pair<'g>, sheet: &Sheet<'g>) -> Option<Contact<'g>> {
-        let of_surface = |v| self.of_second(pair, v).value;
-        let [u, w] = sheet.tangents.map(of_surface);
+    pub(super) fn contact_point(
+        &self,
+        pair: &SurfacePair<'g>,
+        sheet: &Sheet<'g>,
+    ) -> Option<PointContact<'g>> {
+        let rotate_surface = |v| self.second_direction(pair, v).value;
+        let [u, w] = sheet.tangents.map(rotate_surface);
         let first = u.map(|x| x / u.norm());
         let across = u.cross(w);
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
-        let point = -farthest(&pair.a.form, normal, 0.0, &|v| self.of_first(pair, v).value)?;
-        let apart = pair.center.value - pair.base.value + point - of_surface(sheet.at);
-        Some(Contact {
-            gap: normal.dot(apart),
+        let point = -support_point(&pair.a.form, normal, 0.0, &|v| self.first_direction(pair, v).value)?;
+        let offset = pair.center.value - pair.base.value + point - rotate_surface(sheet.at);
+        Some(PointContact {
+            gap: normal.dot(offset),
             point,
             axes: [("normal", normal), ("first", first), ("second", second)],
-            conditions: vec![("foot_first", first.dot(apart)), ("foot_second", second.dot(apart))],
+            conditions: vec![("foot_first", first.dot(offset)), ("foot_second", second.dot(offset))],
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Forces and moments at contacts, as functions in outputs.
 
-use super::unilateral::Point;
+use super::unilateral::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
@@ -11,7 +11,7 @@ use crate::syntax;
 
 /// Whether expressions use no contact forces, or use them without reactions and accelerations. Reactions and
 /// accelerations are those of the motion without contact forces.
-pub fn stands_alone(values: &[Expr<'_>]) -> bool {
+pub fn has_consistent_forces(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
     !any(|q| matches!(q, Quantity::ContactForce(_)))
@@ -24,7 +24,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
-        Some(sum_by_axes(&kinematics.touches.get(name)?.forces))
+        Some(sum_by_axes(&kinematics.contact_loads.get(name)?.forces))
     }
 
     /// Resolves `contact_moment(name)`: the moment of friction of the second surface on the first, against
@@ -32,7 +32,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
-        let moments = &kinematics.touches.get(name)?.moments;
+        let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
             cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
                 .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
@@ -44,19 +44,19 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the name of the contact that is the argument of a function.
     fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = self.kinematics.borrow();
-        let known = || kinematics.touches.keys().map(String::as_str);
+        let contact_names = || kinematics.contact_loads.keys().map(String::as_str);
         let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a contact").suggest("", known());
+            cx.error(e.place.clone(), "expected a contact").suggest("", contact_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "a force at a contact", call.place, cx) {
             return None;
         }
-        if !kinematics.touches.contains_key(name) {
-            if self.is_news(name, cx) {
+        if !kinematics.contact_loads.contains_key(name) {
+            if self.is_first_report(name, cx) {
                 let error = cx.error(e.place.clone(), format!("unknown contact `{name}`"));
-                error.suggest(name, known());
+                error.suggest(name, contact_names());
                 if error.is_bare() {
                     error.help(
                         "name a field of type `Contact`; what stops transmit is among `contact::acting`",
@@ -83,13 +83,20 @@ fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
 }
 
 /// Reports coefficients of torsional or rolling friction at contacts without the corresponding rotation.
-pub(super) fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
-    let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
-    let asked = [
-        (&contact.torsional, "about the normal of this contact", still(0)),
-        (&contact.rolling, "about the tangents of this contact", still(1) && still(2)),
+pub(super) fn check_relative_rotation(
+    contact: &syntax::Contact,
+    points: &[&CandidatePoint<'_>],
+    cx: &mut Diagnostics,
+) {
+    let has_no_rotation =
+        |axis: usize| points.iter().all(|point| velocity_gradient(point.angular_rates[axis]).is_empty());
+    let checks = [
+        (&contact.torsional, "about the normal of this contact", has_no_rotation(0)),
+        (&contact.rolling, "about the tangents of this contact", has_no_rotation(1) && has_no_rotation(2)),
     ];
-    for (e, about, _) in asked.into_iter().filter(|(.., still)| *still && !contact.of_file) {
+    for (e, about, _) in
+        checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
+    {
         let Some(e) = e else { continue };
         cx.error(e.place.clone(), format!("nothing turns {about}"))
             .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");

@@ -13,12 +13,12 @@ mod slipping;
 mod soft;
 mod stops;
 mod surface;
-pub use force::stands_alone;
+pub use force::has_consistent_forces;
 mod terrain;
 mod unilateral;
 
 pub use slipping::check_pressed;
-pub use terrain::PLACE;
+pub use terrain::TERRAIN_COORDINATES;
 
 use super::builder::Builder;
 use super::scope::Terms;
@@ -29,10 +29,10 @@ use crate::kinematics::{perpendicular, time_derivative};
 use crate::language::Callable;
 use crate::mechanism::{FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
-use surface::{Form, Surface};
+use surface::{Surface, SurfaceForm};
 
 /// A contact at a point, in the axes of the link that carries both bodies.
-struct Contact<'g> {
+struct PointContact<'g> {
     /// Signed distance of the surfaces, m.
     gap: Expr<'g>,
     /// Contact point, relative to the centre of the first surface.
@@ -46,7 +46,7 @@ struct Contact<'g> {
 
 /// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
 /// link.
-struct Pair<'g> {
+struct SurfacePair<'g> {
     a: Surface<'g>,
     b: Surface<'g>,
     on_a: Relative<'g>,
@@ -63,14 +63,14 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the constraint rows of a rolling pair.
     pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let Some(pair) = self.pair(constraint, cx) else { return };
-        if let Form::Cone(..) = pair.a.form {
-            self.roll_cone(constraint, &pair, cx);
+        if let SurfaceForm::Cone(..) = pair.a.form {
+            self.add_rolling_cone(constraint, &pair, cx);
             return;
         }
         let Some(contact) = self.contact(&pair) else { return };
-        self.know_contact(&constraint.name.text, &pair, &contact);
+        self.record_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
-        self.hold(constraint, &contact, slip, Vec::new());
+        self.add_contact_rows(constraint, &contact, slip, Vec::new());
         let [_, tangents @ ..] = contact.axes;
         for (word, e) in tangents {
             let name = format!("{}.{word}", constraint.name.text);
@@ -80,10 +80,10 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds the rows that keep a pair in contact: the distance, with the friction caused by its normal force,
     /// and the conditions for the contact coordinates of a surface given by its points.
-    fn hold(
+    fn add_contact_rows(
         &mut self,
         constraint: &syntax::Constraint,
-        contact: &Contact<'g>,
+        contact: &PointContact<'g>,
         slip: Vec3<'g>,
         friction: Vec<FrictionTerm<'g>>,
     ) {
@@ -109,12 +109,12 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Records the contact point of a pair for free-body diagrams.
-    fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
-        self.touching.insert(name.to_string(), self.place_of_touch(pair, contact.point));
+    fn record_contact(&mut self, name: &str, pair: &SurfacePair<'g>, contact: &PointContact<'g>) {
+        self.contact_points.insert(name.to_string(), self.contact_position(pair, contact.point));
     }
 
     /// Returns the position of a point given relative to the centre of the first surface.
-    fn place_of_touch(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Terms<'g> {
+    fn contact_position(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
         let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
         place.push((pair.on_a.ancestor, point));
@@ -128,7 +128,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Parses `rolls(surface, surface)` or `slips(surface, surface)`. The first surface of the result is the
     /// one that rolls.
-    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
+    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<SurfacePair<'g>> {
         let e = &constraint.value;
         let kind = constraint.kind.pair();
         let known = kind.map_or("", Callable::verb);
@@ -146,7 +146,7 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let b = self.surface(second, &example, cx);
-        let pair = self.two(a?, b?, Form::rolls_on, second, cx)?;
+        let pair = self.ordered_pair(a?, b?, SurfaceForm::rolls_on, second, cx)?;
         if !pair.a.form.rolls_on(&pair.b.form) {
             cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
             return None;
@@ -155,14 +155,14 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns two surfaces with their motions, in the order that `is_known` accepts.
-    fn two(
+    fn ordered_pair(
         &self,
         mut a: Surface<'g>,
         mut b: Surface<'g>,
-        is_known: fn(&Form<'g>, &Form<'g>) -> bool,
+        is_known: fn(&SurfaceForm<'g>, &SurfaceForm<'g>) -> bool,
         second: &syntax::Expr,
         cx: &mut Diagnostics,
-    ) -> Option<Pair<'g>> {
+    ) -> Option<SurfacePair<'g>> {
         if a.frame.link == b.frame.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
                 .help("surfaces touch that belong to bodies which move relative to each other");
@@ -175,61 +175,61 @@ impl<'g> Builder<'_, 'g> {
             (self.relative(a.frame.link, b.frame.link), self.relative(b.frame.link, a.frame.link));
         let center = self.point(&on_a, a.frame.pose.translation);
         let base = self.point(&on_b, b.frame.pose.translation);
-        Some(Pair { a, b, on_a, on_b, center, base })
+        Some(SurfacePair { a, b, on_a, on_b, center, base })
     }
 
     /// Returns a direction of the first body, with its rate, in the common axes.
-    fn of_first(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+    fn first_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
     }
 
     /// Returns a direction of the second body, with its rate, in the common axes.
-    fn of_second(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+    fn second_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
     }
 
     /// Returns the velocity of the first body relative to the second at a point given relative to the centre
     /// of the first surface.
-    fn slip(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Vec3<'g> {
-        let Pair { center, base, .. } = pair;
-        let [w_a, w_b] = self.spins(pair);
+    fn slip(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Vec3<'g> {
+        let SurfacePair { center, base, .. } = pair;
+        let [w_a, w_b] = self.angular_velocities(pair);
         let arm = center.value + point - base.value;
         center.rate + w_a.cross(point) - (base.rate + w_b.cross(arm))
     }
 
     /// Returns the angular velocities of both bodies relative to their common link.
-    fn spins(&self, pair: &Pair<'g>) -> [Vec3<'g>; 2] {
+    fn angular_velocities(&self, pair: &SurfacePair<'g>) -> [Vec3<'g>; 2] {
         [&pair.on_a, &pair.on_b].map(|on| self.direction_out(on, on.twist.angular))
     }
 
     /// Returns the contact of a pair; `None` for pairs that touch along a line.
-    fn contact(&self, pair: &Pair<'g>) -> Option<Contact<'g>> {
-        let turned_a = |v| self.of_first(pair, v).value;
-        let turned_b = |v| self.of_second(pair, v).value;
+    fn contact(&self, pair: &SurfacePair<'g>) -> Option<PointContact<'g>> {
+        let rotate_a = |v| self.first_direction(pair, v).value;
+        let rotate_b = |v| self.second_direction(pair, v).value;
         let c = pair.center.value - pair.base.value;
         match (&pair.a.form, &pair.b.form) {
-            (_, Form::Sheet(sheet)) => self.contact_point(pair, sheet),
-            (a, Form::Plane(n)) => {
-                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
-                let normal = turned_b(*n);
-                let point = -farthest(a, normal, 0.0, &turned_a)?;
+            (_, SurfaceForm::Sheet(sheet)) => self.contact_point(pair, sheet),
+            (a, SurfaceForm::Plane(n)) => {
+                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+                let normal = rotate_b(*n);
+                let point = -support_point(a, normal, 0.0, &rotate_a)?;
                 let gap = normal.dot(c + point);
-                Some(Contact {
+                Some(PointContact {
                     gap,
                     point,
                     axes: [("normal", normal), (first, e1), (second, e2)],
                     conditions: Vec::new(),
                 })
             }
-            (Form::Sphere(radius), b) => sphere_contact(*radius, b, c, &turned_b),
+            (SurfaceForm::Sphere(radius), b) => sphere_contact(*radius, b, c, &rotate_b),
             _ => None,
         }
     }
 }
 
-impl<'g> Form<'g> {
+impl<'g> SurfaceForm<'g> {
     /// Whether the surface can roll on another one.
-    fn rolls_on(&self, b: &Form<'g>) -> bool {
+    fn rolls_on(&self, b: &SurfaceForm<'g>) -> bool {
         let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
         self.id().is_some_and(|id| rollers.contains(&id))
     }
@@ -239,29 +239,29 @@ impl<'g> Form<'g> {
 /// surface.
 fn sphere_contact<'g>(
     radius: Expr<'g>,
-    b: &Form<'g>,
+    b: &SurfaceForm<'g>,
     c: Vec3<'g>,
-    turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
-) -> Option<Contact<'g>> {
-    let inside = matches!(b, Form::Bowl(_) | Form::Tube(..) | Form::Funnel(..));
+    rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> Option<PointContact<'g>> {
+    let inside = matches!(b, SurfaceForm::Bowl(_) | SurfaceForm::Tube(..) | SurfaceForm::Funnel(..));
     let side = |x: Expr<'g>| if inside { -x } else { x };
     let (normal, distance, tangents) = match b {
-        Form::Sphere(r) | Form::Bowl(r) => {
+        SurfaceForm::Sphere(r) | SurfaceForm::Bowl(r) => {
             let size = c.norm();
             let normal = c.map(|x| side(x / size));
             let (first, second) = tangents_of(normal);
             (normal, side(size - *r), [("first", first), ("second", second)])
         }
-        Form::Cylinder(r, u) | Form::Tube(r, u) => {
-            let axis = turned_b(*u);
+        SurfaceForm::Cylinder(r, u) | SurfaceForm::Tube(r, u) => {
+            let axis = rotate_b(*u);
             let outward = c - axis * axis.dot(c);
             let size = outward.norm();
             let normal = outward.map(|x| side(x / size));
             (normal, side(size - *r), [("along", axis), ("around", normal.cross(axis))])
         }
-        Form::Cone(half, u) | Form::Funnel(half, u) => {
+        SurfaceForm::Cone(half, u) | SurfaceForm::Funnel(half, u) => {
             let (sine, cosine) = (half.sin(), half.cos());
-            let axis = turned_b(*u);
+            let axis = rotate_b(*u);
             let height = axis.dot(c);
             let outward = c - axis * height;
             let size = outward.norm();
@@ -275,32 +275,32 @@ fn sphere_contact<'g>(
     };
     let [first, second] = tangents;
     let axes = [("normal", normal), first, second];
-    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
+    Some(PointContact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
 }
 
 /// Returns the farthest point of a convex body along `n`, relative to its centre.
 ///
 /// If `n` is the axis of a rim, all its points are equally far. With a positive `least`, a lower bound on the
 /// squared sine of the angle between axis and `n`, the centre of the rim is returned then.
-fn farthest<'g>(
-    form: &Form<'g>,
+fn support_point<'g>(
+    form: &SurfaceForm<'g>,
     n: Vec3<'g>,
     least: f64,
-    turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<Vec3<'g>> {
     let across = |axis: Vec3<'g>| {
-        let a = turned(axis);
+        let a = rotate(axis);
         let cosine = a.dot(n);
         let sine = (cosine.num(1.0 + least) - cosine.square()).sqrt();
         (n - a * cosine).map(|x| x / sine)
     };
     Some(match form {
-        Form::Circle(r, axis) => across(*axis) * *r,
-        Form::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
-        Form::Sphere(r) => n * *r,
-        Form::Ellipsoid(half) => {
+        SurfaceForm::Circle(r, axis) => across(*axis) * *r,
+        SurfaceForm::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
+        SurfaceForm::Sphere(r) => n * *r,
+        SurfaceForm::Ellipsoid(half) => {
             let g = n[0].graph();
-            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned(Vec3::axis(g, k)));
+            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate(Vec3::axis(g, k)));
             let parts: [Expr<'g>; 3] = std::array::from_fn(|k| half[k] * axes[k].dot(n));
             let size = Vec3(parts).norm();
             (0..3).fold(Vec3::zero(g), |sum, k| sum + axes[k] * (half[k] * parts[k] / size))

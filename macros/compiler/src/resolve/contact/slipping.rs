@@ -20,7 +20,7 @@ impl<'g> Builder<'_, 'g> {
             );
             return;
         };
-        self.know_contact(&constraint.name.text, &pair, &contact);
+        self.record_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
         let [_, tangents @ ..] = contact.axes;
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
@@ -28,7 +28,7 @@ impl<'g> Builder<'_, 'g> {
         let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
         let friction =
             moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        self.hold(constraint, &contact, slip, friction);
+        self.add_contact_rows(constraint, &contact, slip, friction);
     }
 
     /// Returns the coefficient of friction and the speed of the regularisation.

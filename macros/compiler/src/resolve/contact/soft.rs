@@ -2,13 +2,13 @@
 //! restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth
 //! in the slip velocity.
 
-use super::unilateral::{Laws, Point};
+use super::unilateral::{CandidatePoint, ContactCoefficients};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context, Exerted};
+use crate::resolve::scope::{Allowed, ContactLoads, Context};
 use crate::syntax::{self, Softness};
 
 /// Default slip speed below which friction is regularised, m/s.
@@ -55,10 +55,10 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the effects of a contact point: potential energy of the penetration, dissipation and friction.
     pub(super) fn add_soft_point(
         &mut self,
-        point: &Point<'g>,
-        laws: Laws<'g>,
+        point: &CandidatePoint<'g>,
+        coefficients: ContactCoefficients<'g>,
         soft: &Soft<'g>,
-        exerted: &mut Exerted<'g>,
+        exerted: &mut ContactLoads<'g>,
     ) {
         let g = self.scope.graph;
         let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
@@ -74,12 +74,12 @@ impl<'g> Builder<'_, 'g> {
             self.model.loads.push(Load { rate, force: damping, dissipative: true });
         }
         exerted.forces.push((point.ancestor, normal * pressure));
-        for (about, most) in [(0..1, laws.torsional), (1..3, laws.rolling)] {
-            let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.turns[k])).collect();
+        for (about, most) in [(0..1, coefficients.torsional), (1..3, coefficients.rolling)] {
+            let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.angular_rates[k])).collect();
             let moments = self.add_moment(&turns, most, pressure, soft.speed);
             exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
         }
-        let friction = laws.friction;
+        let friction = coefficients.friction;
         if friction.is_zero() {
             return;
         }

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Form of a surface; vectors and lengths in body axes.
 #[derive(Clone)]
-pub enum Form<'g> {
+pub enum SurfaceForm<'g> {
     /// Rim of a disk: radius, axis.
     Circle(Expr<'g>, Vec3<'g>),
     /// Tyre: radius of its centre line, radius of its section, axis.
@@ -62,29 +62,29 @@ pub struct Surface<'g> {
     /// Frame at the centre, at the apex or at a point of the surface.
     pub frame: Placed<'g>,
     /// Form of the surface.
-    pub form: Form<'g>,
+    pub form: SurfaceForm<'g>,
 }
 
-impl Form<'_> {
+impl SurfaceForm<'_> {
     /// Returns the row of the surface in the table of the language; `None` for a point.
     pub fn id(&self) -> Option<SurfaceId> {
         match self {
-            Form::Circle(..) => Some(SurfaceId::Circle),
-            Form::Torus(..) => Some(SurfaceId::Torus),
-            Form::Sphere(_) => Some(SurfaceId::Sphere),
-            Form::Ellipsoid(_) => Some(SurfaceId::Ellipsoid),
-            Form::Plane(_) => Some(SurfaceId::Plane),
-            Form::Bowl(_) => Some(SurfaceId::Bowl),
-            Form::Cylinder(..) => Some(SurfaceId::Cylinder),
-            Form::Drum(..) => Some(SurfaceId::Drum),
-            Form::Tube(..) => Some(SurfaceId::Tube),
-            Form::Cone(..) => Some(SurfaceId::Cone),
-            Form::Funnel(..) => Some(SurfaceId::Funnel),
-            Form::Sheet(_) => Some(SurfaceId::Sheet),
-            Form::Terrain(_) => Some(SurfaceId::Terrain),
-            Form::Cuboid(_) => Some(SurfaceId::Cuboid),
-            Form::Capsule(..) => Some(SurfaceId::Capsule),
-            Form::Point => None,
+            SurfaceForm::Circle(..) => Some(SurfaceId::Circle),
+            SurfaceForm::Torus(..) => Some(SurfaceId::Torus),
+            SurfaceForm::Sphere(_) => Some(SurfaceId::Sphere),
+            SurfaceForm::Ellipsoid(_) => Some(SurfaceId::Ellipsoid),
+            SurfaceForm::Plane(_) => Some(SurfaceId::Plane),
+            SurfaceForm::Bowl(_) => Some(SurfaceId::Bowl),
+            SurfaceForm::Cylinder(..) => Some(SurfaceId::Cylinder),
+            SurfaceForm::Drum(..) => Some(SurfaceId::Drum),
+            SurfaceForm::Tube(..) => Some(SurfaceId::Tube),
+            SurfaceForm::Cone(..) => Some(SurfaceId::Cone),
+            SurfaceForm::Funnel(..) => Some(SurfaceId::Funnel),
+            SurfaceForm::Sheet(_) => Some(SurfaceId::Sheet),
+            SurfaceForm::Terrain(_) => Some(SurfaceId::Terrain),
+            SurfaceForm::Cuboid(_) => Some(SurfaceId::Cuboid),
+            SurfaceForm::Capsule(..) => Some(SurfaceId::Capsule),
+            SurfaceForm::Point => None,
         }
     }
 }
@@ -124,12 +124,12 @@ impl<'g> Builder<'_, 'g> {
         match (id, arguments.as_slice()) {
             (SurfaceId::Sheet, [u, w, point]) => {
                 let frame = frame?;
-                let form = Form::Sheet(self.sheet(&frame, [u, w, point], cx)?);
+                let form = SurfaceForm::Sheet(self.sheet(&frame, [u, w, point], cx)?);
                 return Some(Surface { frame, form });
             }
             (SurfaceId::Terrain, [height]) => {
                 let terrain = self.terrain(height, cx);
-                return Some(Surface { frame: frame?, form: Form::Terrain(Box::new(terrain?)) });
+                return Some(Surface { frame: frame?, form: SurfaceForm::Terrain(Box::new(terrain?)) });
             }
             _ => {}
         }
@@ -146,8 +146,8 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             }
             let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
-            let figure = || format!("the {} of a {}", name.replace('_', " "), row.name);
-            self.scope.require(rule, figure, &[value]);
+            let quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
+            self.scope.require(rule, quantity, &[value]);
             numbers.push(value);
         }
         Some(Surface {
@@ -158,22 +158,22 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Returns the form of a surface with the values of its lengths and angles, and its direction.
-fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<Form<'g>> {
+fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceForm<'g>> {
     let number = |k: usize| numbers.get(k).copied();
     Some(match id {
-        SurfaceId::Circle => Form::Circle(number(0)?, n),
-        SurfaceId::Torus => Form::Torus(number(0)?, number(1)?, n),
-        SurfaceId::Sphere => Form::Sphere(number(0)?),
-        SurfaceId::Ellipsoid => Form::Ellipsoid([number(0)?, number(1)?, number(2)?]),
-        SurfaceId::Plane => Form::Plane(n),
-        SurfaceId::Bowl => Form::Bowl(number(0)?),
-        SurfaceId::Cylinder => Form::Cylinder(number(0)?, n),
-        SurfaceId::Drum => Form::Drum(number(0)?, number(1)?, n),
-        SurfaceId::Tube => Form::Tube(number(0)?, n),
-        SurfaceId::Cone => Form::Cone(number(0)?, n),
-        SurfaceId::Funnel => Form::Funnel(number(0)?, n),
-        SurfaceId::Cuboid => Form::Cuboid([number(0)?, number(1)?, number(2)?]),
-        SurfaceId::Capsule => Form::Capsule(number(0)?, number(1)?, n),
+        SurfaceId::Circle => SurfaceForm::Circle(number(0)?, n),
+        SurfaceId::Torus => SurfaceForm::Torus(number(0)?, number(1)?, n),
+        SurfaceId::Sphere => SurfaceForm::Sphere(number(0)?),
+        SurfaceId::Ellipsoid => SurfaceForm::Ellipsoid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Plane => SurfaceForm::Plane(n),
+        SurfaceId::Bowl => SurfaceForm::Bowl(number(0)?),
+        SurfaceId::Cylinder => SurfaceForm::Cylinder(number(0)?, n),
+        SurfaceId::Drum => SurfaceForm::Drum(number(0)?, number(1)?, n),
+        SurfaceId::Tube => SurfaceForm::Tube(number(0)?, n),
+        SurfaceId::Cone => SurfaceForm::Cone(number(0)?, n),
+        SurfaceId::Funnel => SurfaceForm::Funnel(number(0)?, n),
+        SurfaceId::Cuboid => SurfaceForm::Cuboid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Capsule => SurfaceForm::Capsule(number(0)?, number(1)?, n),
         // The arguments of these surfaces are not numbers and a direction.
         SurfaceId::Sheet | SurfaceId::Terrain => return None,
     })

@@ -20,8 +20,8 @@ impl<'g> Builder<'_, 'g> {
                     .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
             }
             if let Some(damping) = damping {
-                let figure = || format!("the damping of `{}`", action.name.text);
-                self.scope.require(Rule::NotNegative, figure, &[damping]);
+                let quantity = || format!("the damping of `{}`", action.name.text);
+                self.scope.require(Rule::NotNegative, quantity, &[damping]);
                 self.model.dashpots.push(Dashpot { on, damping });
             }
             return;

@@ -106,7 +106,7 @@ impl<'g> Builder<'_, 'g> {
         let tensor = body.pose.rotation.sym_to_parent(central);
         let zero = Vec3::zero(self.scope.graph);
         let kinematics = self.scope.kinematics.borrow();
-        let terms = kinematics.between(body, center);
+        let terms = kinematics.position_between(body, center);
         let r = kinematics.resolve(&terms, body.link, zero);
         drop(kinematics);
         let length = r.norm();

@@ -11,7 +11,7 @@ pub use spring::Law;
 
 use super::builder::Builder;
 use super::motion::Moving;
-use super::power::{Counts, is_asked};
+use super::power::{ForceCounts, is_power_used};
 use super::target::Target;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -44,16 +44,17 @@ impl<'g> Builder<'_, 'g> {
             self.model.inputs.push((input.text.clone(), Input::Named));
         }
         for action in &self.description.actions {
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.add_action(action, cx);
             // An element without an effect may be zero by its values. An input has an entry of `u` in any
             // case.
-            let is_lost = Counts::of(&self.model) == before && !self.is_input(&action.name.text);
-            if cx.is_empty() && action.is_input() && is_lost {
-                report_lost(&action.name, cx);
+            let has_no_effect =
+                ForceCounts::of_model(&self.model) == before && !self.is_input(&action.name.text);
+            if cx.is_empty() && action.is_input() && has_no_effect {
+                report_unused_input(&action.name, cx);
             }
-            self.know_applied(&before, &action.name.text);
-            if is_asked(self.description, &action.name) {
+            self.record_applied(&before, &action.name.text);
+            if is_power_used(self.description, &action.name) {
                 let power = self.power_since(&before, &action.name.text);
                 self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
             }
@@ -139,7 +140,7 @@ fn needs_motion(action: &Action) -> bool {
 }
 
 /// Reports a declared input without any effect, although no error was reported.
-pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
+pub fn report_unused_input(name: &Name, cx: &mut Diagnostics) {
     cx.error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
         .help("please report this with the mechanism");
 }

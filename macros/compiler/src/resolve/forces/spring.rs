@@ -102,10 +102,14 @@ impl<'g> Builder<'_, 'g> {
                 let x = self.scope.graph.symbol(symbol);
                 let border = read(border, cx)? - (own - x);
                 let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
-                let with = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+                let substitute_stretch =
+                    |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
                 let (below, above) = (below?, above?);
                 let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
-                return Some(with(below, low) + with(above, high) - with(above, border));
+                return Some(
+                    substitute_stretch(below, low) + substitute_stretch(above, high)
+                        - substitute_stretch(above, border),
+                );
             }
         }
         self.integral(force, e, cx)

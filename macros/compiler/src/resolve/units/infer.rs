@@ -28,7 +28,7 @@ pub enum Reason<'a> {
     /// Components of a vector.
     Components,
     /// Arguments that a function compares, with the function's name.
-    Alike(&'a str),
+    Compared(&'a str),
     /// Pieces of a piecewise law.
     Pieces,
 }
@@ -65,7 +65,7 @@ pub enum Meaning {
 }
 
 /// Maximum number of contradictions that are recorded.
-const MOST_MISMATCHES: usize = 32;
+const MAX_MISMATCHES: usize = 32;
 
 /// State of the inference.
 pub struct Inference<'a> {
@@ -86,11 +86,11 @@ pub struct Inference<'a> {
     pub gravity: Vec<f64>,
     /// Dimensions that are plain numbers unless constrained otherwise. If the first of a pair is plain, so is
     /// the second.
-    pub wishes: Vec<(Dimension, Option<Dimension>)>,
+    pub plain_defaults: Vec<(Dimension, Option<Dimension>)>,
     /// Contradictions found so far.
     pub mismatches: Vec<Mismatch<'a>>,
     /// Whether the limit of work was exceeded.
-    pub gave_up: bool,
+    pub limit_exceeded: bool,
 }
 
 /// Returns the magnitudes of the numbers in the mechanism's gravity, such as 9.81.
@@ -110,9 +110,9 @@ impl<'a> Inference<'a> {
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
             gravity: numbers_of_gravity(description),
-            wishes: Vec::new(),
+            plain_defaults: Vec::new(),
             mismatches: Vec::new(),
-            gave_up: false,
+            limit_exceeded: false,
         };
         for parameter in &description.parameters {
             new.name_unknown(&parameter.text, Anchor::Parameter);
@@ -132,7 +132,7 @@ impl<'a> Inference<'a> {
 
     /// Equates two dimensions; returns false if they contradict each other.
     pub fn equate(&mut self, found: &Dimension, expected: &Dimension, origin: Origin<'a>) -> bool {
-        if self.gave_up {
+        if self.limit_exceeded {
             return true;
         }
         match self.system.equate(found, expected) {
@@ -143,7 +143,7 @@ impl<'a> Inference<'a> {
                 true
             }
             Outcome::Contradicts => {
-                if self.mismatches.len() < MOST_MISMATCHES {
+                if self.mismatches.len() < MAX_MISMATCHES {
                     self.mismatches.push(Mismatch {
                         origin,
                         found: found.clone(),
@@ -152,21 +152,21 @@ impl<'a> Inference<'a> {
                 }
                 false
             }
-            Outcome::GaveUp => {
-                self.gave_up = true;
+            Outcome::LimitExceeded => {
+                self.limit_exceeded = true;
                 true
             }
         }
     }
 
     /// Makes a dimension plain at the end if it is not constrained otherwise.
-    pub fn wish(&mut self, dimension: Dimension) {
-        self.wishes.push((dimension, None));
+    pub fn default_to_plain(&mut self, dimension: Dimension) {
+        self.plain_defaults.push((dimension, None));
     }
 
     /// Applies the defaults of plain numbers that contradict nothing, in order.
-    pub fn grant(&mut self) {
-        for (wish, then) in std::mem::take(&mut self.wishes) {
+    pub fn apply_defaults(&mut self) {
+        for (wish, then) in std::mem::take(&mut self.plain_defaults) {
             if self.system.equate(&wish, &PLAIN) != Outcome::Contradicts
                 && let Some(then) = then
             {
@@ -176,7 +176,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Whether two dimensions are known to be different.
-    pub fn differ(&mut self, a: &Dimension, b: &Dimension) -> bool {
+    pub fn are_different(&mut self, a: &Dimension, b: &Dimension) -> bool {
         let quotient = a.over(b).and_then(|quotient| self.system.resolve(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
@@ -189,22 +189,22 @@ impl<'a> Inference<'a> {
         };
         let Value::Quantity { dimension: found, anchor } = value else { return value };
         // An expression of coordinates may have an implicit factor of one, with any unit.
-        if anchor == Anchor::Motion && self.differ(&found, dimension) {
+        if anchor == Anchor::Motion && self.are_different(&found, dimension) {
             return Value::Unknown;
         }
         if !self.equate(&found, dimension, Origin { reason, at: e, like: None }) {
             return Value::Unknown;
         }
-        if let (Some(v), false) = (self.alone(e), unit.is_empty()) {
+        if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {
             self.hints.entry(v).or_insert_with(|| unit.to_string());
         }
         Value::Quantity { dimension: found, anchor }
     }
 
     /// Returns the unknown of an expression that is a single name.
-    fn alone(&self, e: &Expr) -> Option<Variable> {
+    fn single_name(&self, e: &Expr) -> Option<Variable> {
         let dimension = match &e.kind {
-            ExprKind::Neg(inner) => return self.alone(inner),
+            ExprKind::Neg(inner) => return self.single_name(inner),
             ExprKind::Name(name) => match self.names.get(name)? {
                 Meaning::Named(v, _) => return Some(*v),
                 Meaning::Moving(dimension, _) => dimension,

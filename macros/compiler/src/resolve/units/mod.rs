@@ -17,7 +17,7 @@ use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Uni
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{Inference, Meaning, Origin, Reason};
-use places::{Places, Task};
+use places::{DimensionedExpressions, Task};
 use std::collections::{BTreeMap, BTreeSet};
 use value::{Anchor, Value};
 
@@ -36,7 +36,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
             *slot = Some(text);
         }
     }
-    let definitions = name_everything(d, coordinates, &mut inference);
+    let definitions = assign_dimensions(d, coordinates, &mut inference);
     let mut places = places::collect(d, &definitions, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
@@ -56,25 +56,25 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     }
     let sides = std::mem::take(&mut places.sides);
     solve(places, &mut inference);
-    if inference.gave_up {
+    if inference.limit_exceeded {
         inference.mismatches.clear();
     }
     report::report(d, &mut inference, cx);
-    inference.grant();
-    let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
+    inference.apply_defaults();
+    let mut units = Units { outputs: Vec::new(), ..state_units(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
-        units.parameters.push(pinned.unwrap_or_else(|| shown(&mut inference, &Dimension::variable(k), k)));
+        units.parameters.push(pinned.unwrap_or_else(|| notation(&mut inference, &Dimension::variable(k), k)));
     }
     for table in &d.tables {
         let unknown = inference.tables.get(&table.name.text).cloned().unwrap_or_default();
-        let each = unknown.iter().map(|v| shown(&mut inference, &Dimension::variable(*v), *v));
+        let each = unknown.iter().map(|v| notation(&mut inference, &Dimension::variable(*v), *v));
         units.tables.push(each.collect());
     }
     // Inertial parameters of a file have known units, which cannot be inferred from their use.
     let of_file = units.parameters.iter_mut().rev().zip(d.file_units.iter().rev());
     of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
-        let unit = shown(&mut inference, &Dimension::variable(v), v);
+        let unit = notation(&mut inference, &Dimension::variable(v), v);
         let energy = output.rank == Rank::Scalar && unit == "N·m";
         units.outputs.push(match output.rank {
             Rank::FreeBody => "N, N·m".to_string(),
@@ -82,13 +82,14 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
             _ => unit,
         });
     }
-    units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();
+    units.constraints =
+        model.constraints.iter().map(|c| constraint_units(c, &sides, &mut inference)).collect();
     units
 }
 
 /// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that
 /// it uses.
-fn name_everything<'a>(
+fn assign_dimensions<'a>(
     d: &'a Description,
     coordinates: &Coordinates,
     inference: &mut Inference<'_>,
@@ -156,7 +157,7 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
 
 /// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
-fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
+fn solve<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
     let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
     };
@@ -174,7 +175,7 @@ fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
     // A definition that is a number is plain, unless its uses require a unit.
     if !matches!(value, Value::Quantity { .. }) {
-        inference.wish(task.dimension);
+        inference.default_to_plain(task.dimension);
     }
     inference.locals.clear();
 }
@@ -209,18 +210,18 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
 
 /// Returns the notation of a dimension: the one used where the name is the whole expression, or the default
 /// one.
-fn shown(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
+fn notation(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
     let known = inference.system.resolve(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
         (None, _) => "any".to_string(),
-        _ if inference.gave_up => "any".to_string(),
+        _ if inference.limit_exceeded => "any".to_string(),
         (Some(_), Some(hint)) => hint.clone(),
         (Some(dimension), None) => si::unit(&dimension),
     }
 }
 
 /// Returns the units of the entries of `q`, `v` and `u`.
-fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
+fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
     let push = |list: &mut Vec<String>, unit: &str, n| list.extend(std::iter::repeat_n(unit.to_string(), n));
@@ -240,7 +241,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
                 let (unit, rate) = match inference.names.get(model.configuration.get(k.0).map_or("", |n| n)) {
                     Some(Meaning::Moving(dimension, _)) if !angle => {
-                        of_coordinate(dimension.clone(), inference)
+                        coordinate_units(dimension.clone(), inference)
                     }
                     _ => ("rad".to_string(), "rad/s".to_string()),
                 };
@@ -254,7 +255,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
         if let (Some(Meaning::Named(v, _)), Some(unit)) =
             (inference.names.get(name), units.velocities.get_mut(k.0))
         {
-            *unit = of_speed(*v, inference);
+            *unit = speed_unit(*v, inference);
         }
     }
     for (name, input) in &model.inputs {
@@ -266,15 +267,15 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             Some(Meaning::Moving(dimension, _)) => dimension.clone(),
             _ => dimension::PLAIN,
         };
-        units.inputs.push(of_input(&dimension, inference));
+        units.inputs.push(input_unit(&dimension, inference));
     }
     units
 }
 
 /// Returns the units of a coordinate and of its rate.
-fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
+fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
     let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
-    let unit = shown(inference, &dimension, v);
+    let unit = notation(inference, &dimension, v);
     let rate = match unit.as_str() {
         "any" => "any".to_string(),
         "rad" => "rad/s".to_string(),
@@ -287,16 +288,16 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
 }
 
 /// Returns the unit of a generalized speed.
-fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
+fn speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::variable(v);
     match inference.system.resolve(&dimension) {
-        Some(known) if known == dimension::RATE && !inference.gave_up => "rad/s".to_string(),
-        _ => shown(inference, &dimension, v),
+        Some(known) if known == dimension::RATE && !inference.limit_exceeded => "rad/s".to_string(),
+        _ => notation(inference, &dimension, v),
     }
 }
 
 /// Returns the units of a constraint and of its multiplier. The product of multiplier and rate is a power.
-fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
+fn constraint_units(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
     let configurations = c.residual.is_some();
     let (length, angle, work) = match configurations {
         true => (dimension::LENGTH, dimension::PLAIN, dimension::ENERGY),
@@ -307,7 +308,7 @@ fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Infere
         Measure::Angle => Some(angle.clone()),
         Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
     };
-    let known = dimension.filter(|d| d.is_known() && !inference.gave_up);
+    let known = dimension.filter(|d| d.is_known() && !inference.limit_exceeded);
     let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.over(&d)?))) else {
         return ["any".to_string(), "any".to_string()];
     };
@@ -320,9 +321,9 @@ fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Infere
 }
 
 /// Returns the unit of an input; for a motor of a joint, that of its force or torque.
-fn of_input(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
+fn input_unit(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
     match dimension.unknown.first() {
-        Some((v, _)) => shown(inference, dimension, *v),
+        Some((v, _)) => notation(inference, dimension, *v),
         None if dimension.is_plain() => "N·m".to_string(),
         None => "N".to_string(),
     }

@@ -5,7 +5,7 @@ use crate::syntax::{Callee, Description, Expr, ExprKind, Target};
 
 /// Returns the argument and the field that contain an expression, as in ``in `com` of `arm` ``; empty if
 /// unknown.
-pub fn place_of(d: &Description, e: &Expr) -> String {
+pub fn location_of(d: &Description, e: &Expr) -> String {
     let inside = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
     let found = fields(d).into_iter().find(|(.., whole)| inside(whole));
     match found {
@@ -27,11 +27,11 @@ pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> 
     })
 }
 
-type Found<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
+type OwnedExpressions<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
 
 /// Returns every expression with its argument and its field.
-fn fields(d: &Description) -> Found<'_> {
-    let mut all: Found<'_> = Vec::new();
+fn fields(d: &Description) -> OwnedExpressions<'_> {
+    let mut all: OwnedExpressions<'_> = Vec::new();
     all.extend(d.gravity.iter().map(|e| ("gravity", d.name.text.as_str(), e)));
     for (k, unit) in &d.units {
         all.extend(d.parameters.get(*k).map(|p| ("unit", p.text.as_str(), unit)));

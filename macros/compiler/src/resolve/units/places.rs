@@ -7,7 +7,7 @@ use crate::language::dimension::{
 };
 use crate::language::ratio::Ratio;
 use crate::language::{Argument, ArgumentKind, Callable, ForceQuantity, Key, Locals, Method};
-use crate::resolve::contact::PLACE;
+use crate::resolve::contact::TERRAIN_COORDINATES;
 use crate::syntax::contact::collision;
 use crate::syntax::{
     Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
@@ -27,7 +27,7 @@ pub struct Task<'a> {
 }
 
 /// All expressions of a description.
-pub struct Places<'a> {
+pub struct DimensionedExpressions<'a> {
     /// Definitions, each after those that it uses.
     pub definitions: Vec<Task<'a>>,
     /// All other expressions with expected dimensions.
@@ -55,9 +55,13 @@ pub fn collect<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],
     inference: &mut Inference<'a>,
-) -> Places<'a> {
-    let mut places =
-        Places { definitions: Vec::new(), tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
+) -> DimensionedExpressions<'a> {
+    let mut places = DimensionedExpressions {
+        definitions: Vec::new(),
+        tasks: Vec::new(),
+        points: Vec::new(),
+        sides: Vec::new(),
+    };
     // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
@@ -65,35 +69,35 @@ pub fn collect<'a>(
         }
     }
     places.definitions = std::mem::take(&mut places.tasks);
-    places.all(&d.gravity, &ACCELERATION, "m/s²");
-    places.all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
-    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
+    places.add_all(&d.gravity, &ACCELERATION, "m/s²");
+    places.add_all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
+    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_body(b));
     for particle in &d.particles {
         places.add(&particle.mass, &MASS, "kg");
-        particle.at.iter().for_each(|at| places.position(at));
+        particle.at.iter().for_each(|at| places.add_position(at));
     }
-    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.joint(j));
+    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.add_joint(j));
     for frame in &d.frames {
-        places.rotations(&frame.rotations);
+        places.add_rotations(&frame.rotations);
     }
     for point in &d.points {
         places.points.extend(&point.on);
-        places.all(&point.at, &LENGTH, "m");
+        places.add_all(&point.at, &LENGTH, "m");
     }
     for action in &d.actions {
-        places.action(action, inference);
+        places.add_action(action, inference);
     }
-    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.limit(l, inference));
+    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.add_limit(l, inference));
     for (place, value) in d.equilibria.iter().flat_map(|e| &e.values) {
-        places.value(place, value, inference);
+        places.add_value_at_rest(place, value, inference);
     }
     for constraint in &d.constraints {
-        places.constraint(constraint, inference);
+        places.add_constraint(constraint, inference);
     }
     for contact in &d.contacts {
-        places.surface(&contact.first);
-        places.surface(&contact.second);
-        places.all(
+        places.add_surface(&contact.first);
+        places.add_surface(&contact.second);
+        places.add_all(
             contact
                 .friction
                 .iter()
@@ -102,13 +106,13 @@ pub fn collect<'a>(
             &PLAIN,
             "1",
         );
-        places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
+        places.add_all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
             let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));
-            places.maybe([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
-            places.maybe(&soft.dissipation, TIME.over(&LENGTH), "s/m");
-            places.all(&soft.speed, &SPEED, "m/s");
+            places.add_if_known([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
+            places.add_if_known(&soft.dissipation, TIME.over(&LENGTH), "s/m");
+            places.add_all(&soft.speed, &SPEED, "m/s");
         }
     }
     for (_, e) in &d.energies {
@@ -120,17 +124,17 @@ pub fn collect<'a>(
     places
 }
 
-impl<'a> Places<'a> {
+impl<'a> DimensionedExpressions<'a> {
     fn add(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
         self.tasks.push(Task { e, dimension: dimension.clone(), unit, locals: Vec::new() });
     }
 
-    fn all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
+    fn add_all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
         e.into_iter().for_each(|e| self.add(e, dimension, unit));
     }
 
     /// Adds the arguments of a solid, a surface or a rotation.
-    fn arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
+    fn add_arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
         for (e, argument) in written.iter().zip(arguments) {
             if let Some((dimension, unit)) = argument.kind.dimension() {
                 self.add(e, &dimension, unit);
@@ -138,49 +142,49 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn body(&mut self, body: &'a Body) {
-        self.all(&body.mass, &MASS, "kg");
-        self.all(body.com.iter().chain(&body.about), &LENGTH, "m");
-        body.inertia.iter().for_each(|e| self.inertia(e));
-        body.at.iter().for_each(|e| self.position(e));
+    fn add_body(&mut self, body: &'a Body) {
+        self.add_all(&body.mass, &MASS, "kg");
+        self.add_all(body.com.iter().chain(&body.about), &LENGTH, "m");
+        body.inertia.iter().for_each(|e| self.add_inertia(e));
+        body.at.iter().for_each(|e| self.add_position(e));
     }
 
     /// Adds an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
-    fn inertia(&mut self, e: &'a Expr) {
+    fn add_inertia(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Array(rows) => {
                 for row in rows {
                     if let ExprKind::Array(entries) = &row.kind {
-                        self.all(entries, &INERTIA, "kg·m²");
+                        self.add_all(entries, &INERTIA, "kg·m²");
                     }
                 }
             }
             ExprKind::Binary(_, a, b, _) => {
-                self.inertia(a);
-                self.inertia(b);
+                self.add_inertia(a);
+                self.add_inertia(b);
             }
             ExprKind::Method(inner, _, steps) => {
-                self.inertia(inner);
-                self.rotations(steps);
+                self.add_inertia(inner);
+                self.add_rotations(steps);
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
-                self.arguments(arguments, solid.row().arguments);
+                self.add_arguments(arguments, solid.row().arguments);
             }
             _ => {}
         }
     }
 
     /// Adds rotations: `z(angle)`, `eigenaxis(n, angle)`, or a matrix.
-    fn rotations(&mut self, steps: &'a [Expr]) {
+    fn add_rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
                 ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
-                    self.arguments(arguments, rotation.row().arguments);
+                    self.add_arguments(arguments, rotation.row().arguments);
                 }
                 ExprKind::Array(rows) => {
                     for row in rows {
                         if let ExprKind::Array(entries) = &row.kind {
-                            self.all(entries, &PLAIN, "1");
+                            self.add_all(entries, &PLAIN, "1");
                         }
                     }
                 }
@@ -190,7 +194,7 @@ impl<'a> Places<'a> {
     }
 
     /// Adds a position: the name of an element, `place.at(vector)`, or a vector from the ground's origin.
-    fn position(&mut self, e: &'a Expr) {
+    fn add_position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
             // The name of an element has no dimension.
@@ -198,20 +202,20 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn endpoint(&mut self, end: &'a Endpoint) {
-        self.all(&end.at, &LENGTH, "m");
-        self.rotations(&end.rotated);
+    fn add_endpoint(&mut self, end: &'a Endpoint) {
+        self.add_all(&end.at, &LENGTH, "m");
+        self.add_rotations(&end.rotated);
     }
 
-    fn joint(&mut self, joint: &'a Joint) {
-        self.endpoint(&joint.parent);
-        self.endpoint(&joint.child);
-        self.all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
-        self.all(&joint.pitch, &LENGTH, "m/rad");
-        self.all(&joint.lead, &LENGTH, "m");
+    fn add_joint(&mut self, joint: &'a Joint) {
+        self.add_endpoint(&joint.parent);
+        self.add_endpoint(&joint.child);
+        self.add_all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
+        self.add_all(&joint.pitch, &LENGTH, "m/rad");
+        self.add_all(&joint.lead, &LENGTH, "m");
     }
 
-    fn action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
+    fn add_action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
         let on = match &action.on {
             Target::Between(a, b) => {
                 self.points.extend([a, b]);
@@ -246,11 +250,11 @@ impl<'a> Places<'a> {
             false => ENERGY.over(&work.coordinate),
         };
         if let Some(force) = force {
-            self.element(action, &work, &force, inference);
+            self.add_element(action, &work, &force, inference);
         }
     }
 
-    fn limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
+    fn add_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
         let q = coordinate(&limit.on, inference).unwrap_or_else(|| {
             let unknown = Dimension::variable(inference.system.variable());
             self.add(&limit.on, &unknown, "");
@@ -261,14 +265,14 @@ impl<'a> Places<'a> {
             (_, true) => ["m", "m/s", "N"],
             _ => [""; 3],
         };
-        self.all(limit.from.iter().chain(&limit.to), &q, length);
-        self.maybe(&limit.max_speed, q.over(&TIME), speed);
-        self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
-        self.all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
+        self.add_all(limit.from.iter().chain(&limit.to), &q, length);
+        self.add_if_known(&limit.max_speed, q.over(&TIME), speed);
+        self.add_if_known(&limit.max_effort, ENERGY.over(&q), effort);
+        self.add_all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
     /// Adds the value at rest of a coordinate, an input or a state.
-    fn value(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
+    fn add_value_at_rest(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
         if let Some(known) = coordinate(place, inference) {
             self.add(value, &known, if known.is_plain() { "rad" } else { "" });
         } else if place.name().is_some() {
@@ -278,7 +282,13 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {
+    fn add_element(
+        &mut self,
+        action: &'a Action,
+        work: &Work,
+        force: &Dimension,
+        inference: &mut Inference<'a>,
+    ) {
         let [n, stiffness, damping, inertance] = work.units;
         let q = &work.coordinate;
         let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
@@ -318,24 +328,24 @@ impl<'a> Places<'a> {
     }
 
     /// Adds both sides of a constraint, which have the same dimension. Surfaces have arguments of their own.
-    fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+    fn add_constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         let side = Dimension::variable(inference.system.variable());
         self.sides.push(side.clone());
         if constraint.kind.pair().is_none() {
             self.add(&constraint.value, &side, "");
-            self.all(&constraint.other, &side, "");
+            self.add_all(&constraint.other, &side, "");
             return;
         }
         if let Some(friction) = &constraint.friction {
             self.add(&friction.coefficient, &PLAIN, "1");
-            self.all(&friction.speed, &SPEED, "m/s");
+            self.add_all(&friction.speed, &SPEED, "m/s");
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
-        pair.iter().for_each(|surface| self.surface(surface));
+        pair.iter().for_each(|surface| self.add_surface(surface));
     }
 
     /// Adds a surface of a body, or a point.
-    fn surface(&mut self, surface: &'a Expr) {
+    fn add_surface(&mut self, surface: &'a Expr) {
         if let Some(link) = collision(surface) {
             self.points.extend(link);
             return;
@@ -349,21 +359,21 @@ impl<'a> Places<'a> {
         for (e, argument) in arguments.iter().zip(id.row().arguments) {
             let Some((dimension, unit)) = argument.kind.dimension() else { continue };
             let locals = match argument.kind {
-                ArgumentKind::Height => PLACE.map(|name| (name, LENGTH.clone())).into(),
+                ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),
                 _ => Vec::new(),
             };
             self.tasks.push(Task { e, dimension, unit, locals });
         }
     }
 
-    fn maybe(
+    fn add_if_known(
         &mut self,
         e: impl IntoIterator<Item = &'a Expr>,
         dimension: Option<Dimension>,
         unit: &'static str,
     ) {
         if let Some(dimension) = dimension {
-            self.all(e, &dimension, unit);
+            self.add_all(e, &dimension, unit);
         }
     }
 }
@@ -380,7 +390,7 @@ fn input<'a>(
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
     let (at, product) = match direction.map(|e| (e, inference.value(e))) {
         Some((at, Value::Quantity { dimension, .. })) => {
-            inference.wish(dimension.clone());
+            inference.default_to_plain(dimension.clone());
             (at, input.times(&dimension))
         }
         _ => (direction.unwrap_or(on), Some(input)),

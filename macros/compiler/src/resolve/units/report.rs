@@ -1,7 +1,7 @@
 //! Errors for contradictory units: one per cause, with the other uses in notes.
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
-use super::owner::{place_of, solid_of};
+use super::owner::{location_of, solid_of};
 use super::si::describe;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
@@ -9,7 +9,7 @@ use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
 /// Maximum number of other uses shown for an error.
-const MOST_PLACES: usize = 2;
+const MAX_PLACES: usize = 2;
 
 /// Reports the contradictions. Each parameter is reported once, because further contradictions most likely
 /// have the same cause. The same applies to the arguments of one solid.
@@ -31,10 +31,10 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             solids.push(call);
         }
         let error = match names.as_slice() {
-            [(v, e)] => one_parameter(d, &mismatch, *v, e, inference),
+            [(v, e)] => parameter_error(d, &mismatch, *v, e, inference),
             _ => None,
         };
-        let error = error.or_else(|| several(d, &mismatch, &names, inference));
+        let error = error.or_else(|| mismatch_error(d, &mismatch, &names, inference));
         if let Some(mut error) = error {
             if let Some((_, written)) = solid {
                 error.help(format!("write `{written}`"));
@@ -74,12 +74,12 @@ fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> =
         names.iter().map(|(_, e)| text(e)).filter(is_defined).map(|name| format!("`{name}`")).collect();
-    let or_there = match defined.split_last() {
+    let other_places = match defined.split_last() {
         None => String::new(),
         Some((last, [])) => format!(" here or in {last}"),
         Some((last, others)) => format!(" here or in {} or {last}", others.join(", ")),
     };
-    format!("a factor is missing{or_there}, or two things have one name: name another parameter")
+    format!("a factor is missing{other_places}, or two things have one name: name another parameter")
 }
 
 /// Collects the names in the expressions of an equation; the compared expressions are first.
@@ -124,7 +124,7 @@ fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variabl
 }
 
 /// Returns the error for a parameter that would need two dimensions.
-fn one_parameter(
+fn parameter_error(
     d: &Description,
     mismatch: &Mismatch<'_>,
     v: Variable,
@@ -146,18 +146,18 @@ fn one_parameter(
     if first.reason == Reason::Unit {
         let message = format!("`{name}` is declared as {is}, but used as {needed}");
         let mut error = Diagnostic::new(first.at.place.clone(), message);
-        error.note(format!("it is {needed}{}", place_of(d, here)));
+        error.note(format!("it is {needed}{}", location_of(d, here)));
         return Some(error);
     }
     let mut error =
         Diagnostic::new(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
-    show(d, here, v, &is, first, inference, &mut error);
+    note_origin(d, here, v, &is, first, inference, &mut error);
     Some(error)
 }
 
 /// Returns the error for quantities of different units, at the operator between them, with the origin of each
 /// unit.
-fn several(
+fn mismatch_error(
     d: &Description,
     mismatch: &Mismatch<'_>,
     names: &[(Variable, &Expr)],
@@ -174,17 +174,17 @@ fn several(
     if names.is_empty() {
         diagnostic.help("multiply one of them by a factor, as in `2 * x`: a number that multiplies coordinates, rates or inputs alone takes the unit that is missing");
     }
-    for (v, e) in names.iter().take(MOST_PLACES) {
+    for (v, e) in names.iter().take(MAX_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            show(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
+            note_origin(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
         }
     }
     Some(diagnostic)
 }
 
 /// Adds a note on the use that determined the dimension of a parameter or a definition.
-fn show(
+fn note_origin(
     d: &Description,
     here: &Expr,
     v: Variable,
@@ -197,8 +197,8 @@ fn show(
     names_of(&origin, inference, &mut names);
     let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
-        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", place_of(d, e))),
-        None => diagnostic.note(format!("`{name}` becomes {is}{}", place_of(d, origin.at))),
+        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", location_of(d, e))),
+        None => diagnostic.note(format!("`{name}` becomes {is}{}", location_of(d, origin.at))),
     };
 }
 
@@ -225,7 +225,7 @@ fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> 
         Reason::Sum(_) => format!("{found} cannot be added to {expected}"),
         Reason::Components => format!("this component is {found}, but another is {expected}"),
         Reason::Pieces => format!("this piece is {found}, but the other is {expected}"),
-        Reason::Alike(function) => format!("`{function}` cannot compare {expected} with {found}"),
+        Reason::Compared(function) => format!("`{function}` cannot compare {expected} with {found}"),
         Reason::Argument => format!("expected a plain number or an angle, found {found}"),
         Reason::Unit | Reason::Place => format!("expected {expected}, found {found}"),
     }

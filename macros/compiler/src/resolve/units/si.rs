@@ -97,11 +97,11 @@ pub fn unit(dimension: &Dimension) -> String {
         return (*unit).to_string();
     }
     let [length, mass, time] = dimension.base;
-    spell(&[("kg", mass), ("m", length), ("s", time)])
+    format_powers(&[("kg", mass), ("m", length), ("s", time)])
 }
 
 /// Formats powers of units as a fraction: `kg·m²/s`, `m³/(kg·s²)`.
-fn spell(powers: &[(&str, Ratio)]) -> String {
+fn format_powers(powers: &[(&str, Ratio)]) -> String {
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (name, e) in powers.iter().filter(|(_, e)| !e.is_zero()) {
         let side = if e.parts().0 > 0 { &mut above } else { &mut below };

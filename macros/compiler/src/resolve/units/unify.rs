@@ -12,12 +12,12 @@ pub enum Outcome {
     /// The equation contradicts earlier ones.
     Contradicts,
     /// The limit of work or of exponents was exceeded; the result is undecided.
-    GaveUp,
+    LimitExceeded,
 }
 
 /// Maximum number of terms visited in total. A mechanism with thousands of parameters needs about a hundredth
 /// of it.
-const MOST_WORK: usize = 1_000_000;
+const MAX_WORK: usize = 1_000_000;
 
 /// Solved equations: every solved unknown in terms of unsolved ones (reduced row echelon form).
 #[derive(Debug, Default)]
@@ -42,7 +42,7 @@ impl System {
         let mut sum = Dimension { unknown: Vec::new(), ..dimension.clone() };
         for (v, e) in &dimension.unknown {
             self.work += 1 + sum.unknown.len();
-            if self.work > MOST_WORK {
+            if self.work > MAX_WORK {
                 return None;
             }
             sum = match self.solution.get(*v)? {
@@ -56,12 +56,12 @@ impl System {
     /// Equates two dimensions.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
         let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
-        let Some(quotient) = quotient else { return Outcome::GaveUp };
+        let Some(quotient) = quotient else { return Outcome::LimitExceeded };
         match quotient.unknown.last() {
             None if quotient.is_plain() => Outcome::Holds(Vec::new()),
             None => Outcome::Contradicts,
             Some((pivot, exponent)) => {
-                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::GaveUp, Outcome::Holds)
+                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::LimitExceeded, Outcome::Holds)
             }
         }
     }
@@ -78,7 +78,7 @@ impl System {
                 continue;
             }
             self.work += old.unknown.len() + value.unknown.len();
-            if self.work > MOST_WORK {
+            if self.work > MAX_WORK {
                 return None;
             }
             let new = old.times_power(&Dimension::variable(pivot), e.negated())?.times_power(&value, e)?;
@@ -141,10 +141,10 @@ mod tests {
         let all: Vec<Variable> = (0..3000).map(|_| s.variable()).collect();
         let product =
             Dimension { unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(), ..Dimension::new(0, 0, 0) };
-        let gave_up = (0..3000).any(|k| {
+        let limit_exceeded = (0..3000).any(|k| {
             let power = product.times_power(&Dimension::variable(k), Ratio::integer(k as i64)).unwrap();
-            s.equate(&power, &LENGTH) == Outcome::GaveUp
+            s.equate(&power, &LENGTH) == Outcome::LimitExceeded
         });
-        assert!(gave_up);
+        assert!(limit_exceeded);
     }
 }

@@ -70,7 +70,7 @@ impl Value {
     }
 
     /// Returns the more specific of two values with equal dimensions.
-    pub fn or(self, other: Value) -> Value {
+    pub fn more_specific(self, other: Value) -> Value {
         match (&self, &other) {
             (Value::Quantity { .. }, _) => self,
             (_, Value::Quantity { .. }) => other,

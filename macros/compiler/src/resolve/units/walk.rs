@@ -19,7 +19,7 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.product(e),
             ExprKind::Binary(..) => self.sum(e, None),
             ExprKind::Call(function, arguments) => self.call(function, arguments),
-            ExprKind::Array(items) => self.all_alike(items, Reason::Components),
+            ExprKind::Array(items) => self.common_value(items, Reason::Components),
             ExprKind::Method(..) | ExprKind::Tuple(_) => Value::Unknown,
         }
     }
@@ -52,11 +52,11 @@ impl<'a> Inference<'a> {
     }
 
     /// Equates the dimensions of two values; returns the common value.
-    fn alike(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
+    fn equate_values(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
         let (Value::Quantity { dimension, anchor }, Value::Quantity { dimension: other, anchor: second }) =
             (&a, &b)
         else {
-            return a.or(b);
+            return a.more_specific(b);
         };
         match self.equate(other, dimension, origin) {
             true => Value::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
@@ -65,13 +65,13 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the common value of several expressions.
-    fn all_alike(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
+    fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
         let mut first: Option<&Expr> = None;
         let mut common = Value::Number(0.0);
         for item in items {
             let value = self.value(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
-            common = self.alike(common, value, Origin { reason, at: item, like: first });
+            common = self.equate_values(common, value, Origin { reason, at: item, like: first });
             first = first.or(is_quantity.then_some(item));
         }
         match common {
@@ -104,7 +104,7 @@ impl<'a> Inference<'a> {
         let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
             let (reason, at) = sum.unwrap_or((Reason::Place, term));
-            self.alike(total, value, Origin { reason, at, like: None })
+            self.equate_values(total, value, Origin { reason, at, like: None })
         });
         match total {
             Value::Number(_) => Value::Number(f64::NAN),
@@ -150,7 +150,7 @@ impl<'a> Inference<'a> {
             return value;
         };
         let number = Dimension::variable(self.system.variable());
-        self.wish(number.clone());
+        self.default_to_plain(number.clone());
         match dimension.times(&number) {
             Some(dimension) => Value::Quantity { dimension, anchor: *anchor },
             None => Value::Unknown,
@@ -169,8 +169,8 @@ impl<'a> Inference<'a> {
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
-                self.all_alike(compared, Reason::Alike(&callee.text));
-                self.all_alike(pieces, Reason::Pieces)
+                self.common_value(compared, Reason::Compared(&callee.text));
+                self.common_value(pieces, Reason::Pieces)
             }
             _ => Value::Unknown,
         }
@@ -194,8 +194,8 @@ impl<'a> Inference<'a> {
                 self.visit(arguments);
                 Value::Direction
             }
-            UnitRule::Alike => self.all_alike(arguments, Reason::Alike(name)),
-            UnitRule::Quotient => match self.all_alike(arguments, Reason::Alike(name)) {
+            UnitRule::Alike => self.common_value(arguments, Reason::Compared(name)),
+            UnitRule::Quotient => match self.common_value(arguments, Reason::Compared(name)) {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
                 _ => Value::Number(f64::NAN),
             },
@@ -330,7 +330,7 @@ impl<'a> Inference<'a> {
             (base, Value::Number(n)) => base.power(Ratio::of(n)),
             (Value::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::variable(self.system.variable());
-                self.wishes.push((dimension, Some(power.clone())));
+                self.plain_defaults.push((dimension, Some(power.clone())));
                 Value::Quantity { dimension: power, anchor }
             }
             _ => Value::Unknown,
