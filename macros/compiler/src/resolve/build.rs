@@ -303,7 +303,7 @@ fn read_gravity<'g>(
     {
         let (sign, size) = match e.literal() {
             Some(n) => ("-", n.abs().to_string()),
-            None => ("-", e.spelt()),
+            None => ("-", e.to_source()),
         };
         cx.error(e.place.clone(), "expected a vector, found a scalar")
             .help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));

@@ -76,7 +76,7 @@ impl<'g> Scope<'_, 'g> {
         if motion.w.is_zero() {
             cx.error(
                 body.place.clone(),
-                format!("`{}` does not turn with respect to `{}`", body.spelt(), frame.spelt()),
+                format!("`{}` does not turn with respect to `{}`", body.to_source(), frame.to_source()),
             )
             .help("what moves without turning has no centre: all its points move alike");
             return None;
@@ -127,7 +127,7 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
-            cx.error(body.place.clone(), format!("`{}` has no mass", body.spelt()))
+            cx.error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
                 .help("name a body with a `mass`");
             return None;
         }
@@ -142,7 +142,7 @@ impl<'g> Scope<'_, 'g> {
         if vanishes(arm) {
             cx.error(
                 call.place.clone(),
-                format!("the centre of mass of `{}` lies on this axis", body.spelt()),
+                format!("the centre of mass of `{}` lies on this axis", body.to_source()),
             )
             .help(
                 "there is no centre of percussion then: a couple turns the body without a force at the axis",
@@ -153,7 +153,7 @@ impl<'g> Scope<'_, 'g> {
         if !vanishes((central * axis_here).cross(axis_here)) {
             cx.error(
                 axis.place.clone(),
-                format!("this axis is no principal axis of inertia of `{}`", body.spelt()),
+                format!("this axis is no principal axis of inertia of `{}`", body.to_source()),
             )
             .help(
                 "a blow then pushes against the bearings wherever it falls: there is no centre of percussion",

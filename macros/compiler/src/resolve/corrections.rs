@@ -12,12 +12,12 @@ impl Scope<'_, '_> {
     pub fn report_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
         let text = method.text.as_str();
         let base = match &e.kind {
-            ExprKind::Method(base, ..) => base.spelt(),
+            ExprKind::Method(base, ..) => base.to_source(),
             _ => String::new(),
         };
         let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
         let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
-        if is_coordinate && let Some(meant) = words::meant(words::RATES, text, &[]) {
+        if is_coordinate && let Some(meant) = words::meaning(words::RATES, text, &[]) {
             error.help(meant.replace("NAME", &base));
         } else if Callable::is_function(text) {
             error.help(format!("write `{text}(…)`"));
@@ -131,7 +131,7 @@ pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
     match (what, items.as_slice()) {
         ("numbers", [a, b, c]) => {
-            error.help(format!("write `diagonal({}, {}, {})`", a.spelt(), b.spelt(), c.spelt()))
+            error.help(format!("write `diagonal({}, {}, {})`", a.to_source(), b.to_source(), c.to_source()))
         }
         _ => error.help(MATRIX),
     };

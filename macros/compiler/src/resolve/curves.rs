@@ -146,7 +146,7 @@ impl<'g> Scope<'_, 'g> {
         let mut next = |v: Vec3<'g>| v.map(|c| derivative.of(c) * scale);
         let first = next(at);
         if first.is_zero() {
-            cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.spelt()))
+            cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.to_source()))
                 .help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
             return None;
         }
@@ -156,7 +156,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns a coordinate by its name.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let name = e.spelt();
+        let name = e.to_source();
         let kinematics = self.kinematics.borrow();
         if let Some((_, c, _)) = kinematics.coordinates.iter().find(|(known, ..)| *known == name) {
             return Some(*c);

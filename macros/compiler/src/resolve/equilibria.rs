@@ -58,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
         for (place, value) in &declared.values {
             let Some(variable) = self.variable(place, cx) else { continue };
             if !given.insert(variable) {
-                cx.error(place.place.clone(), format!("`{}` is given twice", place.spelt()))
+                cx.error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
                     .help("remove one of the two");
                 continue;
             }
@@ -111,7 +111,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the variable with this name, or reports an error.
     fn variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
-        let text = place.spelt();
+        let text = place.to_source();
         let coordinate = self.model.configuration.iter().position(|name| *name == text);
         let input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
         let state =

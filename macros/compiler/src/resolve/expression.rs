@@ -150,9 +150,9 @@ impl<'a, 'g> Scope<'a, 'g> {
                 match items.as_slice() {
                     [a, b, c] => error.help(format!(
                         "write `[{}, {}, {}]` for a vector",
-                        a.spelt(),
-                        b.spelt(),
-                        c.spelt()
+                        a.to_source(),
+                        b.to_source(),
+                        c.to_source()
                     )),
                     _ => error.help(VECTOR),
                 };

@@ -178,11 +178,11 @@ impl<'g> Scope<'_, 'g> {
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.error(callee.place.clone(), format!("unknown function `{text}`"));
-        let greek = words::spelt_otherwise(text, &known);
+        let greek = words::known_spelling(text, &known);
         match (greek, solid) {
             (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
             (_, Some(_)) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
-            _ => words::point(error, &words::functions(), text, &known),
+            _ => words::suggest_meaning(error, &words::functions(), text, &known),
         }
         if error.is_bare() {
             error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");

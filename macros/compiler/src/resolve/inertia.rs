@@ -77,7 +77,7 @@ impl<'g> Scope<'_, 'g> {
                 let error = cx.error(e.place.clone(), format!("expected an inertia{found}"));
                 match kind {
                     ExprKind::Tuple(items) if items.len() == 3 => {
-                        let items: Vec<String> = items.iter().map(syntax::Expr::spelt).collect();
+                        let items: Vec<String> = items.iter().map(syntax::Expr::to_source).collect();
                         error.help(format!("write `diagonal({})`", items.join(", ")));
                     }
                     ExprKind::Number(n) => {
@@ -122,8 +122,8 @@ impl<'g> Scope<'_, 'g> {
             let known: Vec<&str> = Solid::names().collect();
             let error = cx.error(callee.place.clone(), format!("unknown solid `{text}`"));
             let said = words::solids();
-            words::point(error, &said, text, &known);
-            if let Some(solid) = words::meant(&said, text, &known).and_then(Solid::of_name) {
+            words::suggest_meaning(error, &said, text, &known);
+            if let Some(solid) = words::meaning(&said, text, &known).and_then(Solid::of_name) {
                 error.help(format!("it is written `{}`", solid.usage()));
             }
             if error.is_bare() {

@@ -159,7 +159,7 @@ impl<'g> Scope<'_, 'g> {
             items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
         };
         if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
-            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].spelt()))
+            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].to_source()))
                 .help("name each body once");
             return None;
         }
@@ -190,7 +190,7 @@ impl<'g> Scope<'_, 'g> {
                 if self.is_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
                     let error = cx.error(e.place.clone(), format!("unknown body `{name}`"));
-                    words::point(error, words::BODIES, name, &known);
+                    words::suggest_meaning(error, words::BODIES, name, &known);
                     if error.is_bare() {
                         error.help("name a body or a particle");
                     }

@@ -99,7 +99,7 @@ impl<'g> Scope<'_, 'g> {
             known.extend(names::AXES);
             known.push(names::PI);
             let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
-            words::point_name(error, name, &known, &rates);
+            words::suggest_name(error, name, &known, &rates);
         }
         None
     }
@@ -137,15 +137,15 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
             let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
-            if words::meant(words::OWN, body, &[]).is_some() {
+            if words::meaning(words::OWN, body, &[]).is_some() {
                 error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
                 return None;
             }
-            words::point(error, words::BODIES, body, &known);
+            words::suggest_meaning(error, words::BODIES, body, &known);
             return None;
         }
         let Some(k) = axis_of_name(&member.text) else {
-            let meant = words::meant(words::MEMBERS, &member.text, &[]);
+            let meant = words::meaning(words::MEMBERS, &member.text, &[]);
             // The ground does not rotate.
             let meant = meant.filter(|meant| body != GROUND || !meant.contains(FunctionId::Omega.name()));
             let meant = meant.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");

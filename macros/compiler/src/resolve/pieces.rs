@@ -149,7 +149,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> bool {
         let place = left.place.to(&right.place);
-        let (a, b) = (left.spelt(), right.spelt());
+        let (a, b) = (left.to_source(), right.to_source());
         match law.gap(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {

@@ -288,7 +288,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
-                words::point(error, words::BODIES, name, &known);
+                words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
                     error.help("a frame starts with the axes of a body or another frame: `#[frame(ground, z(angle))]`");
                 }

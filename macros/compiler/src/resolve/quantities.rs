@@ -42,7 +42,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `rate(coordinate)`, or the rate of an expression of coordinates, velocities and time.
     pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
-            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
+            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::to_source);
             cx.error(call.place.clone(), "`rate` takes one coordinate")
                 .help(format!("write `rate({first})`"));
             return None;
@@ -148,7 +148,7 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
         let error = cx.error(place.clone(), format!("unknown point `{name}`"));
-        words::point(error, words::BODIES, name, &known);
+        words::suggest_meaning(error, words::BODIES, name, &known);
         if error.is_bare() {
             error.help("name a body, a particle or a point, or write `body.at(length * x)`");
         }
@@ -197,7 +197,7 @@ impl<'g> Scope<'_, 'g> {
                 let kinematics = self.kinematics.borrow();
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown frame `{name}`"));
-                words::point(error, words::BODIES, name, &known);
+                words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
                     error.help("name a body or a frame");
                 }

@@ -23,7 +23,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
         let joint = on.name().and_then(|name| self.joint_coordinates(name));
         if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.spelt()))
+            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source()))
                 .help("limits are on joints with plain coordinates: not on a Ball, Free or Weld, and not on what closes a loop");
             return None;
         }

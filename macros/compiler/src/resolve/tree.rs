@@ -199,7 +199,7 @@ fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>,
     let error = cx.error(place, format!("unknown body `{}`", name.text));
     match crate::diag::nearest(&name.text, &known) {
         Some(_) => drop(error.suggest(&name.text, known)),
-        None => words::point(error, words::BODIES, &name.text, &known),
+        None => words::suggest_meaning(error, words::BODIES, &name.text, &known),
     }
     if error.is_bare() {
         error.help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));

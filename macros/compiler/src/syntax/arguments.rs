@@ -1,6 +1,6 @@
 //! Arguments of an attribute: parsed without knowledge of the attribute, then taken one by one by its reader.
 
-use super::figures::FileFigures;
+use super::file_parameters::FileParameters;
 use super::{Expr, ExprKind, Name, words};
 use crate::diag::{Diagnostics, Place, nearest};
 
@@ -8,12 +8,12 @@ use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Ident, LitStr, Meta};
 
+mod corrections;
 mod ends;
 mod parse;
-mod slips;
 
+use corrections::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 use parse::parse_arguments;
-use slips::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 
 /// Arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
 /// (any number for an equilibrium), and `key = value` in any order.
@@ -21,18 +21,18 @@ pub struct Arguments {
     relation: Option<(Expr, Expr)>,
     equations: Vec<(Expr, Expr)>,
     plain: Vec<Expr>,
-    named: Vec<(Name, Value)>,
+    named: Vec<(Name, ArgumentValue)>,
     seen: Vec<Name>,
     place: Place,
     /// Name of the element to which the arguments belong.
     owner: String,
     /// Grammar of the attribute.
-    form: Form,
+    grammar: Grammar,
 }
 
 /// Grammar of an attribute's arguments.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
+enum Grammar {
     /// Joint: two bodies with an arrow between them.
     Joint,
     /// Equilibrium: any number of equations.
@@ -41,8 +41,8 @@ enum Form {
     Other,
 }
 
-enum Value {
-    Figures(Vec<FileFigures>),
+enum ArgumentValue {
+    FileParameters(Vec<FileParameters>),
     Expr(Expr),
     Text(LitStr),
     Texts(Vec<LitStr>),
@@ -50,17 +50,17 @@ enum Value {
 
 impl Arguments {
     /// Parses the arguments of an attribute.
-    pub fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
+    pub fn of_attribute(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         let is = |word: &str| attribute.path().is_ident(word);
-        let form = match (is("joint"), is("equilibrium")) {
-            (true, _) => Form::Joint,
-            (_, true) => Form::Equilibrium,
-            _ => Form::Other,
+        let grammar = match (is("joint"), is("equilibrium")) {
+            (true, _) => Grammar::Joint,
+            (_, true) => Grammar::Equilibrium,
+            _ => Grammar::Other,
         };
         match &attribute.meta {
-            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, form, cx),
-            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, form, cx),
+            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, grammar, cx),
+            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, grammar, cx),
             Meta::NameValue(_) => {
                 let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
                 cx.error(span, "expected arguments in parentheses").help(format!("write `#[{word}(…)]`"));
@@ -71,15 +71,20 @@ impl Arguments {
 
     /// Parses the tokens between the parentheses.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
-        Arguments::parse_with(tokens, span, Form::Other, cx)
+        Arguments::parse_with(tokens, span, Grammar::Other, cx)
     }
 
-    fn parse_with(tokens: TokenStream, span: Span, form: Form, cx: &mut Diagnostics) -> Option<Arguments> {
+    fn parse_with(
+        tokens: TokenStream,
+        span: Span,
+        grammar: Grammar,
+        cx: &mut Diagnostics,
+    ) -> Option<Arguments> {
         if let Some(error) = decimal_comma(&tokens) {
             cx.syn(error);
             return None;
         }
-        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, form)).parse2(tokens);
+        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, grammar)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
             // The end of the input has no span.
@@ -93,7 +98,7 @@ impl Arguments {
                 return None;
             }
         };
-        let mut first: Vec<(Name, Value)> = Vec::new();
+        let mut first: Vec<(Name, ArgumentValue)> = Vec::new();
         for (key, value) in std::mem::take(&mut arguments.named) {
             if first.iter().any(|(other, _)| other.text == key.text) {
                 cx.error(key.place, format!("`{}` is given twice", key.text)).help("remove one of the two");
@@ -105,7 +110,7 @@ impl Arguments {
         Some(arguments)
     }
 
-    fn take(&mut self, key: &str) -> Option<(Name, Value)> {
+    fn take(&mut self, key: &str) -> Option<(Name, ArgumentValue)> {
         let at = self.named.iter().position(|(name, _)| name.text == key)?;
         let (name, value) = self.named.remove(at);
         self.seen.push(name.clone());
@@ -118,17 +123,17 @@ impl Arguments {
     }
 
     /// Removes a key.
-    pub fn forget(&mut self, key: &str) {
+    pub fn remove_key(&mut self, key: &str) {
         self.named.retain(|(name, _)| name.text != key);
     }
 
     /// Removes all keys.
-    pub fn forget_all(&mut self) {
+    pub fn remove_all(&mut self) {
         self.named.clear();
     }
 
     /// Returns the span of a key that has been taken.
-    pub fn seen(&self, key: &str) -> Option<Place> {
+    pub fn taken_place(&self, key: &str) -> Option<Place> {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
@@ -159,7 +164,7 @@ impl Arguments {
     }
 
     /// Removes an option without a value, and returns its span.
-    pub fn word_given(&mut self, word: &str) -> Option<Place> {
+    pub fn take_option(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let at = self.plain.iter().position(is_word)?;
         Some(self.plain.remove(at).place)
@@ -167,13 +172,13 @@ impl Arguments {
 
     /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
     /// true if there are any.
-    pub fn check_word(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
+    pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
         let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
         let named = self.take(word);
         let Some(place) = call.or(named.as_ref().map(|(name, _)| name.place.clone())) else { return false };
         let off = match &named {
-            Some((_, Value::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
+            Some((_, ArgumentValue::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
             _ => false,
         };
         let help = if off { "leave it out".to_string() } else { format!("write `{word}` alone") };
@@ -185,13 +190,13 @@ impl Arguments {
     /// Returns the expression of a key, if the key is present.
     pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
         match self.take(key)? {
-            (_, Value::Expr(e)) => Some(e),
-            (_, Value::Text(text)) => {
+            (_, ArgumentValue::Expr(e)) => Some(e),
+            (_, ArgumentValue::Text(text)) => {
                 cx.error(text.span(), format!("expected an expression for `{key}`, found a text"))
                     .help("write it without quotes");
                 None
             }
-            (name, Value::Texts(_) | Value::Figures(_)) => {
+            (name, ArgumentValue::Texts(_) | ArgumentValue::FileParameters(_)) => {
                 cx.error(name.place, format!("expected an expression for `{key}`, found texts"))
                     .help("write it without quotes");
                 None
@@ -218,7 +223,7 @@ impl Arguments {
                 && !value.name().is_some_and(|word| known.contains(&word))
             {
                 let error = cx.error(value.place.clone(), "expected `name = value`");
-                error.help(format!("write `{key} = {}`", value.spelt()));
+                error.help(format!("write `{key} = {}`", value.to_source()));
                 if !others.is_empty() {
                     error.suggest("", known.iter().copied());
                 }
@@ -241,7 +246,7 @@ impl Arguments {
     }
 
     /// Returns the value of a key that is one of a few words.
-    pub fn take_word(
+    pub fn take_choice(
         &mut self,
         key: &str,
         choices: &[&str],
@@ -249,12 +254,14 @@ impl Arguments {
     ) -> Option<(String, Place)> {
         let (name, value) = self.take(key)?;
         match value {
-            Value::Expr(Expr { kind: ExprKind::Name(word), place }) if choices.contains(&word.as_str()) => {
+            ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place })
+                if choices.contains(&word.as_str()) =>
+            {
                 Some((word, place))
             }
-            Value::Expr(Expr { kind: ExprKind::Name(word), place }) => {
+            ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
                 let said = if key == "formulation" { words::FORMULATIONS } else { &[] };
-                words::point(
+                words::suggest_meaning(
                     cx.error(place, format!("unknown choice `{word}` for `{key}`")),
                     said,
                     &word,
@@ -262,7 +269,7 @@ impl Arguments {
                 );
                 None
             }
-            Value::Text(text) if choices.contains(&text.value().as_str()) => {
+            ArgumentValue::Text(text) if choices.contains(&text.value().as_str()) => {
                 cx.error(text.span(), format!("expected a word for `{key}`"))
                     .help(format!("write it without quotes: `{key} = {}`", text.value()));
                 None
@@ -278,7 +285,7 @@ impl Arguments {
     /// Returns the string of a key.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take(key)? {
-            (_, Value::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
+            (_, ArgumentValue::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
             (name, _) => {
                 cx.error(name.place, format!("expected a string for `{key}`"))
                     .help(format!("write `{key} = \"…\"`"));
@@ -289,11 +296,11 @@ impl Arguments {
 
     /// Returns the strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
-        let named = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
+        let to_name = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take(key) {
             None => Vec::new(),
-            Some((_, Value::Texts(texts))) => texts.iter().map(named).collect(),
-            Some((_, Value::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
+            Some((_, ArgumentValue::Texts(texts))) => texts.iter().map(to_name).collect(),
+            Some((_, ArgumentValue::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
                 Vec::new()
             }
             Some((name, value)) => {
@@ -307,9 +314,9 @@ impl Arguments {
     }
 
     /// Returns the parameters that replace values of a file.
-    pub fn take_figures(&mut self, key: &str) -> Vec<FileFigures> {
+    pub fn take_file_parameters(&mut self, key: &str) -> Vec<FileParameters> {
         match self.take(key) {
-            Some((_, Value::Figures(figures))) => figures,
+            Some((_, ArgumentValue::FileParameters(figures))) => figures,
             _ => Vec::new(),
         }
     }
@@ -325,10 +332,10 @@ impl Arguments {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
         }
-        let is_expr = |(_, value): &(Name, Value)| matches!(value, Value::Expr(_));
+        let is_expr = |(_, value): &(Name, ArgumentValue)| matches!(value, ArgumentValue::Expr(_));
         if let Some(at) = self.named.iter().position(is_expr)
             && self.plain.is_empty()
-            && let (name, Value::Expr(right)) = self.named.remove(at)
+            && let (name, ArgumentValue::Expr(right)) = self.named.remove(at)
         {
             return Some((Expr { kind: ExprKind::Name(name.text), place: name.place }, Some(right)));
         }
@@ -342,7 +349,7 @@ impl Arguments {
         let mut rest = Vec::new();
         for (name, value) in self.named.drain(..) {
             match value {
-                Value::Expr(e) => {
+                ArgumentValue::Expr(e) => {
                     values.push((Expr { kind: ExprKind::Name(name.text), place: name.place }, e))
                 }
                 other => rest.push((name, other)),
@@ -367,7 +374,7 @@ impl Arguments {
         for (name, value) in self.named.drain(..) {
             let word = name.text.as_str();
             let near = nearest(word, known).is_some();
-            let help = match elsewhere(whose, word) {
+            let help = match argument_advice(whose, word) {
                 Some(help) => Some(help.to_string()),
                 None => words::argument_help(whose, owner, word, known),
             };
@@ -385,7 +392,7 @@ impl Arguments {
             };
             if whose == "`#[mechanism]`" && error.is_bare() {
                 error.help(match value {
-                    Value::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
+                    ArgumentValue::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
                     _ => "the documentation of `mechanism` lists its arguments",
                 });
             }
@@ -396,7 +403,7 @@ impl Arguments {
         if let Some((left, right)) = self.equations.pop() {
             let error = cx.error(left.place.to(&right.place), "expected `name = value`");
             match left.name().filter(|name| known.contains(name)) {
-                Some(name) => error.help(format!("write `{name} = {}`", right.spelt())),
+                Some(name) => error.help(format!("write `{name} = {}`", right.to_source())),
                 None if known.is_empty() => error.help(format!("write `{example}`")),
                 None => error.suggest("", known.iter().copied()),
             };
@@ -409,7 +416,7 @@ impl Arguments {
 }
 
 /// Returns the help for an unknown argument with a known meaning.
-fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
+fn argument_advice(whose: &str, name: &str) -> Option<&'static str> {
     match (whose, name) {
         ("a Body", "rotation" | "axes" | "rpy" | "orientation") => Some(
             "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",

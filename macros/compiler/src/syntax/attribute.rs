@@ -7,9 +7,9 @@ use super::lists::Lists;
 use super::mechanism::{Mechanism, Shell};
 use super::options::read_options;
 use super::parameter::type_name;
+use super::readable::Reading;
 use super::request::Requests;
 use super::separate::separate;
-use super::sound::Reading;
 use super::state::give_type;
 use super::table::table_variables;
 use super::{Description, ScalarType, crate_path, declaration, guard};
@@ -27,11 +27,11 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let fields = declaration::fields(&item);
     let mut item = parse_struct(item, cx)?;
     let before = cx.len();
-    let mut lists = Lists::write_out(&mut item.fields, cx);
+    let mut lists = Lists::expand(&mut item.fields, cx);
     let arguments = lists.rewrite(arguments, None, cx);
     let mut reading = Reading::default();
     if cx.len() > before {
-        reading.lose();
+        reading.mark_unreadable();
     }
     let (arguments, runtime) = crate_path::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
@@ -51,25 +51,25 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
     // An unknown type is reported once.
-    let mut strangers: Vec<Ident> = Vec::new();
+    let mut unknown_types: Vec<Ident> = Vec::new();
     for field in item.fields {
-        reading.field(&field);
+        reading.record_field(&field);
         let kind = type_name(&field.ty).filter(|_| table_variables(&field.ty).is_none());
-        if kind.as_ref().is_some_and(|kind| refused.contains(kind) || strangers.contains(kind)) {
-            reading.blame_last();
+        if kind.as_ref().is_some_and(|kind| refused.contains(kind) || unknown_types.contains(kind)) {
+            reading.mark_last_field();
             continue;
         }
-        strangers.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
+        unknown_types.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
         let before = cx.len();
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
         if cx.len() > before {
-            reading.blame_last();
+            reading.mark_last_field();
         }
     }
     let (mut requests, before) = (Requests::default(), cx.len());
     let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
-        reading.blame_arguments(arguments);
+        reading.mark_arguments(arguments);
     }
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
@@ -86,7 +86,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
         // The type parameter is most likely meant by an unknown type.
-        if strangers.is_empty() {
+        if unknown_types.is_empty() {
             cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
                 "remove the type parameter, or give it to a parameter: then all generated functions use it",
             );
@@ -95,7 +95,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     give_type(&description, &mut shell);
     // Linear systems include the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
-    check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
+    check_duplicates(&description, cx).iter().for_each(|name| reading.mark_name(name));
     Some(Mechanism { description, shell, file, requests, reading })
 }
 

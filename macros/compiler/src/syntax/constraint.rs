@@ -25,7 +25,7 @@ pub fn read_constraint(
         let (message, help) = match kind.pair() {
             Some(pair) => (format!("expected a pair that {}", pair.verb()), format!("write `{example}`")),
             None => {
-                let help = format!("write `{} = {}`", value.spelt(), second.spelt());
+                let help = format!("write `{} = {}`", value.to_source(), second.to_source());
                 ("expected one equation".to_string(), help)
             }
         };

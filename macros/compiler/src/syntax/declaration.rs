@@ -31,11 +31,11 @@ pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
     let head = [visibility, format!("struct {name}{generics}"), bounds];
     let head = head.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
     let space = if fields == ";" { "" } else { " " };
-    Some(format!("{}\n{head}{space}{}", dedented(&attribute), dedented(&fields)))
+    Some(format!("{}\n{head}{space}{}", dedent(&attribute), dedent(&fields)))
 }
 
 /// Removes the indentation of the last line, the closing brace, from all lines.
-fn dedented(text: &str) -> String {
+fn dedent(text: &str) -> String {
     let depth = text.lines().last().map_or(0, |last| last.len() - last.trim_start().len());
     let line = |line: &str| {
         let blank = line.len() - line.trim_start().len();
@@ -75,8 +75,8 @@ mod tests {
 
     #[test]
     fn lines_start_where_the_last_does() {
-        assert_eq!(dedented("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
-        assert_eq!(dedented("{ a: f64 }"), "{ a: f64 }");
+        assert_eq!(dedent("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
+        assert_eq!(dedent("{ a: f64 }"), "{ a: f64 }");
     }
 
     #[test]

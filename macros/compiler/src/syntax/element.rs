@@ -103,9 +103,9 @@ pub fn read_element(
     };
     let expected = element.attributes();
     let given = attributes.iter().find(|a| is_one_of(a, expected));
-    let word = given.map(spelt).or(expected.first().map(ToString::to_string));
+    let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
-        Some(word) => own_arguments(name, (&kind_name, element), word, attributes, cx),
+        Some(word) => attribute_arguments(name, (&kind_name, element), word, attributes, cx),
         None => no_arguments(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
@@ -131,7 +131,7 @@ pub fn read_element(
 /// Reads the rate of a state.
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
-    let arguments = own_arguments(name, kind, "state", attributes, cx)?;
+    let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.owned_by(name);
     let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
     arguments.finish("a State", &["rate"], cx);
@@ -195,7 +195,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
 }
 
 /// Returns the arguments of the only attribute of an element of this kind.
-fn own_arguments(
+fn attribute_arguments(
     name: &Name,
     (kind, element): (&str, ElementKind),
     expected: &str,
@@ -213,7 +213,7 @@ fn own_arguments(
                 cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text))
                     .help("write all arguments into one");
             } else {
-                found = Some(Arguments::of(attribute, cx));
+                found = Some(Arguments::of_attribute(attribute, cx));
             }
         } else if ATTRIBUTES.contains(&word.as_str()) {
             cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
@@ -257,7 +257,7 @@ fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut 
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
-    let massive = arguments.word_given("massive");
+    let massive = arguments.take_option("massive");
     let body = Body {
         name: name.clone(),
         mass: arguments.take_expr("mass", cx),
@@ -297,7 +297,7 @@ fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -
 }
 
 /// Returns the name of an attribute.
-fn spelt(attribute: &Attribute) -> String {
+fn attribute_name(attribute: &Attribute) -> String {
     attribute.path().get_ident().map_or_else(String::new, Ident::to_string)
 }
 
@@ -310,13 +310,13 @@ fn no_arguments(
 ) -> Option<Arguments> {
     if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)))
+        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)))
             .help("it is the field alone: remove the attribute");
         return None;
     }
     for attribute in attributes {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        if !check_foreign(&spelt(attribute), span, (kind, &[]), cx) {
+        if !check_foreign(&attribute_name(attribute), span, (kind, &[]), cx) {
             return None;
         }
     }
@@ -356,7 +356,7 @@ fn read_other(
         OtherKind::Point => {
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
             if let [body, place] = arguments.plain() {
-                let help = format!("write `#[point(on = {}, at = {})]`", body.spelt(), place.spelt());
+                let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
                 cx.error(body.place.to(&place.place), "expected `name = value`").help(help);
                 return;
             }

@@ -81,7 +81,7 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = behind(span, input, parse_product)?;
+        let right = parse_operand(span, input, parse_product)?;
         left = binary(op, span, left, right)?;
     }
 }
@@ -99,14 +99,14 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = behind(span, input, parse_unary)?;
+        let right = parse_operand(span, input, parse_unary)?;
         left = binary(op, span, left, right)?;
     }
 }
 
 /// Parses the operand after an operator. An error at the end of the input is reported at the operator,
 /// because no other token is left.
-fn behind(
+fn parse_operand(
     operator: Span,
     input: ParseStream<'_>,
     parse: fn(ParseStream<'_>) -> syn::Result<Parsed>,
@@ -130,7 +130,7 @@ fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Pa
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
-        let inner = behind(span, input, parse_unary)?;
+        let inner = parse_operand(span, input, parse_unary)?;
         let place = Place::from(span).to(&inner.0.place);
         return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.around());
     }
@@ -251,7 +251,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
 /// Parses `if a < b { piece }`.
 fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     let keyword = input.parse::<Token![if]>()?.span;
-    let left = behind(keyword, input, parse_sum)?;
+    let left = parse_operand(keyword, input, parse_sum)?;
     let is_less = input.peek(Token![<]) || input.peek(Token![<=]);
     if input.peek(Token![<=]) {
         input.parse::<Token![<=]>()?;

@@ -14,9 +14,9 @@ const INDEX: &str = "i";
 /// Maximum number of elements of all lists together.
 const MAX_LIST_ELEMENTS: usize = 4096;
 /// Maximum number of tokens after expansion.
-const MOST_TOKENS: usize = 1_000_000;
+const MAX_EXPANDED_TOKENS: usize = 1_000_000;
 /// Maximum number of tokens in brackets after the name of a list.
-const LONGEST: usize = 64;
+const MAX_INDEX_TOKENS: usize = 64;
 
 /// Lists of a struct, with their numbers of elements.
 pub struct Lists {
@@ -26,7 +26,7 @@ pub struct Lists {
 
 impl Lists {
     /// Expands the lists among the fields, and returns them.
-    pub fn write_out(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
+    pub fn expand(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
         let Fields::Named(named) = fields else { return lists };
         let counts: Vec<Option<usize>> = named.named.iter().map(|field| lists.read(field, cx)).collect();
@@ -125,15 +125,18 @@ impl Lists {
         let mut member = false;
         while let Some(token) = tokens.next() {
             self.tokens += 1;
-            if self.tokens > MOST_TOKENS {
-                if self.tokens == MOST_TOKENS + 1 {
-                    cx.error(token.span(), format!("lists are written out to {MOST_TOKENS} tokens at most"));
+            if self.tokens > MAX_EXPANDED_TOKENS {
+                if self.tokens == MAX_EXPANDED_TOKENS + 1 {
+                    cx.error(
+                        token.span(),
+                        format!("lists are written out to {MAX_EXPANDED_TOKENS} tokens at most"),
+                    );
                 }
                 break;
             }
-            let behind_a_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
+            let after_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
             match token {
-                TokenTree::Ident(word) if !behind_a_dot => {
+                TokenTree::Ident(word) if !after_dot => {
                     let index_of = match tokens.peek() {
                         Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Bracket => {
                             Some(group.clone())
@@ -141,7 +144,7 @@ impl Lists {
                         _ => None,
                     };
                     let ends = tokens.peek().is_none_or(|next| !is_punct(next, '='));
-                    let (token, used) = self.word(&word, index_of.as_ref(), ends, index, cx);
+                    let (token, used) = self.replace_word(&word, index_of.as_ref(), ends, index, cx);
                     written.push(token);
                     if used {
                         tokens.next();
@@ -160,7 +163,7 @@ impl Lists {
     }
 
     /// Returns the replacement of a word, and whether the brackets after it were consumed.
-    fn word(
+    fn replace_word(
         &self,
         word: &Ident,
         brackets: Option<&Group>,
@@ -190,12 +193,12 @@ impl Lists {
             }
             return (word.clone().into(), false);
         };
-        let k = self.number(&text, *count, group, index, cx).unwrap_or(0);
+        let k = self.index_value(&text, *count, group, index, cx).unwrap_or(0);
         (element_name(&text, k, word.span()).into(), true)
     }
 
     /// Returns the value of the index in brackets after the name of a list.
-    fn number(
+    fn index_value(
         &self,
         list: &str,
         count: usize,
@@ -203,7 +206,7 @@ impl Lists {
         index: Option<usize>,
         cx: &mut Diagnostics,
     ) -> Option<usize> {
-        let short = group.stream().into_iter().count() <= LONGEST;
+        let short = group.stream().into_iter().count() <= MAX_INDEX_TOKENS;
         let written: Option<Expr> = short.then(|| syn::parse2(group.stream()).ok()).flatten();
         let value = written.as_ref().and_then(|e| value(e, index));
         let Some(value) = value else {

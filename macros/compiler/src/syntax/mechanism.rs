@@ -1,8 +1,8 @@
 //! Result of parsing `#[mechanism]`: the description, the options, and the remaining struct.
 
-use super::figures::{FileField, FileFigures};
+use super::file_parameters::{FileField, FileParameters};
+use super::readable::Reading;
 use super::request::Requests;
-use super::sound::Reading;
 use super::{Base, Description, Inertias, Name};
 use syn::{Attribute, Field, Ident, Visibility};
 
@@ -176,7 +176,7 @@ pub struct FileOptions {
     /// Tolerance within which frames and axes of the file are rounded, rad and m.
     pub snap: Option<f64>,
     /// Values of the file that are parameters.
-    pub parameters: Vec<FileFigures>,
+    pub parameters: Vec<FileParameters>,
     /// Whether contacts of the file are included.
     pub contacts: bool,
     /// Whether contacts use the collision geometry of links.

@@ -10,10 +10,11 @@ pub mod contact;
 pub mod crate_path;
 pub mod declaration;
 pub mod description;
+mod duplicate;
 pub mod element;
 pub mod expression;
 mod field;
-pub mod figures;
+pub mod file_parameters;
 pub mod guard;
 pub mod joint;
 pub mod limit;
@@ -21,13 +22,12 @@ mod lists;
 pub mod mechanism;
 mod options;
 mod parameter;
+pub mod readable;
 mod request;
 mod separate;
 pub mod skipped;
-pub mod sound;
 mod state;
 mod table;
-mod twice;
 pub mod words;
 
 pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
@@ -38,12 +38,12 @@ pub use description::{
     FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
     ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
 };
+pub use duplicate::second_definition;
 pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,
 };
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
-pub use twice::second_definition;
 
 /// Suffix of a state's name in the name of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

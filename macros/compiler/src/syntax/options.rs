@@ -2,7 +2,7 @@
 //! functions.
 
 use super::arguments::Arguments;
-use super::figures::{self, FileFigures};
+use super::file_parameters::{self, FileParameters};
 use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption};
 use super::parameter::unify_scalar;
 use super::request::{Printed, REQUESTS, Requests};
@@ -47,13 +47,13 @@ pub fn read_options(
     cx: &mut Diagnostics,
 ) -> Option<FileOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    let mistaken: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_word(word, cx)).collect();
-    let asked = words_given(&mut arguments);
-    *requests = read_requests(&asked, &mistaken, &mut arguments, description, cx);
+    let rejected: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_option(word, cx)).collect();
+    let asked = take_requests(&mut arguments);
+    *requests = read_requests(&asked, &rejected, &mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
-    if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
+    if let Some((word, place)) = arguments.take_choice("scalar", &["f64", "f32"], cx) {
         let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
         unify_scalar(scalar, found, place, cx);
     }
@@ -70,34 +70,35 @@ pub fn read_options(
                     );
                 }
                 error.help("add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the option");
-                arguments.forget(option);
+                arguments.remove_key(option);
             }
         }
     }
     let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
-    let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
+    let limits = arguments.take_choice("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
         "stops" => LimitOption::Stops,
         _ => LimitOption::Honour,
     });
-    let mut choice =
-        |key: &str, words: [&str; 2]| arguments.take_word(key, &words, cx).map(|(word, _)| word == words[1]);
+    let mut choice = |key: &str, words: [&str; 2]| {
+        arguments.take_choice(key, &words, cx).map(|(word, _)| word == words[1])
+    };
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &asked, description, cx);
     requests.skipped = skipped::read(&mut arguments, cx);
-    let printed = arguments.take_word("equations", &Printed::WORDS.map(|(word, _)| word), cx);
+    let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);
     let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
     requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
     let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
-    let parameters = read_figures(&mut arguments, description.inertias, cx);
+    let parameters = read_file_parameters(&mut arguments, description.inertias, cx);
     requests.file_parameters = !parameters.is_empty();
-    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == figures::INERTIAL);
+    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == file_parameters::INERTIAL);
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     let (format, path) = file?;
     Some(FileOptions {
@@ -122,7 +123,7 @@ pub fn read_options(
 fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
     let place = arguments.place_of("contacts");
     let asked =
-        arguments.take_word("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
+        arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
     let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
     if let (Some(place), Some(other)) = (place, other) {
         cx.error(place, format!("{} does not say what touches what", other.article()))
@@ -153,7 +154,7 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
         _ => &["joints", "none"],
     };
     let found = arguments
-        .take_word("inputs", words, cx)
+        .take_choice("inputs", words, cx)
         .map_or(words.first().copied(), |(word, _)| words.iter().copied().find(|known| *known == word));
     match found {
         Some("actuators") => InputOption::Actuators,
@@ -170,7 +171,7 @@ fn read_inertias(
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Inertias {
-    match arguments.take_word("inertia", &["check", "trust", "none"], cx) {
+    match arguments.take_choice("inertia", &["check", "trust", "none"], cx) {
         Some((word, _)) if word == "trust" => Inertias::Trust,
         Some((word, _)) if word == "none" => {
             for (word, place) in asked.iter().filter(|(word, _)| *word != "drawing") {
@@ -201,10 +202,14 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
 }
 
 /// Reads `parameters = inertial("trunk")`. Without inertia there are no mass properties.
-fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnostics) -> Vec<FileFigures> {
-    let mut found = figures::check(arguments.take_figures("parameters"), cx);
+fn read_file_parameters(
+    arguments: &mut Arguments,
+    inertias: Inertias,
+    cx: &mut Diagnostics,
+) -> Vec<FileParameters> {
+    let mut found = file_parameters::check(arguments.take_file_parameters("parameters"), cx);
     found.retain(|figures| {
-        let good = inertias != Inertias::None || figures.word.text == figures::PLACEMENT;
+        let good = inertias != Inertias::None || figures.word.text == file_parameters::PLACEMENT;
         if !good {
             let word = &figures.word;
             cx.error(word.place.clone(), format!("`{}` needs inertia", word.text))
@@ -219,7 +224,7 @@ fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnost
 fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
     let place = arguments.place_of("independent");
     let independent = arguments.take_list("independent", cx);
-    let chosen = arguments.take_word("formulation", &["multipliers", "speeds"], cx);
+    let chosen = arguments.take_choice("formulation", &["multipliers", "speeds"], cx);
     match (chosen, place) {
         (Some((word, at)), Some(_)) if word == "multipliers" => {
             cx.error(at, "multipliers need no independent speeds")
@@ -233,14 +238,14 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
 }
 
 /// Takes the options of [`Requests`] from the arguments.
-fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
-    REQUESTS.iter().filter_map(|word| Some((*word, arguments.word_given(word)?))).collect()
+fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
+    REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_option(word)?))).collect()
 }
 
 /// Returns the requested functions, and reports unknown or meaningless options.
 fn read_requests(
     asked: &[(&str, Place)],
-    mistaken: &[&str],
+    rejected: &[&str],
     arguments: &mut Arguments,
     description: &Description,
     cx: &mut Diagnostics,
@@ -248,7 +253,7 @@ fn read_requests(
     let is_asked = |word: &str| asked.iter().any(|(known, _)| *known == word);
     let requests = Requests::of_words(is_asked);
     for (word, place) in asked {
-        let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
+        let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
             cx.error(
                 place.clone(),

@@ -56,11 +56,11 @@ fn key(word: &str) -> String {
 
 /// Returns the meaning of a word. A single-word meaning must be among the `known` words, unless these are
 /// empty.
-pub fn meant(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
+pub fn meaning(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = key(word);
-    let fits = |meant: &str| meant.contains(' ') || known.is_empty() || known.contains(&meant);
-    let said = |(said, meant): &&(&str, &str)| fits(meant) && said.split(' ').any(|one| one == key);
-    words.iter().find(said).map(|(_, meant)| *meant)
+    let fits = |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
+    let said = |(said, meaning): &&(&str, &str)| fits(meaning) && said.split(' ').any(|one| one == key);
+    words.iter().find(said).map(|(_, meaning)| *meaning)
 }
 
 /// Whether a word is an option of `#[mechanism]` without a value.
@@ -70,16 +70,16 @@ pub fn is_request(word: &str) -> bool {
 
 /// Adds the meaning of a word to a message, if it is known; returns whether it is.
 pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
-    match meant(words, word, known) {
-        Some(meant) if meant.contains(' ') => diagnostic.help(meant),
-        Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
+    match meaning(words, word, known) {
+        Some(meaning) if meaning.contains(' ') => diagnostic.help(meaning),
+        Some(meaning) => diagnostic.help(format!("did you mean `{meaning}`?")),
         None => return false,
     };
     true
 }
 
 /// Adds the meaning of a word to a message, or the nearest known word, or the list of known words.
-pub fn point(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
+pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
     if !explain(diagnostic, words, word, known) {
         diagnostic.suggest(word, known.iter().copied());
     }
@@ -100,15 +100,15 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
 
 /// Returns the help for an argument that an element does not have; `whose` is the element with its article.
 pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
-    let meant = meant(arguments(kind_of(whose)), word, known)?;
-    Some(match meant.contains(' ') {
-        true => meant.replace("NAME", owner),
-        false => format!("did you mean `{meant}`?"),
+    let meaning = meaning(arguments(kind_of(whose)), word, known)?;
+    Some(match meaning.contains(' ') {
+        true => meaning.replace("NAME", owner),
+        false => format!("did you mean `{meaning}`?"),
     })
 }
 
 /// Returns the known name that equals a word up to Greek letters and case.
-pub fn spelt_otherwise<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn known_spelling<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let mut letters = word.to_string();
     for (letter, name) in GREEK {
         letters = letters.replace(letter, name);
@@ -143,12 +143,12 @@ pub fn is_constant(word: &str) -> bool {
 }
 
 /// Adds the likely meaning of a name without a value, one of the `known` names, to a message.
-pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
+pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
     if let Some(coordinate) = rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate({coordinate})` for its rate"));
     } else if let Some(coordinate) = second_rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate(rate({coordinate}))` for its acceleration"));
-    } else if let Some(same) = spelt_otherwise(name, known) {
+    } else if let Some(same) = known_spelling(name, known) {
         diagnostic.help(format!("did you mean `{same}`?"));
     } else if explain(diagnostic, NAMES, name, &[]) {
     } else if nearest(name, known).is_some() {
@@ -168,7 +168,7 @@ pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coord
 
 impl Expr {
     /// Returns the expression as the user would write it, or `…` if it is long.
-    pub fn spelt(&self) -> String {
+    pub fn to_source(&self) -> String {
         let text = spell(self);
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
@@ -237,11 +237,11 @@ mod tests {
         let elements = ElementKind::names().filter_map(ElementKind::of_name);
         let of_arguments = elements.flat_map(|element| element.words().iter().copied());
         let rows = [functions(), solids(), rotations()].concat();
-        for (said, meant) in
+        for (said, meaning) in
             all.into_iter().flatten().copied().chain(rows).chain(of_arguments).chain(ElementKind::synonyms())
         {
             assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
-            assert!(!meant.is_empty() && (meant.contains(' ') || !meant.contains('`')), "{meant}");
+            assert!(!meaning.is_empty() && (meaning.contains(' ') || !meaning.contains('`')), "{meaning}");
         }
     }
 
@@ -254,6 +254,6 @@ mod tests {
         assert_eq!(second_rate_of("hinge_ddot", &["hinge"]), Some("hinge"));
         assert_eq!(second_rate_of("ddtheta1", &["theta", "theta1"]), Some("theta1"));
         assert_eq!(second_rate_of("hinge_dot", &["hinge"]), None);
-        assert_eq!(spelt_otherwise("θ1", &["theta_1"]), Some("theta_1"));
+        assert_eq!(known_spelling("θ1", &["theta_1"]), Some("theta_1"));
     }
 }

@@ -1,6 +1,6 @@
 //! Common errors in the grammar of arguments, with their corrections.
 
-use super::{Arguments, Value};
+use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, one_of, syn_error};
 use crate::syntax::expression::{parse_expr, quoted, unexpected};
 use crate::syntax::{Expr, ExprKind, words};
@@ -18,10 +18,10 @@ pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     let error = cx.error(e.place.clone(), "expected `name = value`");
     match (&e.kind, known) {
         (ExprKind::Call(word, value), _) if known.contains(&word.text.as_str()) && value.len() == 1 => {
-            error.help(format!("write `{} = {}`", word.text, value[0].spelt()))
+            error.help(format!("write `{} = {}`", word.text, value[0].to_source()))
         }
         (_, []) => error.help(format!("write `{example}`")),
-        (_, [one]) => error.help(format!("write `{one} = {}`", e.spelt())),
+        (_, [one]) => error.help(format!("write `{one} = {}`", e.to_source())),
         (_, [.., _]) if known.len() <= 8 => {
             let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
             error.help(format!("expected {}", one_of(&list)))
@@ -75,7 +75,10 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
     while let Ok(sign) = ahead.call(syn::parse::ParseBuffer::parse::<proc_macro2::Punct>) {
         signs.push(sign.as_char());
     }
-    if arguments.form == super::Form::Joint && arguments.relation.is_none() && arguments.named.is_empty() {
+    if arguments.grammar == super::Grammar::Joint
+        && arguments.relation.is_none()
+        && arguments.named.is_empty()
+    {
         if signs.is_empty() && ahead.peek2(Ident::peek_any) {
             ahead.call(Ident::parse_any).ok()?;
         }
@@ -84,11 +87,11 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
         if equation || (signs.is_empty() && second.is_none()) {
             return None;
         }
-        let child = second.map_or("child".to_string(), |e| e.spelt());
-        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.spelt())));
+        let child = second.map_or("child".to_string(), |e| e.to_source());
+        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.to_source())));
     }
     if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
-        let help = format!("write `{} = …`", first.spelt());
+        let help = format!("write `{} = …`", first.to_source());
         return first.name().map(|_| syn_error(span, "expected `=`", &help));
     }
     None
@@ -124,11 +127,11 @@ pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
 }
 
 /// Returns the elements of a list of strings, quoted, for a string or names without brackets or quotes.
-pub fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
+pub fn names_without_brackets_or_quotes(value: &ArgumentValue) -> Option<String> {
     match value {
-        Value::Text(text) => Some(quoted(&text.value())),
-        Value::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
-        Value::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
+        ArgumentValue::Text(text) => Some(quoted(&text.value())),
+        ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
+        ArgumentValue::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
             let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
             names.map(|names| names.join(", "))
         }

@@ -10,7 +10,7 @@ use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
 
 /// Requested parameters of one kind.
 #[derive(Clone, Debug)]
-pub struct FileFigures {
+pub struct FileParameters {
     /// Kind, as written.
     pub word: Name,
     /// Names of links or joints; all of them if absent.
@@ -71,16 +71,18 @@ impl FileField {
 }
 
 /// Parses one kind or a list of kinds.
-pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileFigures>> {
+pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileParameters>> {
     if !input.peek(token::Bracket) {
         return Ok(vec![parse_one(input)?]);
     }
     let list;
     bracketed!(list in input);
-    Ok(Punctuated::<FileFigures, Token![,]>::parse_terminated_with(&list, parse_one)?.into_iter().collect())
+    Ok(Punctuated::<FileParameters, Token![,]>::parse_terminated_with(&list, parse_one)?
+        .into_iter()
+        .collect())
 }
 
-fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
+fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());
@@ -92,7 +94,7 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
     }
     let word = parse_name(input)?;
     if !input.peek(token::Paren) {
-        return Ok(FileFigures { word, of: None });
+        return Ok(FileParameters { word, of: None });
     }
     let list;
     parenthesized!(list in input);
@@ -109,12 +111,12 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
         Ok(Name { text: text.value(), place: text.span().into() })
     };
     let names = Punctuated::<Name, Token![,]>::parse_terminated_with(&list, name)?;
-    Ok(FileFigures { word, of: Some(names.into_iter().collect()) })
+    Ok(FileParameters { word, of: Some(names.into_iter().collect()) })
 }
 
 /// Returns the known kinds, each once; reports unknown ones and duplicates.
-pub fn check(asked: Vec<FileFigures>, cx: &mut Diagnostics) -> Vec<FileFigures> {
-    let mut good: Vec<FileFigures> = Vec::new();
+pub fn check(asked: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
+    let mut good: Vec<FileParameters> = Vec::new();
     for figures in asked {
         let word = &figures.word;
         if !WORDS.contains(&word.text.as_str()) {
