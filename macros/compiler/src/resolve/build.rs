@@ -19,7 +19,7 @@ const MAX_VELOCITIES: usize = 128;
 const MAX_SEPARATE_REPORTS: usize = 3;
 
 /// Help for mechanisms with too many velocities.
-const TOO_MANY: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
+const DIVIDE_HELP: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
 
 /// Maximum number of bodies of a mechanism.
 const MAX_BODIES: usize = 1024;
@@ -72,7 +72,7 @@ fn build<'g>(
             description.name.place.clone(),
             format!("{n} degrees of freedom, more than {MAX_VELOCITIES}"),
         )
-        .help(TOO_MANY);
+        .help(DIVIDE_HELP);
         return None;
     }
     builder.number_released_coordinates(releasing.map_or(&[], |(joints, _)| joints));
@@ -251,9 +251,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             solved_loops: Vec::new(),
             releasing: None,
             joint_frames: BTreeMap::new(),
-            applied: Vec::new(),
+            released_forces: Vec::new(),
             contact_points: BTreeMap::new(),
-            moved_by_place: Vec::new(),
+            moving_placements: Vec::new(),
             frame_links: Vec::new(),
             partials: Partials::default(),
             group: 0,

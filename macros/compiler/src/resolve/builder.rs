@@ -66,10 +66,10 @@ pub struct Builder<'a, 'g> {
     pub joint_frames: BTreeMap<usize, Placed<'g>>,
     /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
     /// dissipation.
-    pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
+    pub released_forces: Vec<(String, Vec<expr::Expr<'g>>)>,
     /// Bodies and particles placed by a moving `at` or `frame`: index among the releasable joints, and the
     /// link that carries them.
-    pub moved_by_place: Vec<(usize, Option<LinkId>)>,
+    pub moving_placements: Vec<(usize, Option<LinkId>)>,
     /// Links of frames that move relative to the link in which they are defined.
     pub frame_links: Vec<LinkId>,
     /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.

@@ -12,11 +12,11 @@ pub fn uses_axes(d: &Description, name: &str) -> bool {
         || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(is_name)
         || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(is_name)
         || d.actions.iter().any(|action| acts_on_particle(&action.on))
-        || expressions(d).into_iter().any(|e| names_axes(e, name))
+        || expressions(d).into_iter().any(|e| contains_axes_of(e, name))
 }
 
 /// Whether an expression contains `name.at(…)` or `name.x`.
-fn names_axes(e: &Expr, name: &str) -> bool {
+fn contains_axes_of(e: &Expr, name: &str) -> bool {
     e.parts().into_iter().any(|part| match &part.kind {
         ExprKind::Field(base, _) | ExprKind::Method(base, ..) => base.name() == Some(name),
         _ => false,

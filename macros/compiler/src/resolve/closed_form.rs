@@ -28,10 +28,10 @@ struct Side<'g> {
 /// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
 pub struct Solved(());
 
-const HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
+const CLOSED_FORM_HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
 
 /// Returns the loops whose closing joint has a `branch`, and reports joints for which that is not allowed.
-pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
+pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
     let mut found: Vec<ClosedFormLoop> = Vec::new();
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
@@ -59,7 +59,8 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Clos
                 found.push(ClosedFormLoop { closing: j, sides: [a, b] });
             }
             _ => {
-                cx.error(branch.place.clone(), "this loop is not solved in closed form").help(HELP);
+                cx.error(branch.place.clone(), "this loop is not solved in closed form")
+                    .help(CLOSED_FORM_HELP);
             }
         }
     }
@@ -103,7 +104,7 @@ impl<'g> Builder<'_, 'g> {
             Some(slide) => vanishes(slide.dot(axis)),
         };
         if !in_plane || !vanishes((b.base + b.point - a.point).dot(axis)) {
-            cx.error(place.clone(), "this loop does not lie in one plane").help(HELP);
+            cx.error(place.clone(), "this loop does not lie in one plane").help(CLOSED_FORM_HELP);
             return None;
         }
         let [(_, e1), (_, e2)] = perpendicular(axis);

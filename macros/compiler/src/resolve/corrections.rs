@@ -65,13 +65,14 @@ impl Scope<'_, '_> {
 }
 
 /// Syntax of a vector.
-pub const VECTOR: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
+pub const VECTOR_SYNTAX: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
 
 /// Syntax of a matrix.
-pub const MATRIX: &str = "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
+pub const MATRIX_SYNTAX: &str =
+    "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
 
 /// Help for a function that is undefined at a number.
-pub const DOMAIN: &str = "its argument is a number here: mend that";
+pub const DOMAIN_HELP: &str = "its argument is a number here: mend that";
 
 /// Maximum plain number that is accepted as an angle, rad: a full revolution with room for the digits of 2 π.
 const FULL_TURN: f64 = 6.3;
@@ -122,7 +123,7 @@ pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
 /// Reports an array that is not a matrix.
 pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let ExprKind::Array(items) = &e.kind else {
-        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX);
+        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX_SYNTAX);
         return;
     };
     let is_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
@@ -133,6 +134,6 @@ pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
         ("numbers", [a, b, c]) => {
             error.help(format!("write `diagonal({}, {}, {})`", a.to_source(), b.to_source(), c.to_source()))
         }
-        _ => error.help(MATRIX),
+        _ => error.help(MATRIX_SYNTAX),
     };
 }

@@ -2,7 +2,7 @@
 //! frames, so that a viewer needs no traversal of the links.
 
 use super::builder::Builder;
-use super::joint::drawn;
+use super::joint::drawing_symbol;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -70,7 +70,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the pose of the end of a joint.
-    fn end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
+    fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::unread();
         let on_body = self.endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
@@ -89,7 +89,7 @@ impl<'g> Builder<'_, 'g> {
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
-            let Some((frame, pose)) = self.end(on) else { continue };
+            let Some((frame, pose)) = self.joint_end(on) else { continue };
             let z = pose.rotation.to_parent(Vec3::axis(g, 2));
             let number = |x: f64| g.num(x);
             let round = |numbers: &[f64]| {
@@ -221,7 +221,7 @@ impl<'g> Builder<'_, 'g> {
         let mut joint_positions: Vec<(&str, Vec3<'g>)> = Vec::new();
         for joint in &self.description.joints {
             let (Some((parent, on_parent)), Some((_, on_child))) =
-                (self.end(&joint.parent), self.end(&joint.child))
+                (self.joint_end(&joint.parent), self.joint_end(&joint.child))
             else {
                 continue;
             };
@@ -230,7 +230,7 @@ impl<'g> Builder<'_, 'g> {
             {
                 joint_positions.push((&body.text, place));
             }
-            let Some((kind, axis)) = self.joint_kind(joint) else { continue };
+            let Some((kind, axis)) = self.joint_symbol(joint) else { continue };
             let mut numbers = entries(&[on_parent.translation]);
             numbers.extend(axis.iter().flat_map(|axis| entries(&[on_parent.rotation.to_parent(*axis)])));
             let name = joint.name.text.clone();
@@ -255,8 +255,8 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the symbol of a joint, with its axis on the parent.
-    fn joint_kind(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
-        let (kind, axes) = drawn(joint)?;
+    fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
+        let (kind, axes) = drawing_symbol(joint)?;
         let axis = |axes: &[syntax::Expr]| {
             self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
         };
@@ -274,7 +274,7 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {
-            let Some((kind, frames, numbers)) = self.input(k, name, input) else { continue };
+            let Some((kind, frames, numbers)) = self.input_arrow(k, name, input) else { continue };
             pieces.push(Piece { name: name.clone(), role: Role::Input, kind, frames, numbers });
         }
     }
@@ -306,14 +306,14 @@ impl<'g> Builder<'_, 'g> {
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.name()?;
         let joint = self.description.joints.iter().find(|joint| joint.name.text == name)?;
-        let ((a, on_a), (b, on_b)) = self.end(&joint.parent).zip(self.end(&joint.child))?;
-        let (kind, axis) = self.joint_kind(joint)?;
+        let ((a, on_a), (b, on_b)) = self.joint_end(&joint.parent).zip(self.joint_end(&joint.child))?;
+        let (kind, axis) = self.joint_symbol(joint)?;
         let axis = on_a.rotation.to_parent(axis?);
         Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
     }
 
     /// Returns the joint that an input of a file drives.
-    fn driven(&self, input: &str) -> Option<&str> {
+    fn driven_joint(&self, input: &str) -> Option<&str> {
         let drives = &self.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
@@ -321,7 +321,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns an arrow for an input, if the input has one direction.
-    fn input(
+    fn input_arrow(
         &self,
         k: usize,
         name: &str,
@@ -336,7 +336,7 @@ impl<'g> Builder<'_, 'g> {
                     Some(Target::On(on)) => self.on_joint(on),
                     Some(Target::Between(..)) => None,
                     None => {
-                        let joint = self.driven(name).unwrap_or(name).to_string();
+                        let joint = self.driven_joint(name).unwrap_or(name).to_string();
                         let place = self.description.name.place.clone();
                         self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
                     }

@@ -28,7 +28,7 @@ impl<'g> Builder<'_, 'g> {
     fn add_drive(&mut self, drive: &Drive, cx: &mut Diagnostics) {
         let mut terms: Vec<Coordinate> = Vec::new();
         for (joint, weight) in drive.on.terms() {
-            match self.weighted(&joint.text, *weight) {
+            match self.weighted_coordinate(&joint.text, *weight) {
                 Some(coordinate) => terms.push(coordinate),
                 None => report_unused_input(&drive.name, cx),
             }
@@ -117,7 +117,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the coordinate of a joint with one degree of freedom, multiplied by a weight.
-    fn weighted(&self, joint: &str, weight: f64) -> Option<Coordinate> {
+    fn weighted_coordinate(&self, joint: &str, weight: f64) -> Option<Coordinate> {
         match self.joint_coordinates(joint)?.as_slice() {
             [(_, c, _)] => Some(Coordinate { ratio: weight * c.ratio, offset: weight * c.offset, ..*c }),
             _ => None,

@@ -1,7 +1,7 @@
 //! Resolution of written expressions into expressions of the graph: names are looked up, and scalars, vectors
 //! and matrices are distinguished.
 
-use super::corrections::VECTOR;
+use super::corrections::VECTOR_SYNTAX;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
@@ -142,7 +142,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
             ExprKind::Array(items) => {
                 cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()))
-                    .help(VECTOR);
+                    .help(VECTOR_SYNTAX);
                 None
             }
             ExprKind::Tuple(items) => {
@@ -154,7 +154,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                         b.to_source(),
                         c.to_source()
                     )),
-                    _ => error.help(VECTOR),
+                    _ => error.help(VECTOR_SYNTAX),
                 };
                 None
             }

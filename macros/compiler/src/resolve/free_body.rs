@@ -49,7 +49,7 @@ type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
 
 impl<'g> Builder<'_, 'g> {
     /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
-    pub fn with_released_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn with_released_at_zero(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let Some((joints, _)) = self.releasing else { return e.to_vec() };
         let open = RELEASED * joints.len();
         let (nq, nv) = (self.model.nq() - open, self.model.nv() - open);
@@ -99,7 +99,7 @@ impl<'g> Builder<'_, 'g> {
             add(force.rate, value);
         }
         add(self.power_of_input(name), m.graph.one());
-        self.applied.push((name.to_string(), forces));
+        self.released_forces.push((name.to_string(), forces));
     }
 
     /// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
@@ -126,11 +126,11 @@ impl<'g> Builder<'_, 'g> {
         let rotation = &body.axes.1.rotation;
         for (name, origin, place, wrench) in all {
             let zero = Vec3::zero(self.scope.graph);
-            let point = place.map_or(zero, |terms| self.arm_to(&body, &terms));
+            let point = place.map_or(zero, |terms| self.arm_from_center(&body, &terms));
             values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
             actions.push((name, origin));
         }
-        Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions, ..empty }))
+        Some(named(self.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
     }
 
     /// Returns the name of the body, if it can have a diagram.
@@ -160,8 +160,10 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         let kinematics = self.scope.kinematics.borrow();
         let link = kinematics.places.get(name)?.link;
-        let released: Vec<Option<LinkId>> =
-            joints.iter().filter_map(|(at, holds)| (!holds).then_some(self.first_of_released(*at))).collect();
+        let released: Vec<Option<LinkId>> = joints
+            .iter()
+            .filter_map(|(at, holds)| (!holds).then_some(self.first_released_link(*at)))
+            .collect();
         let (mut mass, mut sum) = (g.zero(), Vec3::zero(g));
         for (other, (m, com, _)) in &kinematics.masses {
             let Some(placed) = kinematics.places.get(other) else { continue };
@@ -189,7 +191,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the first link of the motions of a released joint.
-    fn first_of_released(&self, at: usize) -> Option<LinkId> {
+    fn first_released_link(&self, at: usize) -> Option<LinkId> {
         let count = self.releasing?.0.len();
         let v = self.model.nv() - RELEASED * (count - at);
         let links = self.scope.kinematics.borrow();
@@ -198,7 +200,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
-    fn arm_to(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
+    fn arm_from_center(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let mut terms = place.clone();
         let center = kinematics.position(body.center.link, body.center.pose.translation);
@@ -260,14 +262,14 @@ impl<'g> Builder<'_, 'g> {
             self.scope.kinematics.borrow().resolve(&terms, body.axes.0, zero)
         };
         let (force, torque) = (in_result_axes(force), in_result_axes(torque));
-        let arm = self.arm_to(body, &self.position_of(frame));
+        let arm = self.arm_from_center(body, &self.position_of(frame));
         Some(Wrench { force, torque: torque + arm.cross(force) })
     }
 
     fn elements_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let mut all = Vec::new();
-        for (name, forces) in &self.applied {
-            let forces = self.with_released_at_rest(forces);
+        for (name, forces) in &self.released_forces {
+            let forces = self.with_released_at_zero(forces);
             let wrench = self.wrench_on_body(body, &forces);
             if !self.is_nonzero(&wrench, &forces) {
                 continue;
@@ -357,14 +359,14 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         let action_of = |(name, forces): (String, Vec<Expr<'g>>)| {
-            let forces = self.with_released_at_rest(&forces);
+            let forces = self.with_released_at_zero(&forces);
             let wrench = self.wrench_on_body(body, &forces);
             if !self.is_nonzero(&wrench, &forces) {
                 return None;
             }
             let joint = self.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
-                let place = self.end_on(body, [&joint.parent, &joint.child]);
+                let place = self.joint_end_on(body, [&joint.parent, &joint.child]);
                 let wrench = self.wrench_about(body, place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
@@ -393,7 +395,7 @@ impl<'g> Builder<'_, 'g> {
                     forces[v - first] += force * d;
                 }
             }
-            let forces = self.with_released_at_rest(&forces);
+            let forces = self.with_released_at_zero(&forces);
             let wrench = self.wrench_on_body(body, &forces);
             if self.is_nonzero(&wrench, &forces) {
                 let place = self.contact_points.get(&contact.name).cloned();
@@ -408,7 +410,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the position of the end of a joint that belongs to the body.
-    fn end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+    fn joint_end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::unread();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
@@ -421,14 +423,14 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the wrench about another point of the body.
     fn wrench_about(&self, body: &FreedBody<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
-        let arm = self.arm_to(body, place);
+        let arm = self.arm_from_center(body, place);
         Wrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
     /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
     /// carries cancel up to rounding.
     fn is_nonzero(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
-        let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
+        let all = self.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;
         }

@@ -1,7 +1,7 @@
 //! Calls of functions in expressions, and their values: one match arm per function.
 
 use super::call::Call;
-use super::corrections::{DOMAIN, check_angle, degrees};
+use super::corrections::{DOMAIN_HELP, check_angle, degrees};
 use super::momenta::Sum;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -61,11 +61,11 @@ impl<'g> Scope<'_, 'g> {
                 Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
             }
             F::Norm => {
-                let (_, v) = self.only_vector(call, "the size of a scalar is `abs(a)`", cx)?;
+                let (_, v) = self.vector_argument(call, "the size of a scalar is `abs(a)`", cx)?;
                 Some(Value::Scalar(v.length()))
             }
             F::Unit => {
-                let (axes, v) = self.only_vector(call, "a scalar has no direction", cx)?;
+                let (axes, v) = self.vector_argument(call, "a scalar has no direction", cx)?;
                 if v.is_zero() {
                     cx.error(call.arguments[0].place.clone(), "the zero vector has no direction")
                         .help("a direction is a vector of some length");
@@ -156,7 +156,8 @@ impl<'g> Scope<'_, 'g> {
             && let Some(number) = self.graph.expr(inner).value()
         {
             let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
-            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name())).help(DOMAIN);
+            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()))
+                .help(DOMAIN_HELP);
             return None;
         }
         Some(Value::Scalar(s))
@@ -164,7 +165,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the only argument of a function, a vector, in common axes. `help` is the help for a scalar
     /// argument.
-    fn only_vector(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
+    fn vector_argument(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
         let [a] = call.take(cx)?;
         let vector = self.vector_or(a, help, cx)?;
         let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;

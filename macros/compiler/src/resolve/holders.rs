@@ -46,7 +46,7 @@ impl<'g> Builder<'_, 'g> {
             link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
             pose = Pose::identity(self.scope.graph);
         }
-        self.moved_by_place.push((number, holder));
+        self.moving_placements.push((number, holder));
         let Some((released, _)) = self.releasing else { return (link, pose) };
         let Some(at) = released.iter().position(|open| *open == number) else { return (link, pose) };
         self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
@@ -76,7 +76,7 @@ impl<'g> Builder<'_, 'g> {
     fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
         let d = self.description;
         let moves = |name: &str| {
-            let numbers = self.moved_by_place.iter().map(|(number, _)| *number);
+            let numbers = self.moving_placements.iter().map(|(number, _)| *number);
             numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
         };
         let carrier_name = |name: &str| {
@@ -91,14 +91,14 @@ impl<'g> Builder<'_, 'g> {
     /// the child.
     pub fn holders_of(&self, body: &str) -> Vec<(usize, bool)> {
         let d = self.description;
-        let closing = tree::closing(d);
+        let closing = tree::loop_closing_joints(d);
         let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
             let holds = joint.child.body.text == body;
             let joins = holds || self.carrier(&joint.parent.body.text) == body;
             (joins && closing.get(j) == Some(&false)).then_some((j, holds))
         });
         let own = self.scope.kinematics.borrow().places.get(body).and_then(|placed| placed.link);
-        let places = self.moved_by_place.iter().filter_map(|(number, carrier)| {
+        let places = self.moving_placements.iter().filter_map(|(number, carrier)| {
             let holds = name_of(d, *number).is_some_and(|name| name.text == body);
             (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
         });

@@ -24,7 +24,7 @@ pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
 }
 
 /// Returns the symbol of a joint in the drawing, if it has one, and the axes of which the first is drawn.
-pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
+pub fn drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
         DrawnAxis::About => joint.about.as_slice(),
@@ -47,26 +47,26 @@ impl<'g> Scope<'_, 'g> {
         let (about, along) = (about?, along?);
         let place = &joint.name.place;
         match joint.kind {
-            JointKind::Pin => Some(vec![Turn(one(&about, "about", "a Pin", place, cx)?)]),
-            JointKind::Sleeve => Some(vec![Slide(one(&along, "along", "a Sleeve", place, cx)?)]),
+            JointKind::Pin => Some(vec![Turn(single_axis(&about, "about", "a Pin", place, cx)?)]),
+            JointKind::Sleeve => Some(vec![Slide(single_axis(&along, "along", "a Sleeve", place, cx)?)]),
             JointKind::Screw => self.screw(joint, &about, &along, cx),
             JointKind::Collar => {
-                let axis = either(&about, &along, "a Collar", place, cx)?;
+                let axis = common_axis(&about, &along, "a Collar", place, cx)?;
                 Some(vec![Slide(axis), Turn(axis)])
             }
             JointKind::Slot => {
-                let slide = one(&along, "along", "a Slot", place, cx);
-                let turn = one(&about, "about", "a Slot", place, cx);
+                let slide = single_axis(&along, "along", "a Slot", place, cx);
+                let turn = single_axis(&about, "about", "a Slot", place, cx);
                 Some(vec![Slide(slide?), Turn(turn?)])
             }
             JointKind::Universal => {
-                let axes = several(&about, 2..=2, "about", "a Universal", place, cx)?;
+                let axes = axis_list(&about, 2..=2, "about", "a Universal", place, cx)?;
                 check_independent(axes, "a Universal", joint.about.get(1), cx)?;
                 Some(axes.iter().map(|a| Turn(*a)).collect())
             }
             JointKind::Planar => self.planar(&about, &along, place, cx),
             JointKind::Stage => {
-                let axes = several(&along, 2..=3, "along", "a Stage", place, cx)?;
+                let axes = axis_list(&along, 2..=3, "along", "a Stage", place, cx)?;
                 check_independent(axes, "a Stage", joint.along.last(), cx)?;
                 Some(axes.iter().map(|a| Slide(*a)).collect())
             }
@@ -88,7 +88,7 @@ impl<'g> Scope<'_, 'g> {
         along: &[Vec3<'g>],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Elementary<'g>>> {
-        let axis = either(about, along, "a Screw", &joint.name.place, cx);
+        let axis = common_axis(about, along, "a Screw", &joint.name.place, cx);
         let pitch = match (&joint.pitch, &joint.lead) {
             (Some(pitch), None) => self.scalar(pitch, cx),
             (None, Some(lead)) => self.scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
@@ -173,17 +173,17 @@ fn vanishes(e: Expr<'_>) -> bool {
     (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
 }
 
-fn one<'g>(
+fn single_axis<'g>(
     axes: &[Vec3<'g>],
     key: &str,
     what: &str,
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    several(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
+    axis_list(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
 }
 
-fn several<'a, 'g>(
+fn axis_list<'a, 'g>(
     axes: &'a [Vec3<'g>],
     count: std::ops::RangeInclusive<usize>,
     key: &str,
@@ -227,7 +227,7 @@ fn check_independent(
     Some(())
 }
 
-fn either<'g>(
+fn common_axis<'g>(
     about: &[Vec3<'g>],
     along: &[Vec3<'g>],
     what: &str,

@@ -94,12 +94,12 @@ impl<'g> Builder<'_, 'g> {
             self.model.limits.push(found);
             return;
         };
-        let both = tighter(known, &found);
+        let both = tighter_bounds(known, &found);
         let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
         if has_range(known) && has_range(&found) && !has_range(&both) {
             let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
             let contradicts = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
-                other.v == found.v && !has_range(&tighter(other, &found))
+                other.v == found.v && !has_range(&tighter_bounds(other, &found))
             };
             let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
             // If both limits are from a file, the one that does not belong to the coordinate itself is
@@ -121,16 +121,16 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Returns the tighter bounds of two limits of one coordinate.
-fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
-    let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
+fn tighter_bounds<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
+    let tighter_bounds = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
         (Some(a), Some(b)) => Some(a.extreme(which, b)),
         (a, b) => a.or(b),
     };
     Limit {
-        lower: tighter(Extreme::Max, known.lower, found.lower),
-        upper: tighter(Extreme::Min, known.upper, found.upper),
-        speed: tighter(Extreme::Min, known.speed, found.speed),
-        effort: tighter(Extreme::Min, known.effort, found.effort),
+        lower: tighter_bounds(Extreme::Max, known.lower, found.lower),
+        upper: tighter_bounds(Extreme::Min, known.upper, found.upper),
+        speed: tighter_bounds(Extreme::Min, known.speed, found.speed),
+        effort: tighter_bounds(Extreme::Min, known.effort, found.effort),
         ..*found
     }
 }

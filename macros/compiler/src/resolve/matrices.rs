@@ -46,14 +46,14 @@ impl<'g> Scope<'_, 'g> {
     pub fn matrix_by_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let entries = self.matrix(e, cx)?;
         let Some((link, pose)) = self.context.borrow().axes.clone() else {
-            return self.no_matrix(&e.place, cx);
+            return self.report_no_matrix(&e.place, cx);
         };
         let own = ResolvedMatrix { link, entries };
         Some(Value::Matrix(own.in_axes(link, |v| pose.rotation.to_parent(v))))
     }
 
     /// Reports a matrix in a context that does not allow matrices.
-    fn no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
+    fn report_no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
         cx.error(place.clone(), "a matrix cannot stand here")
             .help("matrices stand in definitions, outputs and forces: `#[define(projector(n))]`");
         None
@@ -65,7 +65,11 @@ impl<'g> Scope<'_, 'g> {
         call: &Call<'e>,
         cx: &mut Diagnostics,
     ) -> Option<&'e [syntax::Expr; N]> {
-        if self.context.borrow().axes.is_none() { self.no_matrix(call.place, cx) } else { call.take(cx) }
+        if self.context.borrow().axes.is_none() {
+            self.report_no_matrix(call.place, cx)
+        } else {
+            call.take(cx)
+        }
     }
 
     /// Resolves `identity()`.

@@ -12,8 +12,8 @@ impl<'g> Builder<'_, 'g> {
     /// Numbers `q` and `v` in the order of declaration. Joints that close loops have no coordinates. Joints
     /// that follow another one (`mimic`) are processed last, because their masters may be declared later.
     pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
-        let closing = tree::closing(self.description);
-        self.solved_loops = closed_form::find(self.description, &closing, cx);
+        let closing = tree::loop_closing_joints(self.description);
+        self.solved_loops = closed_form::find_solved_loops(self.description, &closing, cx);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
             let (q, v) = self.model.next_coordinate();

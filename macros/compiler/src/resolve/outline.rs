@@ -49,7 +49,7 @@ pub struct OutlinedOutput {
     /// Quantities on which the output depends.
     pub uses: Uses,
     /// Whether the output contains contact forces, which may be contradictory.
-    pub touched: bool,
+    pub has_contact_forces: bool,
 }
 
 /// Returns the outline of a description that may contain errors.
@@ -68,7 +68,7 @@ pub fn outline(d: &Description) -> Outline {
                 uses.inputs && (uses.velocities || names(e).contains("speed"))
             })
         }),
-        constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
+        constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
         diagrams: d.outputs.iter().filter_map(diagram).collect(),
         outputs: d.outputs.iter().filter_map(|output| outlined(d, output)).collect(),
@@ -83,8 +83,8 @@ pub fn outline(d: &Description) -> Outline {
 /// Returns the names of the entries of `q`, `v` and `u`.
 fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
-    let closing = super::tree::closing(d);
-    let solved = super::closed_form::find(d, &closing, &mut Diagnostics::new());
+    let closing = super::tree::loop_closing_joints(d);
+    let solved = super::closed_form::find_solved_loops(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();
@@ -127,19 +127,24 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
         Rank::Matrix => 9,
         Rank::FreeBody => return None,
     };
-    let names_force = |part: &&Expr| match &part.kind {
+    let is_contact_force = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, arguments) => {
             matches!(
                 function.id,
                 Some(Callable::Function(
                     FunctionId::ContactForce | FunctionId::ContactMoment | FunctionId::Power
                 ))
-            ) && arguments.iter().any(|argument| names_contact(d, argument))
+            ) && arguments.iter().any(|argument| is_contact_name(d, argument))
         }
         _ => false,
     };
-    let touched = with_definitions(d, &output.value).iter().any(names_force);
-    Some(OutlinedOutput { name: output.name.text.clone(), size, uses: uses(d, &output.value), touched })
+    let has_contact_forces = with_definitions(d, &output.value).iter().any(is_contact_force);
+    Some(OutlinedOutput {
+        name: output.name.text.clone(),
+        size,
+        uses: uses(d, &output.value),
+        has_contact_forces,
+    })
 }
 
 fn diagram(output: &Definition) -> Option<(String, Diagram)> {
@@ -165,11 +170,11 @@ fn uses(d: &Description, e: &Expr) -> Uses {
                 Dependence::Acceleration => uses.accelerations = true,
                 Dependence::Rate => {
                     uses.velocities = true;
-                    uses.accelerations |= arguments.iter().any(|argument| names_motion(d, argument));
+                    uses.accelerations |= arguments.iter().any(|argument| contains_motion(d, argument));
                 }
                 Dependence::Power => {
                     uses.velocities = true;
-                    uses.inputs |= arguments.iter().any(|argument| names_contact(d, argument)) && inputs();
+                    uses.inputs |= arguments.iter().any(|argument| is_contact_name(d, argument)) && inputs();
                 }
                 Dependence::Reaction => {
                     uses.velocities = true;
@@ -192,12 +197,12 @@ fn dependence(callee: &Callee) -> Dependence {
 }
 
 /// Whether an expression is the name of a contact.
-fn names_contact(d: &Description, e: &Expr) -> bool {
+fn is_contact_name(d: &Description, e: &Expr) -> bool {
     d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
 }
 
 /// Whether an expression contains a function of the velocities.
-fn names_motion(d: &Description, e: &Expr) -> bool {
+fn contains_motion(d: &Description, e: &Expr) -> bool {
     let is_motion = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {
             matches!(dependence(function), Dependence::Motion | Dependence::Rate)

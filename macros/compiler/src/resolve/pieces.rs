@@ -74,7 +74,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the symbol of an expression that is compared in one of the surrounding piecewise laws.
     pub fn compared_symbol(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
         let context = self.context.borrow();
-        context.compared.iter().rev().find(|(written, _)| written.is_like(e)).map(|(_, symbol)| *symbol)
+        context.compared.iter().rev().find(|(written, _)| written.has_same_text(e)).map(|(_, symbol)| *symbol)
     }
 
     /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
@@ -130,8 +130,8 @@ impl<'g> Scope<'_, 'g> {
                     && let [a, b, ..] = arguments.as_slice()
                     && name.id == Some(Callable::If)
                 {
-                    let border = if a.is_like(written) { b } else { a };
-                    if a.is_like(written) != b.is_like(written) {
+                    let border = if a.has_same_text(written) { b } else { a };
+                    if a.has_same_text(written) != b.has_same_text(written) {
                         all.extend(self.scalar(border, cx).map(|border| (is_above, border)));
                     }
                 }

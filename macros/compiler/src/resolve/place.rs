@@ -81,7 +81,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the names on which the placement of an element depends.
-    fn needs(&self, item: Item, order: &Order) -> Vec<String> {
+    fn dependencies(&self, item: Item, order: &Order) -> Vec<String> {
         let d = self.description;
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
@@ -112,7 +112,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn is_ready(&self, item: Item, order: &Order) -> bool {
         let kinematics = self.scope.kinematics.borrow();
-        self.needs(item, order)
+        self.dependencies(item, order)
             .iter()
             .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
     }
@@ -141,8 +141,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
         // From an element to one for which it waits, until the path is a cycle.
         let next = |at: usize| {
-            let needs = self.needs(rest[at], order);
-            (0..rest.len()).find(|k| needs.contains(&self.provides(rest[*k], order)))
+            let needs = self.dependencies(rest[at], order);
+            (0..rest.len()).find(|k| needs.contains(&self.placed_name(rest[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
         while let Some(k) = path.last().and_then(|at| next(*at)) {
@@ -165,7 +165,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the name of the element that an item places.
-    fn provides(&self, item: Item, order: &Order) -> String {
+    fn placed_name(&self, item: Item, order: &Order) -> String {
         match item {
             Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
             _ => self.item_name(item, order).text.clone(),
@@ -175,7 +175,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
     fn place_substitutes(&mut self, rest: &[Item], order: &Order) {
         for item in rest {
-            let name = self.provides(*item, order);
+            let name = self.placed_name(*item, order);
             let (link, pose) = self.link_if_moving(None, self.substitute_pose(true));
             let (kind, held) = match item {
                 Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),

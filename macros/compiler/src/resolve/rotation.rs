@@ -1,6 +1,6 @@
 //! Written rotations and matrices.
 
-use super::corrections::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
+use super::corrections::{MATRIX_SYNTAX, check_angle, is_rotation, report_matrix, report_rotation};
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always;
@@ -101,7 +101,7 @@ impl<'g> Scope<'_, 'g> {
                     }
                 }
                 _ => {
-                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX);
+                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX_SYNTAX);
                     return None;
                 }
             }

@@ -69,7 +69,7 @@ impl<'g> Builder<'_, 'g> {
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = kinematics.resolve(&terms, axes, zero);
         // The test for a common line ignores released joints.
-        let held = Vec3(self.with_released_at_rest(&r.0).try_into().unwrap_or(r.0));
+        let held = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
         if always_zero(held) {
             cx.error(b.place.clone(), "these two points are always at the same place")
                 .help("let the element act between points that move apart");

@@ -19,7 +19,7 @@ pub struct Order {
 
 /// Returns for each joint whether it closes a loop: its child is placed by an earlier joint or has a position
 /// of its own, or is an ancestor of the parent. All other joints form the spanning tree.
-pub fn closing(description: &Description) -> Vec<bool> {
+pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
         if let Some(base) = point.on.as_ref().and_then(base_name) {
@@ -89,7 +89,7 @@ pub fn find_tree(
     let mut is_attached = vec![false; jointed.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
     let mut is_valid = true;
-    let closing = closing(description);
+    let closing = loop_closing_joints(description);
     for (j, joint) in description.joints.iter().enumerate() {
         let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {

@@ -12,7 +12,7 @@ mod corrections;
 mod ends;
 mod parse;
 
-use corrections::{decimal_comma, names_without_brackets_or_quotes, unnamed};
+use corrections::{decimal_comma_error, quoted_names, report_unnamed};
 use parse::parse_arguments;
 
 /// Arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
@@ -80,7 +80,7 @@ impl Arguments {
         grammar: Grammar,
         cx: &mut Diagnostics,
     ) -> Option<Arguments> {
-        if let Some(error) = decimal_comma(&tokens) {
+        if let Some(error) = decimal_comma_error(&tokens) {
             cx.syn(error);
             return None;
         }
@@ -304,8 +304,7 @@ impl Arguments {
                 Vec::new()
             }
             Some((name, value)) => {
-                let list =
-                    names_without_brackets_or_quotes(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
+                let list = quoted_names(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
                 cx.error(name.place, format!("expected a list of strings for `{key}`"))
                     .help(format!("write `{key} = [{list}]`"));
                 Vec::new()
@@ -361,7 +360,7 @@ impl Arguments {
     }
 
     /// Sets the element to which the arguments belong.
-    pub fn owned_by(mut self, name: &Name) -> Arguments {
+    pub fn with_owner(mut self, name: &Name) -> Arguments {
         self.owner.clone_from(&name.text);
         self
     }
@@ -398,7 +397,7 @@ impl Arguments {
             }
         }
         if let Some(e) = self.plain.drain(..).next() {
-            unnamed(&e, known, example, cx);
+            report_unnamed(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
             let error = cx.error(left.place.to(&right.place), "expected `name = value`");

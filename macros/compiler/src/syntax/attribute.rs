@@ -105,7 +105,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
         Err(error) => {
             match separate(&tokens) {
                 Some((_, slip)) => cx.syn(slip),
-                None => _ = cx.error(error.span(), error.to_string()).help(how_fields_are_written(&error)),
+                None => _ = cx.error(error.span(), error.to_string()).help(field_syntax_help(&error)),
             }
             return None;
         }
@@ -131,7 +131,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
 }
 
 /// Returns the help for an item that is not valid Rust.
-fn how_fields_are_written(error: &syn::Error) -> &'static str {
+fn field_syntax_help(error: &syn::Error) -> &'static str {
     match error.to_string().contains("keyword") {
         true => "this is a word of Rust's: name the field otherwise, and write it as `name: Type`",
         false => {

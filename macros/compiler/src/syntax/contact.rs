@@ -1,7 +1,7 @@
 //! Unilateral contacts: two surfaces that may separate, collide, slide and stick.
 
 use super::arguments::Arguments;
-use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
+use super::{Compliance, Contact, Description, Expr, ExprKind, Name, Restitution};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
 
@@ -18,7 +18,7 @@ const KEYS: [&str; 9] = [
 ];
 
 /// Syntax of a contact of a file's links.
-pub const TOUCHES: &str =
+pub const CONTACT_HELP: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
 
 /// Reads a contact.
@@ -31,7 +31,7 @@ pub fn read_contact(
     let [friction, stiction, torsional, rolling] =
         ["friction", "stiction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
     let restitution = take_restitution(arguments, cx);
-    let soft = read_softness(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
+    let soft = read_compliance_options(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
     if let Some(e) = &stiction {
         if soft.is_some() {
             cx.error(
@@ -99,12 +99,12 @@ pub fn take_restitution(arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
 }
 
 /// Returns stiffness and dissipation of compliant surfaces; `None` for rigid ones.
-fn read_softness(
+fn read_compliance_options(
     name: &Name,
     restitution: Option<&Expr>,
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
-) -> Option<Softness> {
+) -> Option<Compliance> {
     let [linear, hertz, dissipation, speed] =
         ["stiffness", "hertz", "dissipation", "speed"].map(|key| arguments.take_expr(key, cx));
     let (stiffness, hertz) = match (linear, hertz) {
@@ -127,7 +127,7 @@ fn read_softness(
         cx.error(e.place.clone(), "surfaces that yield have no coefficient of restitution")
             .help("`dissipation`, s/m, takes energy from their impacts");
     }
-    Some(Softness { stiffness, hertz, dissipation, speed })
+    Some(Compliance { stiffness, hertz, dissipation, speed })
 }
 
 /// Returns the link of `link.collision()`, or `Some(None)` for `collision()`, which denotes all links of the

@@ -47,12 +47,12 @@ const OUTPUT: &str = "output";
 const AXES: &str = "resolved_in";
 
 /// Numeric types of Rust that parameters cannot have.
-const NUMBERS: [&str; 12] =
+const RUST_NUMBERS: [&str; 12] =
     ["i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
 /// Reports a field whose type is neither a parameter's nor an element's.
 pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
-    if NUMBERS.contains(&kind) {
+    if RUST_NUMBERS.contains(&kind) {
         cx.error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
             .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
     } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
@@ -109,7 +109,7 @@ pub fn read_element(
         None => no_arguments(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
-    let mut arguments = arguments.owned_by(name);
+    let mut arguments = arguments.with_owner(name);
     match element {
         ElementKind::Body => {
             let body = read_body(name, &mut arguments, cx);
@@ -132,7 +132,7 @@ pub fn read_element(
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
-    let mut arguments = arguments.owned_by(name);
+    let mut arguments = arguments.with_owner(name);
     let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
     arguments.finish("a State", &["rate"], cx);
     rate
@@ -144,7 +144,7 @@ pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
 }
 
 /// Help for conditional fields; their conditions are not visible to the attribute.
-pub const CONDITIONS: &str =
+pub const CONDITION_HELP: &str =
     "put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
 
 /// Whether an attribute removes a parameter conditionally, or conditionally adds an attribute of the
@@ -236,7 +236,7 @@ fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut 
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
         "cfg" | "cfg_attr" => {
-            cx.error(span, "an element cannot be conditional").help(CONDITIONS);
+            cx.error(span, "an element cannot be conditional").help(CONDITION_HELP);
             return true;
         }
         _ => {}

@@ -12,7 +12,8 @@ use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 /// Maximum length of a chain of operators or members.
 const MAX_LENGTH: usize = 400;
 
-const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
+const PIECEWISE_HELP: &str =
+    "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
 /// A parsed expression with its size.
 struct Parsed(Expr, Size);
@@ -34,12 +35,12 @@ impl Size {
     }
 
     /// Returns the size of an expression in which these operands are nested.
-    fn around(self) -> Self {
+    fn nested(self) -> Self {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
     /// Returns the size of a chain that is longer by one, at the same depth.
-    fn longer(self) -> Self {
+    fn extended(self) -> Self {
         Self { length: self.length + 1, ..self }
     }
 }
@@ -122,7 +123,7 @@ fn parse_operand(
 }
 
 fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
-    let size = left.1.longer().max(right.1.around());
+    let size = left.1.extended().max(right.1.nested());
     let place = left.0.place.to(&right.0.place);
     node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, size)
 }
@@ -132,7 +133,7 @@ fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let span = input.parse::<Token![-]>()?.span;
         let inner = parse_operand(span, input, parse_unary)?;
         let place = Place::from(span).to(&inner.0.place);
-        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.around());
+        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.nested());
     }
     parse_postfix(input)
 }
@@ -146,14 +147,14 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Err(syn_error(dot, "expected a name behind this dot", help));
         }
         let member = parse_name(input)?;
-        let size = inner.1.longer();
+        let size = inner.1.extended();
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = parse_arguments(input)?;
             let place = inner.0.place.to(&close.into());
             node(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
-                size.max(arguments_size.around()),
+                size.max(arguments_size.nested()),
             )?
         } else {
             let place = inner.0.place.to(&member.place);
@@ -177,16 +178,16 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
-            return Ok(Parsed(Expr { place, ..item }, size.around()));
+            return Ok(Parsed(Expr { place, ..item }, size.nested()));
         }
-        return node(ExprKind::Tuple(items), place, size.around());
+        return node(ExprKind::Tuple(items), place, size.nested());
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
         let place = Place::from(span.open()).to(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
-        return node(ExprKind::Array(items), place, size.around());
+        return node(ExprKind::Array(items), place, size.nested());
     }
     if input.peek(Token![if]) {
         return parse_pieces(input);
@@ -200,12 +201,12 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return node(
                 ExprKind::Call(Callee::new(name), arguments),
                 place.to(&close.into()),
-                size.around(),
+                size.nested(),
             );
         }
         return node(ExprKind::Name(name.text), place, Size::ONE);
     }
-    Err(no_expression(input))
+    Err(missing_expression_error(input))
 }
 
 /// One branch `if left < right { piece }` of a piecewise law.
@@ -226,7 +227,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         if !input.peek(Token![else]) {
             let message = "an `if` needs an `else`: it has a value on both sides";
             let keyword = branches.last().map_or(input.span(), |branch| branch.keyword);
-            return Err(syn_error(keyword, message, PIECES));
+            return Err(syn_error(keyword, message, PIECEWISE_HELP));
         }
         input.parse::<Token![else]>()?;
         if input.peek(Token![if]) {
@@ -234,11 +235,11 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else if input.peek(token::Brace) {
             break parse_piece(input)?;
         } else {
-            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECES));
+            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECEWISE_HELP));
         }
     };
     for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
-        let size = left.1.max(right.1).max(piece.1).max(last.1).around();
+        let size = left.1.max(right.1).max(piece.1).max(last.1).nested();
         let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
@@ -263,11 +264,15 @@ fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
         input.parse::<Token![>]>()?;
     } else {
         let message = "expected `<` or `>`: a condition compares two quantities";
-        return Err(syn_error(input.span(), message, PIECES));
+        return Err(syn_error(input.span(), message, PIECEWISE_HELP));
     }
     let right = parse_sum(input)?;
     if !input.peek(token::Brace) {
-        return Err(syn_error(input.span(), "expected `{` and what holds where the comparison does", PIECES));
+        return Err(syn_error(
+            input.span(),
+            "expected `{` and what holds where the comparison does",
+            PIECEWISE_HELP,
+        ));
     }
     let piece = parse_piece(input)?.0;
     Ok(Branch { keyword, left, right, is_less, piece })
@@ -278,24 +283,24 @@ fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
     let content;
     let close = braced!(content in input).span.close();
     if content.is_empty() {
-        return Err(syn_error(close, "expected an expression in these braces", PIECES));
+        return Err(syn_error(close, "expected an expression in these braces", PIECEWISE_HELP));
     }
     let piece = parse_sum(&content)?;
-    if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected(&content)) }
+    if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected_token_error(&content)) }
 }
 
 /// Parses an expression passed on by a macro of the user: it is one operand without parentheses.
 fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
-    let TokenTree::Group(group) = input.parse()? else { return Err(no_expression(input)) };
+    let TokenTree::Group(group) = input.parse()? else { return Err(missing_expression_error(input)) };
     let whole = |inner: ParseStream<'_>| {
         let parsed = parse_sum(inner)?;
-        if inner.is_empty() { Ok(parsed) } else { Err(unexpected(inner)) }
+        if inner.is_empty() { Ok(parsed) } else { Err(unexpected_token_error(inner)) }
     };
     whole.parse2(group.stream())
 }
 
 /// Error for a missing expression.
-fn no_expression(input: ParseStream<'_>) -> syn::Error {
+fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {
         "`*` stands between two factors; write `pow(a, n)` for a power"
@@ -320,7 +325,7 @@ fn no_expression(input: ParseStream<'_>) -> syn::Error {
 }
 
 /// Error for an unexpected token after an expression.
-pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
+pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected `,` or an operator";
     let help = if input.peek(Token![->]) {
         "a joint has two ends; write a joint for each `parent -> child`"
@@ -402,7 +407,7 @@ fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> 
         if trailing {
             content.parse::<Token![,]>()?;
         } else if !content.is_empty() {
-            return Err(unexpected(content));
+            return Err(unexpected_token_error(content));
         }
     }
     Ok((items, size, trailing))

@@ -33,10 +33,10 @@ pub mod words;
 pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
-    FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
-    ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
+    Action, Base, BinaryOp, Body, Callee, Collision, Compliance, Constraint, ConstraintKind, Contact,
+    Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
+    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
+    Restitution, ScalarType, Shape, SlipFriction, Table, Target, Term, Visual, Wrench,
 };
 pub use duplicate::second_definition;
 pub use mechanism::{

@@ -127,7 +127,7 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
     let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
     if let (Some(place), Some(other)) = (place, other) {
         cx.error(place, format!("{} does not say what touches what", other.article()))
-            .help(super::contact::TOUCHES);
+            .help(super::contact::CONTACT_HELP);
     }
     asked && other.is_none()
 }
@@ -251,7 +251,7 @@ fn read_requests(
     cx: &mut Diagnostics,
 ) -> Requests {
     let is_asked = |word: &str| asked.iter().any(|(known, _)| *known == word);
-    let requests = Requests::of_words(is_asked);
+    let requests = Requests::from_options(is_asked);
     for (word, place) in asked {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {

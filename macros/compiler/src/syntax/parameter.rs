@@ -71,7 +71,8 @@ pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &
 pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
         if element::is_conditional(attribute) {
-            cx.error(attribute.path().span(), "a parameter cannot be conditional").help(element::CONDITIONS);
+            cx.error(attribute.path().span(), "a parameter cannot be conditional")
+                .help(element::CONDITION_HELP);
         }
         if let Some(word) = attribute.path().get_ident()
             && word != "unit"

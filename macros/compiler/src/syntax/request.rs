@@ -91,7 +91,7 @@ macro_rules! words {
             }
 
             /// Returns the requests of the given options; second derivatives imply first derivatives.
-            pub(super) fn of_words(given: impl Fn(&str) -> bool) -> Requests {
+            pub(super) fn from_options(given: impl Fn(&str) -> bool) -> Requests {
                 let asked = Requests { $($word: given(stringify!($word)),)+ ..Requests::default() };
                 let further = asked.second_derivatives || asked.momentum_derivatives;
                 Requests { derivatives: asked.derivatives || further, ..asked }

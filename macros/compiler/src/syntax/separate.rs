@@ -34,7 +34,7 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
         let (colon, place) = parse_colon(input)?;
         let mut kind: Type = input.parse()?;
         // The type precedes the name, as in other languages.
-        if let Some((known, other)) = swapped(&name, &kind).filter(|_| place.is_some()) {
+        if let Some((known, other)) = swapped_type_and_name(&name, &kind).filter(|_| place.is_some()) {
             (name, kind) = (other, known);
         }
         let written = format!("{name}: {}", kind.to_token_stream()).replace(" :: ", "::");
@@ -79,7 +79,7 @@ fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)>
 }
 
 /// Returns type and name if they are swapped: the name is an element's type.
-fn swapped(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
+fn swapped_type_and_name(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
     let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
     let is_type = |word: &Ident| element::is_element(&word.to_string());
     (is_type(name) && !is_type(&other)).then(|| (Type::Verbatim(name.to_token_stream()), other))

@@ -174,7 +174,7 @@ impl Expr {
     }
 
     /// Whether another expression has the same text.
-    pub fn is_like(&self, other: &Expr) -> bool {
+    pub fn has_same_text(&self, other: &Expr) -> bool {
         spell(self) == spell(other)
     }
 }

@@ -8,7 +8,7 @@ use crate::resolve::scope::Placed;
 use crate::syntax::{self, Collision, ExprKind, Name, Shape};
 
 /// Returns the index of the selected shape of a link, if one is selected.
-fn part_of(e: &syntax::Expr) -> Option<usize> {
+fn shape_index(e: &syntax::Expr) -> Option<usize> {
     match &e.kind {
         ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal()? as usize),
         _ => None,
@@ -31,7 +31,7 @@ impl<'g> Builder<'_, 'g> {
         let name = link.and_then(|link| link.name());
         let parts: Vec<&Collision> =
             known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
-        let parts = match part_of(e) {
+        let parts = match shape_index(e) {
             Some(part) => parts.into_iter().skip(part).take(1).collect(),
             None => parts,
         };

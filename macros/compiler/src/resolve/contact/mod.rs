@@ -57,7 +57,7 @@ struct SurfacePair<'g> {
     base: Moving<'g>,
 }
 
-const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+const SUPPORTED_PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the constraint rows of a rolling pair.
@@ -148,7 +148,7 @@ impl<'g> Builder<'_, 'g> {
         let b = self.surface(second, &example, cx);
         let pair = self.ordered_pair(a?, b?, SurfaceForm::rolls_on, second, cx)?;
         if !pair.a.form.rolls_on(&pair.b.form) {
-            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            cx.error(e.place.clone(), "where these surfaces touch is not known").help(SUPPORTED_PAIRS);
             return None;
         }
         Some(pair)
@@ -280,18 +280,18 @@ fn sphere_contact<'g>(
 
 /// Returns the farthest point of a convex body along `n`, relative to its centre.
 ///
-/// If `n` is the axis of a rim, all its points are equally far. With a positive `least`, a lower bound on the
+/// If `n` is the axis of a rim, all its points are equally far. With a positive `min_sine_squared`, a lower bound on the
 /// squared sine of the angle between axis and `n`, the centre of the rim is returned then.
 fn support_point<'g>(
     form: &SurfaceForm<'g>,
     n: Vec3<'g>,
-    least: f64,
+    min_sine_squared: f64,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<Vec3<'g>> {
     let across = |axis: Vec3<'g>| {
         let a = rotate(axis);
         let cosine = a.dot(n);
-        let sine = (cosine.num(1.0 + least) - cosine.square()).sqrt();
+        let sine = (cosine.num(1.0 + min_sine_squared) - cosine.square()).sqrt();
         (n - a * cosine).map(|x| x / sine)
     };
     Some(match form {

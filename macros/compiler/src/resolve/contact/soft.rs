@@ -9,16 +9,16 @@ use crate::kinematics::velocity_gradient;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, ContactLoads, Context};
-use crate::syntax::{self, Softness};
+use crate::syntax::{self, Compliance};
 
 /// Default slip speed below which friction is regularised, m/s.
-const SPEED: f64 = 1e-3;
+const DEFAULT_SLIP_SPEED: f64 = 1e-3;
 
 /// Offset under the square root of the penetration, m, which keeps its derivative finite at zero.
-const NONE: f64 = 1e-30;
+const ROOT_OFFSET: f64 = 1e-30;
 
 /// Stiffness and dissipation of a compliant contact.
-pub(super) struct Soft<'g> {
+pub(super) struct CompliantContact<'g> {
     stiffness: Expr<'g>,
     hertz: bool,
     dissipation: Expr<'g>,
@@ -27,7 +27,11 @@ pub(super) struct Soft<'g> {
 
 impl<'g> Builder<'_, 'g> {
     /// Reads stiffness and dissipation; `None` after an error.
-    pub(super) fn softness(&self, soft: &Softness, cx: &mut Diagnostics) -> Option<Soft<'g>> {
+    pub(super) fn read_compliance(
+        &self,
+        soft: &Compliance,
+        cx: &mut Diagnostics,
+    ) -> Option<CompliantContact<'g>> {
         let g = self.scope.graph;
         let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
             let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
@@ -47,9 +51,14 @@ impl<'g> Builder<'_, 'g> {
         };
         let speed = match &soft.speed {
             Some(e) => read(e, "speed", Rule::Positive),
-            None => Some(g.num(SPEED)),
+            None => Some(g.num(DEFAULT_SLIP_SPEED)),
         };
-        Some(Soft { stiffness: stiffness?, hertz: soft.hertz, dissipation: dissipation?, speed: speed? })
+        Some(CompliantContact {
+            stiffness: stiffness?,
+            hertz: soft.hertz,
+            dissipation: dissipation?,
+            speed: speed?,
+        })
     }
 
     /// Adds the effects of a contact point: potential energy of the penetration, dissipation and friction.
@@ -57,12 +66,12 @@ impl<'g> Builder<'_, 'g> {
         &mut self,
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
-        soft: &Soft<'g>,
+        soft: &CompliantContact<'g>,
         exerted: &mut ContactLoads<'g>,
     ) {
         let g = self.scope.graph;
         let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
-        let root = if soft.hertz { (overlap + g.num(NONE)).sqrt() } else { g.num(1.0) };
+        let root = if soft.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = soft.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
         self.model.potentials.push(energy);
@@ -99,20 +108,21 @@ impl<'g> Builder<'_, 'g> {
     /// velocity is below the regularisation speed.
     fn add_moment(
         &mut self,
-        turns: &[(Vec3<'g>, Expr<'g>)],
-        most: Expr<'g>,
+        rotations: &[(Vec3<'g>, Expr<'g>)],
+        coefficient: Expr<'g>,
         pressure: Expr<'g>,
         speed: Expr<'g>,
     ) -> Vec<Vec3<'g>> {
-        if most.is_zero() {
+        if coefficient.is_zero() {
             return Vec::new();
         }
-        let square = turns.iter().fold(speed.square(), |sum, (_, turn)| sum + (most * *turn).square());
-        let size = square.sqrt();
+        let square =
+            rotations.iter().fold(speed.square(), |sum, (_, rate)| sum + (coefficient * *rate).square());
+        let magnitude = square.sqrt();
         let mut moments = Vec::new();
-        for (direction, turn) in turns.iter().filter(|(_, turn)| !velocity_gradient(*turn).is_empty()) {
-            let force = -(most * pressure * (most * *turn) / size);
-            self.model.loads.push(Load { rate: *turn, force, dissipative: true });
+        for (direction, rate) in rotations.iter().filter(|(_, rate)| !velocity_gradient(*rate).is_empty()) {
+            let force = -(coefficient * pressure * (coefficient * *rate) / magnitude);
+            self.model.loads.push(Load { rate: *rate, force, dissipative: true });
             moments.push(*direction * force);
         }
         moments

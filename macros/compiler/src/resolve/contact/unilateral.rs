@@ -23,12 +23,12 @@ const MAX_CONTACT_POINTS: usize = 128;
 const PARALLEL: f64 = 1e-12;
 
 /// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
-const FLAT: f64 = 1e-24;
+const FLAT_RIM: f64 = 1e-24;
 
-const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
+const SUPPORTED_PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
 /// Help for unsupported contacts of cylinders.
-const STAND_IN: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
+const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
 
 /// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy)]
@@ -90,7 +90,7 @@ impl<'g> Builder<'_, 'g> {
             None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
             _ => self.contact_surfaces(&contact.second, cx),
         };
-        let soft = contact.soft.as_ref().map(|soft| self.softness(soft, cx));
+        let soft = contact.soft.as_ref().map(|soft| self.read_compliance(soft, cx));
         let (Some(firsts), Some(seconds), Some(coefficients)) = (firsts, seconds, coefficients) else {
             return;
         };
@@ -170,8 +170,8 @@ impl<'g> Builder<'_, 'g> {
                 matches!(surface.form, SurfaceForm::Cylinder(..) | SurfaceForm::Drum(..))
             };
             let help = match is_cylinder(first) || is_cylinder(second) {
-                true => format!("{STAND_IN}; {PAIRS}"),
-                false => PAIRS.to_string(),
+                true => format!("{CYLINDER_HELP}; {SUPPORTED_PAIRS}"),
+                false => SUPPORTED_PAIRS.to_string(),
             };
             cx.error(place.clone(), "where these surfaces touch is not known").help(help);
             return None;
@@ -212,12 +212,12 @@ impl<'g> Builder<'_, 'g> {
         self.contact_points.insert(name.clone(), point.place.clone());
         self.push_contact(name.clone(), (point.gap, false), None, rates, coefficients);
         let none = self.scope.graph.zero();
-        for (word, about, most) in
+        for (word, about, coefficient) in
             [("spin", 0..1, coefficients.torsional), ("roll", 1..3, coefficients.rolling)]
         {
             let turns = about.map(|k| (point.rates[k].0, point.angular_rates[k]));
             let turns: Vec<_> = turns.filter(|(_, rate)| !velocity_gradient(*rate).is_empty()).collect();
-            if !most.is_zero() && !turns.is_empty() {
+            if !coefficient.is_zero() && !turns.is_empty() {
                 let number = self.model.contact_rates().len();
                 for (k, (direction, rate)) in turns.iter().enumerate() {
                     let moment = Quantity::ContactForce(number + k).expr(self.scope.graph);
@@ -227,8 +227,8 @@ impl<'g> Builder<'_, 'g> {
                 let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let name = format!("{name}.{word}");
                 let coefficients = ContactCoefficients {
-                    friction: most,
-                    stiction: most,
+                    friction: coefficient,
+                    stiction: coefficient,
                     restitution: none,
                     of_impulses: false,
                     ..coefficients
@@ -272,10 +272,10 @@ impl<'g> Builder<'_, 'g> {
         let (friction, stiction) = (friction?, stiction?);
         if let Some(e) = contact.stiction.as_ref().filter(|_| contact.friction.is_some()) {
             match (friction.value(), stiction.value()) {
-                (Some(kinetic), Some(most)) if most < kinetic || kinetic == 0.0 => {
+                (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
                         true => format!("`{name}` has stiction, but no friction while it slides"),
-                        false => format!("stiction, {most}, is less than friction, {kinetic}"),
+                        false => format!("stiction, {static_value}, is less than friction, {kinetic}"),
                     };
                     cx.error(e.place.clone(), message)
                         .help("`friction` is the coefficient while surfaces slide, `stiction` the larger one at rest");
@@ -308,11 +308,11 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Expr<'g>> {
         let Some(e) = e else { return Some(self.scope.graph.zero()) };
         let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
-        let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
-        if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
-            let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
+        let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
+        if let Some(n) = value.value().filter(|n| !(0.0..=maximum).contains(n)) {
+            let range = if maximum < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
             cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
-                match most < 2.0 {
+                match maximum < 2.0 {
                     true => "the part of the speed that is left after the impact: 0 stays, 1 loses no energy",
                     false => "it opposes the motion by itself: write its size",
                 },
@@ -382,7 +382,9 @@ impl<'g> Builder<'_, 'g> {
                 [-half, half].map(|side| touch(rotate_a(*axis * (*length * side)) - normal * *radius)).into()
             }
             SurfaceForm::Cone(..) => Vec::new(),
-            form => support_point(form, normal, FLAT, &rotate_a).map(|far| touch(-far)).into_iter().collect(),
+            form => {
+                support_point(form, normal, FLAT_RIM, &rotate_a).map(|far| touch(-far)).into_iter().collect()
+            }
         }
     }
 
@@ -471,7 +473,7 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'
     let [(_, fixed), _] = perpendicular(axis);
     let (a, fixed) = (rotate(axis), rotate(fixed));
     let cosine = a.dot(normal);
-    let down = a * cosine - normal + fixed * cosine.num(FLAT.sqrt());
+    let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
     let size = down.norm();
     let lowest = down.map(|x| x / size);
     let quarter = a.cross(lowest);
@@ -479,8 +481,8 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'
 }
 
 /// Clamps `x` to the interval from `-most` to `most`.
-pub(super) fn clamp<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
-    x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
+pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
+    x.extreme(Extreme::Max, -limit).extreme(Extreme::Min, limit)
 }
 
 /// Returns the closest points of two line segments, as signed distances from their centres along their unit

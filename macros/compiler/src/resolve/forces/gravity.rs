@@ -38,8 +38,8 @@ impl<'g> Builder<'_, 'g> {
                 let constant = self.scope.scalar(constant, cx);
                 if let (Some(g), [Some(m1), Some(m2)], Some(stretch)) = (constant, masses, stretch) {
                     self.push_attraction(&stretch, g * m1 * m2);
-                    self.turn_by_gravity(a, b, g * m1, cx);
-                    self.turn_by_gravity(b, a, g * m2, cx);
+                    self.add_gravity_torque(a, b, g * m1, cx);
+                    self.add_gravity_torque(b, a, g * m2, cx);
                 }
             }
             (None, Some(mu)) => {
@@ -47,7 +47,7 @@ impl<'g> Builder<'_, 'g> {
                 let mu = self.scope.scalar(mu, cx);
                 if let (Some(mu), Some(m), Some(stretch)) = (mu, mass, stretch) {
                     self.push_attraction(&stretch, mu * m);
-                    self.turn_by_gravity(a, b, mu, cx);
+                    self.add_gravity_torque(a, b, mu, cx);
                 }
             }
             _ => {
@@ -58,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn turn_by_gravity(&mut self, a: &syntax::Expr, b: &syntax::Expr, mu: Expr<'g>, cx: &mut Diagnostics) {
+    fn add_gravity_torque(&mut self, a: &syntax::Expr, b: &syntax::Expr, mu: Expr<'g>, cx: &mut Diagnostics) {
         let ExprKind::Name(name) = &b.kind else { return };
         let Some(index) = self.jointed_index(name).filter(|k| *k < self.description.bodies.len()) else {
             return;

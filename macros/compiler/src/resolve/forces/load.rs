@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
             Some(Target::Point(place)) => place,
             Some(Target::Coordinate(c, angle)) => {
                 if let Some(angle) = angle.filter(|angle| *angle != torque) {
-                    wrong_kind(on, angle, cx);
+                    report_wrong_kind(on, angle, cx);
                     return;
                 }
                 let ground = Some((None, Pose::identity(self.scope.graph)));
@@ -63,7 +63,7 @@ impl<'g> Builder<'_, 'g> {
             }
             None => return,
         };
-        if torque && !turns(on, &place, cx) {
+        if torque && !check_torque_target(on, &place, cx) {
             return;
         }
         let Some(link) = place.link else {
@@ -126,7 +126,7 @@ impl<'g> Builder<'_, 'g> {
     ) {
         let Some(target) = target else { return };
         let input = match target {
-            Target::Coordinate(_, Some(angle)) if angle != torque => return wrong_kind(on, angle, cx),
+            Target::Coordinate(_, Some(angle)) if angle != torque => return report_wrong_kind(on, angle, cx),
             Target::Coordinate(c, _) => {
                 if let Some(direction) = direction {
                     cx.error(direction.place.clone(), "the joint itself gives the direction")
@@ -206,7 +206,7 @@ impl<'g> Builder<'_, 'g> {
                 .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
             return None;
         };
-        if torque && !turns(on, place, cx) {
+        if torque && !check_torque_target(on, place, cx) {
             return None;
         }
         let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
@@ -239,7 +239,7 @@ fn is_moving(v: Vec3<'_>) -> bool {
 }
 
 /// Whether a torque can act on an element; reports particles and points, which have no rotation.
-fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedKind::Point {
         cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
@@ -249,7 +249,7 @@ fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     true
 }
 
-fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+fn report_wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
     let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
     cx.error(on.place.clone(), format!("this coordinate is {is}"))
         .help(format!("what acts on it is a {other}"));

@@ -41,7 +41,7 @@ pub struct Origin<'a> {
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
     pub at: &'a Expr,
     /// Expression with which it is compared.
-    pub like: Option<&'a Expr>,
+    pub compared_with: Option<&'a Expr>,
 }
 
 /// An equation that contradicts earlier ones.
@@ -115,7 +115,7 @@ impl<'a> Inference<'a> {
             limit_exceeded: false,
         };
         for parameter in &description.parameters {
-            new.name_unknown(&parameter.text, Anchor::Parameter);
+            new.assign_unknown(&parameter.text, Anchor::Parameter);
         }
         for table in &description.tables {
             let unknown = (0..=table.variables).map(|_| new.system.variable()).collect();
@@ -125,7 +125,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Assigns an unknown dimension to a name.
-    pub fn name_unknown(&mut self, name: &str, anchor: Anchor) {
+    pub fn assign_unknown(&mut self, name: &str, anchor: Anchor) {
         let v = self.system.variable();
         self.names.insert(name.to_string(), Meaning::Named(v, anchor));
     }
@@ -192,7 +192,7 @@ impl<'a> Inference<'a> {
         if anchor == Anchor::Motion && self.are_different(&found, dimension) {
             return Value::Unknown;
         }
-        if !self.equate(&found, dimension, Origin { reason, at: e, like: None }) {
+        if !self.equate(&found, dimension, Origin { reason, at: e, compared_with: None }) {
             return Value::Unknown;
         }
         if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {

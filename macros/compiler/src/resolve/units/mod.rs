@@ -30,7 +30,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
         let Some((dimension, text)) = si::read(e, cx) else { continue };
-        let origin = Origin { reason: Reason::Unit, at: e, like: None };
+        let origin = Origin { reason: Reason::Unit, at: e, compared_with: None };
         inference.equate(&Dimension::variable(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
@@ -115,7 +115,7 @@ fn assign_dimensions<'a>(
             _ => None,
         });
         let anchor = anchors.max().unwrap_or(Anchor::Motion);
-        inference.name_unknown(&definition.name.text, anchor);
+        inference.assign_unknown(&definition.name.text, anchor);
     }
     definitions
 }

@@ -46,8 +46,8 @@ struct Work {
     units: [&'static str; 4],
 }
 
-const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
-const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
+const LINEAR_UNITS: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
+const ANGULAR_UNITS: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
 /// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
 /// because all their values are numbers.
@@ -239,9 +239,9 @@ impl<'a> DimensionedExpressions<'a> {
         };
         let on_point = on.is_none();
         let units = match &on {
-            Some(d) if d.is_plain() => ABOUT,
+            Some(d) if d.is_plain() => ANGULAR_UNITS,
             Some(d) if !d.is_known() => [""; 4],
-            _ => ALONG,
+            _ => LINEAR_UNITS,
         };
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
         // A force at a point does work on a length, a torque on an angle.
@@ -396,7 +396,7 @@ fn input<'a>(
         _ => (direction.unwrap_or(on), Some(input)),
     };
     if let Some(product) = product {
-        inference.equate(&product, force, Origin { reason: Reason::Place, at, like: None });
+        inference.equate(&product, force, Origin { reason: Reason::Place, at, compared_with: None });
     }
 }
 

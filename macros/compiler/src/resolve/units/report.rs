@@ -39,7 +39,7 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             if let Some((_, written)) = solid {
                 error.help(format!("write `{written}`"));
             } else if error.is_bare() {
-                error.help(what_is_missing(d, &names));
+                error.help(missing_factor_help(d, &names));
             }
             if !names.is_empty() && has_number_as_factor(mismatch.origin.at) {
                 error.help(NUMBER_WITH_UNIT);
@@ -70,7 +70,7 @@ fn is_number(e: &Expr) -> bool {
 }
 
 /// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
-fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
+fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> =
         names.iter().map(|(_, e)| text(e)).filter(is_defined).map(|name| format!("`{name}`")).collect();
@@ -84,7 +84,7 @@ fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
 
 /// Collects the names in the expressions of an equation; the compared expressions are first.
 fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
-    origin.like.iter().for_each(|e| names_in(e, inference, found));
+    origin.compared_with.iter().for_each(|e| names_in(e, inference, found));
     if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.at.kind, origin.reason) {
         let before = match &left.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, _, before, _) => before,

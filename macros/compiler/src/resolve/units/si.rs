@@ -44,7 +44,7 @@ static UNITS: [(&str, Dimension); 9] = [
 ];
 
 /// Units of other systems, with the SI unit to write instead.
-static OTHERS: [(&str, &str); 32] = [
+static FOREIGN_UNITS: [(&str, &str); 32] = [
     ("mm", "m"),
     ("cm", "m"),
     ("km", "m"),
@@ -172,7 +172,7 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
     }
     let diagnostic = cx.error(e.place.clone(), format!("unknown unit `{name}`"));
     let units: Vec<&str> = UNITS.iter().map(|(unit, _)| *unit).collect();
-    match OTHERS.iter().find(|(other, _)| *other == name) {
+    match FOREIGN_UNITS.iter().find(|(other, _)| *other == name) {
         Some((_, si)) => {
             diagnostic.help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
         }

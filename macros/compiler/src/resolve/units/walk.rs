@@ -71,7 +71,7 @@ impl<'a> Inference<'a> {
         for item in items {
             let value = self.value(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
-            common = self.equate_values(common, value, Origin { reason, at: item, like: first });
+            common = self.equate_values(common, value, Origin { reason, at: item, compared_with: first });
             first = first.or(is_quantity.then_some(item));
         }
         match common {
@@ -97,14 +97,18 @@ impl<'a> Inference<'a> {
             if let (Value::Quantity { dimension, .. }, Some(expected), true) = (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
-                self.equate(dimension, expected, Origin { reason: Reason::Place, at: term, like: None });
+                self.equate(
+                    dimension,
+                    expected,
+                    Origin { reason: Reason::Place, at: term, compared_with: None },
+                );
             }
         }
         let mut terms = terms.into_iter();
         let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
             let (reason, at) = sum.unwrap_or((Reason::Place, term));
-            self.equate_values(total, value, Origin { reason, at, like: None })
+            self.equate_values(total, value, Origin { reason, at, compared_with: None })
         });
         match total {
             Value::Number(_) => Value::Number(f64::NAN),

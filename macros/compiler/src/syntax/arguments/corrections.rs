@@ -2,7 +2,7 @@
 
 use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, one_of, syn_error};
-use crate::syntax::expression::{parse_expr, quoted, unexpected};
+use crate::syntax::expression::{parse_expr, quoted, unexpected_token_error};
 use crate::syntax::{Expr, ExprKind, words};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -10,7 +10,7 @@ use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
 
 /// Reports an expression in the place of `name = value`.
-pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
+pub fn report_unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     if let Some(word) = e.name().filter(|word| known.contains(word)) {
         cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
         return;
@@ -31,7 +31,7 @@ pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
 }
 
 /// Error for input after an argument; most likely a comma is missing.
-pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
+pub fn missing_comma_error(input: ParseStream<'_>) -> syn::Error {
     if input.peek(Token![;]) {
         return syn_error(input.span(), "expected `,`", "arguments are separated by `,`");
     }
@@ -45,12 +45,12 @@ pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
             let help = format!("arguments are separated by `,`: write `…, {word}`");
             syn_error(input.span(), "expected `,`", &help)
         }
-        _ => unexpected(input),
+        _ => unexpected_token_error(input),
     }
 }
 
 /// Error for a string without a key.
-pub fn text_alone(text: &LitStr) -> syn::Error {
+pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let value = text.value();
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
     if is_file {
@@ -61,7 +61,11 @@ pub fn text_alone(text: &LitStr) -> syn::Error {
 }
 
 /// Error for a missing `->` of a joint, or a missing `=` after an argument name, at the token found instead.
-pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> Option<syn::Error> {
+pub fn missing_arrow_error(
+    input: ParseStream<'_>,
+    first: &Expr,
+    arguments: &Arguments,
+) -> Option<syn::Error> {
     let is_place =
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
     let is_arrow = input.peek(Token![->]);
@@ -105,7 +109,7 @@ fn is_double(input: ParseStream<'_>) -> bool {
 
 /// Error for a number with a decimal comma: the value of an argument ends in an integer, and another one
 /// follows.
-pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
+pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
     let is = |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
@@ -127,7 +131,7 @@ pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
 }
 
 /// Returns the elements of a list of strings, quoted, for a string or names without brackets or quotes.
-pub fn names_without_brackets_or_quotes(value: &ArgumentValue) -> Option<String> {
+pub fn quoted_names(value: &ArgumentValue) -> Option<String> {
     match value {
         ArgumentValue::Text(text) => Some(quoted(&text.value())),
         ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),

@@ -5,7 +5,7 @@ use crate::diag::{Diagnostics, Place};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 
 /// Names of the two ends of an element in other tools.
-const ENDS: [(&str, &str); 14] = [
+const END_KEYS: [(&str, &str); 14] = [
     ("parent", "child"),
     ("from", "to"),
     ("base", "follower"),
@@ -75,7 +75,7 @@ impl Arguments {
         let has_key = |key: &str| {
             self.named.iter().any(|(name, value)| name.text == key && matches!(value, ArgumentValue::Expr(_)))
         };
-        let (a, b) = ENDS.into_iter().find(|(a, b)| has_key(a) && has_key(b))?;
+        let (a, b) = END_KEYS.into_iter().find(|(a, b)| has_key(a) && has_key(b))?;
         let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
         let mut end = |key: &str| match self.take(key) {
             Some((_, ArgumentValue::Expr(e))) => Some(e),

@@ -1,6 +1,6 @@
 //! Grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
 
-use super::corrections::{no_arrow, no_comma, text_alone};
+use super::corrections::{missing_arrow_error, missing_comma_error, stray_string_error};
 use super::{ArgumentValue, Arguments, Grammar};
 use crate::diag::syn_error;
 use crate::syntax::expression::{parse_expr, parse_name};
@@ -25,7 +25,7 @@ pub fn parse_arguments(input: ParseStream<'_>, span: Span, grammar: Grammar) -> 
         parse_argument(input, &mut arguments)?;
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(no_comma(input));
+                return Err(missing_comma_error(input));
             }
             input.parse::<Token![,]>()?;
         }
@@ -62,10 +62,10 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         return Ok(());
     }
     if input.peek(LitStr) {
-        return Err(text_alone(&input.parse()?));
+        return Err(stray_string_error(&input.parse()?));
     }
     let first = parse_expr(input)?;
-    if let Some(error) = no_arrow(input, &first, arguments) {
+    if let Some(error) = missing_arrow_error(input, &first, arguments) {
         return Err(error);
     }
     if input.peek(Token![->]) {
@@ -108,7 +108,7 @@ fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
         texts.push(input.parse()?);
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(no_comma(input));
+                return Err(missing_comma_error(input));
             }
             input.parse::<Token![,]>()?;
         }

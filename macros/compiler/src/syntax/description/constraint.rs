@@ -109,14 +109,14 @@ pub struct Contact {
     /// Coefficient of restitution; zero if absent.
     pub restitution: Option<Restitution>,
     /// Stiffness and dissipation of compliant surfaces; rigid if absent.
-    pub soft: Option<Softness>,
+    pub soft: Option<Compliance>,
     /// Whether the contact is from a file. Pairs that never separate are then omitted.
     pub of_file: bool,
 }
 
 /// Stiffness and dissipation of compliant surfaces.
 #[derive(Clone, Debug)]
-pub struct Softness {
+pub struct Compliance {
     /// Force per penetration, or per penetration to the power of 3/2.
     pub stiffness: Expr,
     /// Whether the power is 3/2, that of round bodies (Hertz).

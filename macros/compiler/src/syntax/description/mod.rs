@@ -10,7 +10,7 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction, Softness};
+pub use constraint::{Compliance, Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
 pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench};
