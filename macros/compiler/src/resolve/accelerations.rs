@@ -41,31 +41,31 @@ impl<'g> Scope<'_, 'g> {
     pub fn rate_in(
         &self,
         function: &Place,
-        of: &syntax::Expr,
+        argument: &syntax::Expr,
         frame: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let terms = match self.value(of, cx)? {
+        let terms = match self.value(argument, cx)? {
             Value::Vector(terms) => terms,
             Value::Matrix(m) => {
                 let link = self.frame(frame, cx)?;
                 let entries = self.kinematics.borrow().matrix_in(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
-                let rates = self.rates(function, &of.place, &all, cx)?;
+                let rates = self.rates(function, &argument.place, &all, cx)?;
                 return Some(Value::Matrix(ResolvedMatrix {
                     link,
                     entries: Mat3::from_fn(|i, j| rates[3 * i + j]),
                 }));
             }
             Value::Scalar(_) => {
-                cx.error(of.place.clone(), "expected a vector, found a scalar")
+                cx.error(argument.place.clone(), "expected a vector, found a scalar")
                     .help("the rate of a scalar needs no frame: `rate(scalar)`");
                 return None;
             }
         };
         let link = self.frame(frame, cx)?;
         let components = self.kinematics.borrow().resolve(&in_links(terms), link, Vec3::zero(self.graph));
-        let rates = self.rates(function, &of.place, &components.0, cx)?;
+        let rates = self.rates(function, &argument.place, &components.0, cx)?;
         Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
 
@@ -77,12 +77,13 @@ impl<'g> Scope<'_, 'g> {
         values: &[Expr<'g>],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Expr<'g>>> {
-        let of: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
-        let has = |what: fn(&Quantity) -> bool| of.iter().any(what);
+        let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
+        let has = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
         let is_state = |k: &usize| {
             self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
         };
-        let state = of.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
+        let state =
+            quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
         if let Some(state) = state {
             cx.error(place.clone(), format!("this depends on the state `{}`", state.text)).help(
                 "a rate is known of what depends on coordinates, velocities and time: write the state's own rate",
@@ -138,29 +139,30 @@ impl<'g> Builder<'_, 'g> {
             Quantity::Acceleration(k) => Some((s, k)),
             _ => None,
         };
-        let named: Vec<_> = symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
-        if named.is_empty() {
+        let acceleration_symbols: Vec<_> =
+            symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
+        if acceleration_symbols.is_empty() {
             self.model.loads.push(Load { rate, force, dissipative: false });
             return;
         }
         let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).of(force));
         let factors: Vec<(usize, Expr<'g>)> =
-            named.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
+            acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
         let all: Vec<Expr<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
-        let of: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
-        if of.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
+        let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
+        if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
             cx.error(place.clone(), "a force can depend on accelerations linearly alone")
                 .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one of them each");
             return;
         }
-        if of.iter().any(|q| matches!(q, Quantity::Input(_))) {
+        if quantities.iter().any(|q| matches!(q, Quantity::Input(_))) {
             cx.error(place.clone(), "what multiplies an acceleration cannot depend on inputs")
                 .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
             return;
         }
-        let rest = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
-        if !rest.is_zero() {
-            self.model.loads.push(Load { rate, force: rest, dissipative: false });
+        let remainder = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
+        if !remainder.is_zero() {
+            self.model.loads.push(Load { rate, force: remainder, dissipative: false });
         }
         if !factors.is_empty() {
             self.model.acceleration_forces.push(AccelerationForce { rate, factors, place: place.clone() });

@@ -57,19 +57,22 @@ pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
         return (axis, identity);
     };
     let k = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
-    let mut near = [0.0; 3];
-    near[k] = n[k].signum();
-    if near == n {
+    let mut nearest = [0.0; 3];
+    nearest[k] = n[k].signum();
+    if nearest == n {
         return (axis, identity);
     }
     // R = 1 + [w]× + [w]×² / (1 + c), w = near × n, c = near · n.
-    let w =
-        [near[1] * n[2] - near[2] * n[1], near[2] * n[0] - near[0] * n[2], near[0] * n[1] - near[1] * n[0]];
-    let c = near[k] * n[k];
+    let w = [
+        nearest[1] * n[2] - nearest[2] * n[1],
+        nearest[2] * n[0] - nearest[0] * n[2],
+        nearest[0] * n[1] - nearest[1] * n[0],
+    ];
+    let c = nearest[k] * n[k];
     let skew = [[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]];
     let matrix = Mat3::from_fn(|i, j| {
         let square: f64 = (0..3).map(|l| skew[i][l] * skew[l][j]).sum();
         graph.num(f64::from(u8::from(i == j)) + skew[i][j] + square / (1.0 + c))
     });
-    (Vec3::numbers(graph, near), Rotation::from_matrix(matrix))
+    (Vec3::numbers(graph, nearest), Rotation::from_matrix(matrix))
 }

@@ -46,13 +46,13 @@ pub fn build_model<'g>(
     let mut model = build(description, graph, None, cx)?;
     let joints = reaction::joints_to_release(&model);
     if !joints.is_empty() {
-        let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
+        let released_model = build(description, graph, Some((&joints, &model.constraints)), cx)?;
         for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
             // The forces on a body are the reactions of its released joints.
-            let found = same.outputs.iter().find(|other| other.name == output.name);
+            let found = released_model.outputs.iter().find(|other| other.name == output.name);
             found.into_iter().for_each(|found| output.clone_from(found));
         }
-        model.released = Some(Rc::new(Released { model: same, joints }));
+        model.released = Some(Rc::new(Released { model: released_model, joints }));
     }
     Some(model)
 }

@@ -22,8 +22,8 @@ impl<'g> Scope<'_, 'g> {
     /// contact is `φ = θ − acos(R / d_a) − acos(R / d_b)`. If it is positive, the cable consists of tangents
     /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
     pub fn cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of, surface] = call.take(cx)?;
-        let Ok(ends) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [points, surface] = call.take(cx)?;
+        let Ok(ends) = <[_; 2]>::try_from(flatten(points)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }

@@ -43,12 +43,12 @@ impl<'a> Call<'a> {
 /// Returns the operands of `a / b / c`.
 pub fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
-    let mut at = e;
-    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+    let mut current = e;
+    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
         parts.push(&**right);
-        at = left;
+        current = left;
     }
-    parts.push(at);
+    parts.push(current);
     parts.reverse();
     parts
 }

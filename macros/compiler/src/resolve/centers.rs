@@ -91,22 +91,22 @@ impl<'g> Scope<'_, 'g> {
         accelerates: bool,
         cx: &mut Diagnostics,
     ) -> Option<Relative<'g>> {
-        let (of, by) = (self.frame(body, cx), self.frame(frame, cx));
+        let (body_link, frame_link) = (self.frame(body, cx), self.frame(frame, cx));
         let place = self.place(body, cx);
-        let (_, by, place) = (of?, by?, place?);
+        let (_, frame_link, place) = (body_link?, frame_link?, place?);
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (place.link, Vec3::zero(self.graph));
         // Any point fixed in the frame.
-        let from = Placed { link: by, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
+        let from = Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
         let here = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
-            let a = kinematics.acceleration_in(&place, &from, by, self.graph);
-            [here(&a), here(&kinematics.angular_acceleration_in(link, by, by, self.graph))]
+            let a = kinematics.acceleration_in(&place, &from, frame_link, self.graph);
+            [here(&a), here(&kinematics.angular_acceleration_in(link, frame_link, frame_link, self.graph))]
         });
         Some(Relative {
             link,
-            v: here(&kinematics.velocity_in(&place, &from, by, self.graph)),
-            w: here(&kinematics.angular_velocity_in(link, by, self.graph)),
+            v: here(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
+            w: here(&kinematics.angular_velocity_in(link, frame_link, self.graph)),
             rates,
         })
     }
@@ -116,8 +116,8 @@ impl<'g> Scope<'_, 'g> {
     /// the arm to the centre of mass, leaves the point at rest. With the arm `r` perpendicular to the axis
     /// `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of, axis] = call.take(cx)?;
-        let Ok([body, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands, axis] = call.take(cx)?;
+        let Ok([body, about]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }
@@ -135,8 +135,8 @@ impl<'g> Scope<'_, 'g> {
         let length = kinematics.resolve(&n, link, zero).length();
         let n: Terms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
         let pose = Pose { translation: placed.pose.point(*com), ..placed.pose.clone() };
-        let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
-        let [axis_here, arm] = [&n, &between].map(|terms| kinematics.resolve(terms, link, zero));
+        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
+        let [axis_here, arm] = [&n, &offset].map(|terms| kinematics.resolve(terms, link, zero));
         drop(kinematics);
         let arm = arm + -(axis_here * axis_here.dot(arm));
         if vanishes(arm) {

@@ -41,7 +41,7 @@ impl<'g> Builder<'_, 'g> {
             self.joint_frames.insert(j, placed);
             let (joints, _) = self.releasing.unwrap_or_default();
             let (link, frame) = match joints.iter().position(|open| *open == j) {
-                Some(at) => self.release(at, joints.len(), link, frame),
+                Some(index) => self.release(index, joints.len(), link, frame),
                 None => (link, frame),
             };
             let (link, pose) = match self.solving_loop(j) {
@@ -83,20 +83,20 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds damping, friction and motor of a joint with one degree of freedom.
     fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
-        let [(name, on, _)] = self.coordinates[j].plain.as_slice() else {
+        let [(name, coordinate, _)] = self.coordinates[j].plain.as_slice() else {
             return;
         };
-        let (name, on) = (name.clone(), *on);
+        let (name, coordinate) = (name.clone(), *coordinate);
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
         for (value, what) in [(damping, "damping"), (friction, "friction")] {
             let quantity = || format!("the {what} of `{}`", joint.name.text);
             value.iter().for_each(|value| self.scope.require(Rule::NotNegative, quantity, &[*value]));
         }
-        self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
-        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
+        self.model.dashpots.extend(damping.map(|damping| Dashpot { on: coordinate, damping }));
+        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on: coordinate, friction }));
         if joint.driven && joint.mimic.is_none() {
-            self.model.inputs.push((name, Input::Coordinate(on)));
+            self.model.inputs.push((name, Input::Coordinate(coordinate)));
         }
     }
 

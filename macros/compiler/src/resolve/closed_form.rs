@@ -96,8 +96,9 @@ impl<'g> Builder<'_, 'g> {
         let ends = [&joint.parent, &joint.child];
         let a = self.side(first, ends[pin], &frame, cx)?;
         let b = self.side(second, ends[1 - pin], &frame, cx)?;
-        let (away, other) = self.joint_frame(second, cx)?;
-        let normal = self.in_frame(&frame, away.link, away.pose.rotation.to_parent(other));
+        let (second_frame, second_axis) = self.joint_frame(second, cx)?;
+        let normal =
+            self.in_frame(&frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
         let vanishes = |e: Expr<'g>| always(e, 0.0);
         let in_plane = match b.slide {
             None => normal.cross(axis).0.iter().all(|e| vanishes(*e)),
@@ -119,11 +120,11 @@ impl<'g> Builder<'_, 'g> {
             // Slide by the remaining distance, in the axes of the second joint.
             Some(slide) => {
                 let length = (reached - b.point).dot(slide);
-                Pose { rotation: Rotation::identity(self.scope.graph), translation: other * length }
+                Pose { rotation: Rotation::identity(self.scope.graph), translation: second_axis * length }
             }
             None => {
                 let sense = normal.dot(axis);
-                self.rotation_pose(other, angle_between(planar(b.point), planar(reached)) * sense)
+                self.rotation_pose(second_axis, angle_between(planar(b.point), planar(reached)) * sense)
             }
         })
     }
@@ -146,12 +147,13 @@ impl<'g> Builder<'_, 'g> {
 
     fn side(&self, j: usize, end: &Endpoint, frame: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
         let joint = &self.description.joints[j];
-        let (own, axis) = self.joint_frame(j, cx)?;
+        let (joint_frame, axis) = self.joint_frame(j, cx)?;
         let on_child = self.endpoint(&joint.child, cx)?;
         let closing = self.endpoint(end, cx)?.translation;
         let point = on_child.inverse().point(closing);
-        let in_first_frame = |v| self.in_frame(frame, own.link, own.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.borrow().position_between(&own, frame);
+        let in_first_frame =
+            |v| self.in_frame(frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
+        let terms = self.scope.kinematics.borrow().position_between(&joint_frame, frame);
         let zero = Vec3::zero(self.scope.graph);
         let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.in_frame(frame, *link, *v));
         let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
@@ -164,8 +166,8 @@ impl<'g> Builder<'_, 'g> {
         let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
-        let own = self.model.nq() - RELEASED * joints.len();
-        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);
+        let first_released = self.model.nq() - RELEASED * joints.len();
+        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= first_released);
         let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
         closed.try_into().map_or(v, Vec3)
     }

@@ -108,16 +108,16 @@ impl<'g> Builder<'_, 'g> {
         let n = self.direction(on_parent, parent.pose.rotation.to_parent(axis)).value;
         let [(_, first), (_, second)] = perpendicular(axis);
         let parent_direction = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
-        let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
-        let (sine, cosine) = (parent_direction(second).dot(turned), parent_direction(first).dot(turned));
+        let rotated = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
+        let (sine, cosine) = (parent_direction(second).dot(rotated), parent_direction(first).dot(rotated));
         let advance = gap.dot(n) / pitch;
         let value = pitch * (sine * advance.cos() - cosine * advance.sin());
         let rate = time_derivative(self.model.space(), value);
         let second = time_derivative(self.model.space(), rate);
         // The force pushes the child back along the axis; the torque rotates it by the pitch.
         self.push_row(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
-        let turned = self.transmission(ends, true, n * pitch);
-        self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
+        let rotated = self.transmission(ends, true, n * pitch);
+        self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(rotated));
     }
 
     /// Adds rows that allow only the rotations of the joint between the axes of its two ends.

@@ -76,8 +76,8 @@ impl<'g> Builder<'_, 'g> {
         for j in &solved {
             self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
         }
-        if let Some((_, kept)) = self.releasing {
-            self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
+        if let Some((_, retained)) = self.releasing {
+            self.model.constraints.retain(|c| retained.iter().any(|k| k.name == c.name));
             for j in &solved {
                 self.close_in_plane(*j, cx);
             }
@@ -113,12 +113,12 @@ impl<'g> Builder<'_, 'g> {
             let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
             symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
         };
-        let (vanishing, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
-        if rest.is_empty() {
+        let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
+        if remaining.is_empty() {
             return vanishing;
         }
         self.model.redundant.extend(vanishing.into_iter().map(|(name, _)| name));
-        rest
+        remaining
     }
 
     /// Resolves a constraint only to report its errors.
@@ -242,10 +242,14 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
     let substitute = |e: Expr<'g>, value: f64| {
         replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| e.num(value)))
     };
-    let rest = substitute(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(rest, 0).is_finite() {
+    let remainder = substitute(rate, 0.0);
+    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(remainder, 0).is_finite() {
         return None;
     }
     let g = rate.graph();
-    Some(gradient.iter().fold(rest, |sum, (k, c)| sum + substitute(*c, 1.0) * Quantity::Velocity(*k).expr(g)))
+    Some(
+        gradient
+            .iter()
+            .fold(remainder, |sum, (k, c)| sum + substitute(*c, 1.0) * Quantity::Velocity(*k).expr(g)),
+    )
 }

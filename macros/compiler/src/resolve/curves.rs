@@ -31,13 +31,13 @@ impl<'g> Scope<'_, 'g> {
                     .help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
                 None
             }
-            (_, [of]) => {
-                let terms = scope.terms(of, cx)?;
+            (_, [argument]) => {
+                let terms = scope.terms(argument, cx)?;
                 let v = scope.kinematics.borrow().resolve(&terms, start.link, Vec3::zero(scope.graph));
                 let [x, y, z] = start.pose.rotation.to_child(v).0;
                 if always(x.square() + y.square(), 0.0) {
                     cx.error(
-                        of.place.clone(),
+                        argument.place.clone(),
                         format!("this vector lies on the z axis, where `{}` has no directions", name.text),
                     )
                     .help("the axes follow from a vector that leaves the z axis of the frame it starts from");
@@ -140,11 +140,11 @@ impl<'g> Scope<'_, 'g> {
         };
         let link = terms.first().and_then(|(link, _)| *link);
         let link = if turns(link) { None } else { link };
-        let at = kinematics.resolve(&terms, link, zero);
+        let position = kinematics.resolve(&terms, link, zero);
         let mut derivative = Derivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
         let mut next = |v: Vec3<'g>| v.map(|c| derivative.of(c) * scale);
-        let first = next(at);
+        let first = next(position);
         if first.is_zero() {
             cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.to_source()))
                 .help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
@@ -177,31 +177,31 @@ impl<'g> Scope<'_, 'g> {
     /// quantities are constant.
     pub fn gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [whole] = call.take(cx)?;
-        let ExprKind::Binary(BinaryOp::Div, of, at, _) = &whole.kind else { return call.reject(cx) };
+        let ExprKind::Binary(BinaryOp::Div, field, point, _) = &whole.kind else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`gradient(…)`", call.place, cx) {
             return None;
         }
-        let placed = self.place(at, cx)?;
-        let Some(name) = at.name().filter(|name| *name != syntax::GROUND) else {
-            cx.error(at.place.clone(), "expected the name of a point")
+        let placed = self.place(point, cx)?;
+        let Some(name) = point.name().filter(|name| *name != syntax::GROUND) else {
+            cx.error(point.place.clone(), "expected the name of a point")
                 .help("name a `Point`, a particle or a body");
             return None;
         };
         // The point is displaced by three symbols, and the field is differentiated by them.
         let moves = [0, 1, 2].map(|k| Quantity::Displacement(k).symbol());
-        let by = Vec3(moves.map(|s| self.graph.symbol(s)));
-        let pose = Pose { translation: placed.pose.translation + by, ..placed.pose.clone() };
+        let displacement = Vec3(moves.map(|s| self.graph.symbol(s)));
+        let pose = Pose { translation: placed.pose.translation + displacement, ..placed.pose.clone() };
         let moved = Placed { pose, ..placed.clone() };
         self.definition_values.borrow_mut().clear();
         self.kinematics.borrow_mut().places.insert(name.to_string(), moved);
-        let value = self.scalar(of, cx);
+        let value = self.scalar(field, cx);
         self.kinematics.borrow_mut().places.insert(name.to_string(), placed.clone());
         self.definition_values.borrow_mut().clear();
         let value = value?;
         let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient = Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).of(value))));
         if gradient.is_zero() {
-            cx.error(of.place.clone(), format!("this does not depend on the place of `{name}`"))
+            cx.error(field.place.clone(), format!("this does not depend on the place of `{name}`"))
                 .help(format!("a field is an expression of `r({name} / ground)`"));
             return None;
         }

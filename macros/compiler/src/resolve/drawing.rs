@@ -60,8 +60,8 @@ impl<'g> Builder<'_, 'g> {
         if link.is_none() {
             return Some((None, pose.clone()));
         }
-        let at = self.model.frames.iter().position(|frame| frame.link == link)?;
-        Some((Some(at), self.model.frames[at].pose.inverse().then(pose)))
+        let index = self.model.frames.iter().position(|frame| frame.link == link)?;
+        Some((Some(index), self.model.frames[index].pose.inverse().then(pose)))
     }
 
     /// Returns the index of a body's own frame.
@@ -171,18 +171,18 @@ impl<'g> Builder<'_, 'g> {
     fn solids(
         &self,
         e: &syntax::Expr,
-        turned: &Rotation<'g>,
+        orientation: &Rotation<'g>,
         com: Vec3<'g>,
         found: &mut Vec<(PieceKind, Vec<Expr<'g>>)>,
     ) -> bool {
         let mut silent = Diagnostics::unread();
         match &e.kind {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
-                self.solids(a, turned, com, found) && self.solids(b, turned, com, found)
+                self.solids(a, orientation, com, found) && self.solids(b, orientation, com, found)
             }
             ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
                 let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
-                self.solids(inner, &turned.clone().then(&rotation), com, found)
+                self.solids(inner, &orientation.clone().then(&rotation), com, found)
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
                 let Some(kind) = solid.row().piece.clone() else { return false };
@@ -193,11 +193,11 @@ impl<'g> Builder<'_, 'g> {
                 };
                 match axis {
                     Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
-                        Some(axis) => numbers.extend(entries(&[turned.to_parent(axis)])),
+                        Some(axis) => numbers.extend(entries(&[orientation.to_parent(axis)])),
                         None => return false,
                     },
                     None if kind == PieceKind::Sphere => {}
-                    None => numbers.extend(rows(&turned.matrix())),
+                    None => numbers.extend(rows(&orientation.matrix())),
                 }
                 // The first argument is the mass.
                 for size in sizes.iter().skip(1) {
@@ -341,9 +341,9 @@ impl<'g> Builder<'_, 'g> {
                         self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
                     }
                 };
-                let (turns, [a, _], [at, _], axis) = joint?;
+                let (turns, [a, _], [position, _], axis) = joint?;
                 let kind = if turns { PieceKind::Torque(k) } else { PieceKind::Force(k) };
-                return Some((kind, [a, a], entries(&[at, axis])));
+                return Some((kind, [a, a], entries(&[position, axis])));
             }
             Input::Force { link, point, along } => (*link, *point, along, false),
             Input::Torque { link, about } => (*link, Vec3::zero(g), about, true),

@@ -109,9 +109,9 @@ impl<'g> Builder<'_, 'g> {
         let holders = self.holders_of(&name);
         let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
         let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
-        let named =
+        let output_value =
             |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
-        let Some((released, _)) = self.releasing else { return Some(named(Vec::new(), empty)) };
+        let Some((released, _)) = self.releasing else { return Some(output_value(Vec::new(), empty)) };
         let released_index = |number: &usize| released.iter().position(|open| open == number);
         let joints: Vec<(usize, bool)> =
             holders.iter().filter_map(|(number, holds)| Some((released_index(number)?, *holds))).collect();
@@ -130,7 +130,7 @@ impl<'g> Builder<'_, 'g> {
             values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
             actions.push((name, origin));
         }
-        Some(named(self.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
+        Some(output_value(self.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
     }
 
     /// Returns the name of the body, if it can have a diagram.
@@ -191,9 +191,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the first link of the motions of a released joint.
-    fn first_released_link(&self, at: usize) -> Option<LinkId> {
+    fn first_released_link(&self, index: usize) -> Option<LinkId> {
         let count = self.releasing?.0.len();
-        let v = self.model.nv() - RELEASED * (count - at);
+        let v = self.model.nv() - RELEASED * (count - index);
         let links = self.scope.kinematics.borrow();
         let is_it = |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
         links.joints.iter().position(is_it).map(LinkId)
@@ -232,9 +232,9 @@ impl<'g> Builder<'_, 'g> {
     fn wrench_on_body(&self, body: &FreedBody<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
         let mut sum = Wrench { force: zero, torque: zero };
-        for (at, holds) in &body.joints {
-            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * at + k + i]));
-            let Some(w) = self.joint_wrench(body, *at, part(0), part(3)) else { continue };
+        for (index, holds) in &body.joints {
+            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
+            let Some(w) = self.joint_wrench(body, *index, part(0), part(3)) else { continue };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
             sum.force += w.force * sign;
             sum.torque += w.torque * sign;
@@ -247,7 +247,7 @@ impl<'g> Builder<'_, 'g> {
     fn joint_wrench(
         &self,
         body: &FreedBody<'g>,
-        at: usize,
+        index: usize,
         force: Vec3<'g>,
         torque: Vec3<'g>,
     ) -> Option<Wrench<'g>> {
@@ -255,7 +255,7 @@ impl<'g> Builder<'_, 'g> {
         if force.is_zero() && torque.is_zero() {
             return Some(Wrench { force: zero, torque: zero });
         }
-        let j = self.releasing?.0.get(at)?;
+        let j = self.releasing?.0.get(index)?;
         let frame = self.joint_frames.get(j)?;
         let in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
@@ -314,8 +314,8 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
         let mut all = Vec::new();
-        for (at, holds) in &body.joints {
-            let Some(&j) = released.get(*at) else { continue };
+        for (index, holds) in &body.joints {
+            let Some(&j) = released.get(*index) else { continue };
             let (name, origin) = match (self.description.joints.get(j), name_of(self.description, j)) {
                 (Some(joint), _) if joint.kind == JointKind::Free => continue,
                 (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
@@ -442,9 +442,9 @@ impl<'g> Builder<'_, 'g> {
                 _ => sample(s, seed),
             };
             let largest = |e: &[Expr<'g>]| eval(e, &number).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            let (left, size) = (largest(&all), largest(forces));
+            let (residual, size) = (largest(&all), largest(forces));
             // Values that are not finite are inconclusive; they count as nonzero.
-            !left.is_finite() || left > ROUNDING * size
+            !residual.is_finite() || residual > ROUNDING * size
         })
     }
 }

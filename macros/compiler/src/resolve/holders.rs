@@ -48,9 +48,9 @@ impl<'g> Builder<'_, 'g> {
         }
         self.moving_placements.push((number, holder));
         let Some((released, _)) = self.releasing else { return (link, pose) };
-        let Some(at) = released.iter().position(|open| *open == number) else { return (link, pose) };
+        let Some(index) = released.iter().position(|open| *open == number) else { return (link, pose) };
         self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
-        self.release(at, released.len(), link, pose)
+        self.release(index, released.len(), link, pose)
     }
 
     /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
@@ -84,7 +84,8 @@ impl<'g> Builder<'_, 'g> {
             let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
             tree::base_name(point.or(particle.filter(|_| !moves(name)))?)
         };
-        (0..=d.points.len() + d.particles.len()).fold(name, |at, _| carrier_name(at).unwrap_or(at))
+        (0..=d.points.len() + d.particles.len())
+            .fold(name, |current, _| carrier_name(current).unwrap_or(current))
     }
 
     /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is

@@ -121,9 +121,9 @@ impl<'g> Scope<'_, 'g> {
         let Some(Callable::Solid(solid)) = callee.id else {
             let known: Vec<&str> = Solid::names().collect();
             let error = cx.error(callee.place.clone(), format!("unknown solid `{text}`"));
-            let said = words::solids();
-            words::suggest_meaning(error, &said, text, &known);
-            if let Some(solid) = words::meaning(&said, text, &known).and_then(Solid::of_name) {
+            let synonyms = words::solids();
+            words::suggest_meaning(error, &synonyms, text, &known);
+            if let Some(solid) = words::meaning(&synonyms, text, &known).and_then(Solid::of_name) {
                 error.help(format!("it is written `{}`", solid.usage()));
             }
             if error.is_bare() {
@@ -178,10 +178,10 @@ impl<'g> Scope<'_, 'g> {
         false
     }
 
-    fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
+    fn check_not_negative(&self, s: Expr<'g>, argument: &syntax::Expr, cx: &mut Diagnostics) -> bool {
         match s.value() {
             Some(n) if n < 0.0 => {
-                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"))
+                cx.error(argument.place.clone(), format!("this cannot be negative, but it is {n}"))
                     .help("masses, sizes and moments are zero or more");
                 false
             }

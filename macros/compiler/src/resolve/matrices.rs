@@ -127,8 +127,8 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
     pub fn physical_rotation(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of] = self.take_matrix(call, cx)?;
-        let Ok([b, a]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands] = self.take_matrix(call, cx)?;
+        let Ok([b, a]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`rotation(…)`", call.place, cx) {
             return None;
         }
@@ -157,12 +157,14 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `inertia(body / point)`: the physical inertia matrix of bodies about a point.
     pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of] = self.take_matrix(call, cx)?;
-        let Ok([of, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands] = self.take_matrix(call, cx)?;
+        let Ok([bodies_written, about]) = <[_; 2]>::try_from(flatten(operands)) else {
+            return call.reject(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.bodies_with_mass(of, cx)?;
+        let bodies = self.bodies_with_mass(bodies_written, cx)?;
         let about = self.current_place(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
         let axis = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };

@@ -62,8 +62,8 @@ impl<'g> Scope<'_, 'g> {
                 continue;
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
-            let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
-            let r = kinematics.resolve(&between, link, zero);
+            let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+            let r = kinematics.resolve(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
         Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector(momenta) })
@@ -72,15 +72,15 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
     /// bodies.
     pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Ok([of, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
+        let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.bodies_with_mass(of, cx)?;
+        let bodies = self.bodies_with_mass(bodies_written, cx)?;
         let from = self.current_place(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
-            cx.error(of.place.clone(), "what has no mass has no centre of mass")
+            cx.error(bodies_written.place.clone(), "what has no mass has no centre of mass")
                 .help("name bodies with a `mass`");
             return None;
         }
@@ -88,9 +88,9 @@ impl<'g> Scope<'_, 'g> {
         let mut sum = Vec::new();
         for (placed, (mass, com, _)) in bodies {
             let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
-            let between = kinematics.position_between(&Placed { pose, ..placed }, &from);
+            let offset = kinematics.position_between(&Placed { pose, ..placed }, &from);
             let share = mass / total;
-            sum.extend(between.into_iter().map(|(link, r)| (link, r * share)));
+            sum.extend(offset.into_iter().map(|(link, r)| (link, r * share)));
         }
         Some(vector(sum))
     }
@@ -135,11 +135,11 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
-        let between = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
-        let [a, b, r] = [a, b, &between].map(|parts| kinematics.resolve(parts, link, zero));
+        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+        let [a, b, r] = [a, b, &offset].map(|parts| kinematics.resolve(parts, link, zero));
         let central = placed.pose.rotation.sym_to_parent(*central);
-        let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
-        a.dot(central * b) + moved
+        let shift = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
+        a.dot(central * b) + shift
     }
 
     /// Returns bodies and particles: one by its name, or several in parentheses.

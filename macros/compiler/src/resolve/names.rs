@@ -145,11 +145,13 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let Some(k) = axis_of_name(&member.text) else {
-            let meant = words::meaning(words::MEMBERS, &member.text, &[]);
+            let meaning = words::meaning(words::MEMBERS, &member.text, &[]);
             // The ground does not rotate.
-            let meant = meant.filter(|meant| body != GROUND || !meant.contains(FunctionId::Omega.name()));
-            let meant = meant.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
-            let help = meant.replace("NAME", body);
+            let meaning =
+                meaning.filter(|meaning| body != GROUND || !meaning.contains(FunctionId::Omega.name()));
+            let meaning =
+                meaning.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
+            let help = meaning.replace("NAME", body);
             cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
             return None;
         };
@@ -165,7 +167,13 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns a vector given in the axes of a body or a frame.
-    pub fn named_axes(&self, name: &str, v: Vec3<'g>, at: &Place, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn named_axes(
+        &self,
+        name: &str,
+        v: Vec3<'g>,
+        place: &Place,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         if self.context.borrow().axes.is_none() {
             return Some(Value::Vector(vec![(Axes::Of(name.to_string()), v)]));
         }
@@ -175,7 +183,7 @@ impl<'g> Scope<'_, 'g> {
         match self.kinematics.borrow().places.get(name) {
             Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
             None => {
-                cx.error(at.clone(), format!("`{name}` is not placed"));
+                cx.error(place.clone(), format!("`{name}` is not placed"));
                 None
             }
         }

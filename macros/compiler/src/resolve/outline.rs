@@ -221,9 +221,9 @@ fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
 fn with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
     let mut parts = e.parts();
     let mut open: Vec<&Definition> = d.definitions.iter().collect();
-    let mut at = 0;
-    while let Some(part) = parts.get(at) {
-        at += 1;
+    let mut next = 0;
+    while let Some(part) = parts.get(next) {
+        next += 1;
         let Some(name) = part.name() else { continue };
         if let Some(k) = open.iter().position(|definition| definition.name.text == name) {
             parts.extend(open.swap_remove(k).value.parts());

@@ -87,8 +87,8 @@ impl<'g> Scope<'_, 'g> {
             symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::of(s), Quantity::Parameter(_)))
         };
         // The border is the constant operand.
-        let turned = !moves(x) && (moves(border) || x.value().is_some());
-        let (written, compared, border, pieces) = match turned {
+        let is_swapped = !moves(x) && (moves(border) || x.value().is_some());
+        let (written, compared, border, pieces) = match is_swapped {
             true => (right, border, x, [above, below]),
             false => (left, x, border, [below, above]),
         };

@@ -128,11 +128,11 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    fn report_waiting(&self, rest: &[Item], order: &Order, cx: &mut Diagnostics) {
+    fn report_waiting(&self, waiting: &[Item], order: &Order, cx: &mut Diagnostics) {
         // After another error, elements may wait for one that failed, which has been reported. Joints are
         // still resolved, to report their own errors at once.
         if !cx.is_empty() {
-            for item in rest {
+            for item in waiting {
                 if let Item::Joint(k) = item {
                     self.check_joint(&self.description.joints[order.joints[*k].0], cx);
                 }
@@ -140,12 +140,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             return;
         }
         // From an element to one for which it waits, until the path is a cycle.
-        let next = |at: usize| {
-            let needs = self.dependencies(rest[at], order);
-            (0..rest.len()).find(|k| needs.contains(&self.placed_name(rest[*k], order)))
+        let next = |index: usize| {
+            let needs = self.dependencies(waiting[index], order);
+            (0..waiting.len()).find(|k| needs.contains(&self.placed_name(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
-        while let Some(k) = path.last().and_then(|at| next(*at)) {
+        while let Some(k) = path.last().and_then(|index| next(*index)) {
             if let Some(begin) = path.iter().position(|seen| *seen == k) {
                 path.drain(..begin);
                 break;
@@ -153,7 +153,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             path.push(k);
         }
         path.sort_unstable();
-        let names: Vec<&Name> = path.iter().map(|k| self.item_name(rest[*k], order)).collect();
+        let names: Vec<&Name> = path.iter().map(|k| self.item_name(waiting[*k], order)).collect();
         let Some((first, others)) = names.split_first() else { return };
         let error = cx.error(first.place.clone(), format!("`{}` is placed by way of itself", first.text));
         if !others.is_empty() {
@@ -173,17 +173,17 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
-    fn place_substitutes(&mut self, rest: &[Item], order: &Order) {
-        for item in rest {
+    fn place_substitutes(&mut self, waiting: &[Item], order: &Order) {
+        for item in waiting {
             let name = self.placed_name(*item, order);
             let (link, pose) = self.link_if_moving(None, self.substitute_pose(true));
-            let (kind, held) = match item {
+            let (kind, body) = match item {
                 Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
                 Item::Body(k) => (PlacedKind::Body, Some(*k)),
                 Item::Frame(_) => (PlacedKind::Frame, None),
                 Item::Point(_) | Item::Particle(_) => (PlacedKind::Point, None),
             };
-            if let Some(k) = held {
+            if let Some(k) = body {
                 self.places[k] = Some((link, pose.clone()));
             }
             self.register(&name, link, pose, kind);
@@ -249,7 +249,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             },
             _ => None,
         };
-        let turned = &frame.rotations[usize::from(natural.is_some())..];
+        let steps = &frame.rotations[usize::from(natural.is_some())..];
         let first = match (natural, &start) {
             (Some((rotation, arguments)), Some(start)) => {
                 self.scope.natural_axes(rotation, arguments, start, cx)
@@ -257,7 +257,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             _ => Some(Rotation::identity(self.scope.graph)),
         };
         let context = Context::new(Allowed::Placement, None);
-        let rotation = self.scope.in_context(context, |scope| scope.rotation(turned, cx));
+        let rotation = self.scope.in_context(context, |scope| scope.rotation(steps, cx));
         let (start, rotation) = (start?, first?.then(&rotation?));
         let pose =
             Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
@@ -321,20 +321,20 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the orientation of link `link` in link `of`.
-    fn rotation_between(&self, of: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
+    fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = self.scope.kinematics.borrow();
-        let to_ground = |mut at: Option<LinkId>| {
+        let to_ground = |mut current: Option<LinkId>| {
             let mut steps = Vec::new();
-            while let Some(l) = at {
+            while let Some(l) = current {
                 steps.push(kinematics.joints[l.0].rotation.clone());
-                at = kinematics.joints[l.0].parent;
+                current = kinematics.joints[l.0].parent;
             }
             steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.then(step))
         };
-        if of == link {
+        if base == link {
             return Rotation::identity(self.scope.graph);
         }
-        to_ground(of).inverse().then(&to_ground(link))
+        to_ground(base).inverse().then(&to_ground(link))
     }
 
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
@@ -390,13 +390,13 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Whether the origin of a link always coincides with that of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
         let kinematics = self.scope.kinematics.borrow();
-        let mut at = link;
-        while at != ancestor {
-            let Some(l) = at else { return false };
+        let mut current = link;
+        while current != ancestor {
+            let Some(l) = current else { return false };
             if !kinematics.joints[l.0].translation.is_zero() {
                 return false;
             }
-            at = kinematics.joints[l.0].parent;
+            current = kinematics.joints[l.0].parent;
         }
         true
     }

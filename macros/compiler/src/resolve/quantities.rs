@@ -55,11 +55,11 @@ impl<'g> Scope<'_, 'g> {
             },
             _ => String::new(),
         };
-        if let ExprKind::Binary(BinaryOp::Div, of, frame, _) = &argument.kind
+        if let ExprKind::Binary(BinaryOp::Div, vector, frame, _) = &argument.kind
             && let Some(name) = frame.name()
             && (name == GROUND || self.bodies.iter().any(|body| body == name))
         {
-            return self.rate_in(call.place, of, frame, cx);
+            return self.rate_in(call.place, vector, frame, cx);
         }
         let kinematics = self.kinematics.borrow();
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
@@ -124,8 +124,8 @@ impl<'g> Scope<'_, 'g> {
             {
                 let base = self.place(base, cx)?;
                 let context = Context::new(Allowed::Constant, None);
-                let at = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
-                let pose = Pose { translation: base.pose.point(at), rotation: base.pose.rotation };
+                let offset = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
+                let pose = Pose { translation: base.pose.point(offset), rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
             _ => {
@@ -165,9 +165,9 @@ impl<'g> Scope<'_, 'g> {
                 let base = self.current_place(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);
-                let at = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
-                let at = self.kinematics.borrow().resolve(&at, base.link, Vec3::zero(self.graph));
-                let pose = Pose { translation: base.pose.translation + at, rotation: base.pose.rotation };
+                let offset = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
+                let offset = self.kinematics.borrow().resolve(&offset, base.link, Vec3::zero(self.graph));
+                let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
             _ => self.place(e, cx),
@@ -308,12 +308,12 @@ impl<'g> Kinematics<'g> {
     /// Returns `omega(of / frame)`.
     pub fn angular_velocity_in(
         &self,
-        of: Option<LinkId>,
+        body: Option<LinkId>,
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> Terms<'g> {
         let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
-        vec![(of, w(of)), (frame, -w(frame))]
+        vec![(body, w(body)), (frame, -w(frame))]
     }
 
     /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is

@@ -49,14 +49,14 @@ impl<'g> Builder<'_, 'g> {
     /// `at` of `count`.
     pub fn release(
         &mut self,
-        at: usize,
+        index: usize,
         count: usize,
         mut link: Option<LinkId>,
         mut pose: Pose<'g>,
     ) -> (Option<LinkId>, Pose<'g>) {
         let g = self.scope.graph;
-        let after = RELEASED * (count - at);
-        let (q, v) = (InQ(self.model.nq() - after), InV(self.model.nv() - after));
+        let following = RELEASED * (count - index);
+        let (q, v) = (InQ(self.model.nq() - following), InV(self.model.nv() - following));
         for k in 0..RELEASED {
             let (axis, coordinate) = (Vec3::axis(g, k % 3), own_coordinate(q + k, v + k));
             let motion = match k {

@@ -232,11 +232,11 @@ impl<'g> Kinematics<'g> {
     /// Returns the position of a point relative to the ground's origin.
     pub fn position(&self, link: Option<LinkId>, p: Vec3<'g>) -> Terms<'g> {
         let mut terms = vec![(link, p)];
-        let mut at = link;
-        while let Some(l) = at {
+        let mut current = link;
+        while let Some(l) = current {
             let joint = &self.joints[l.0];
             terms.push((joint.parent, joint.translation));
-            at = joint.parent;
+            current = joint.parent;
         }
         terms
     }

@@ -43,8 +43,9 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn coefficients(&self, name: &Name, value: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let g = self.scope.graph;
         let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
-        let named = syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
-        let e = self.scope.in_context(context, |scope| scope.scalar(&named, cx))?;
+        let name_expression =
+            syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
+        let e = self.scope.in_context(context, |scope| scope.scalar(&name_expression, cx))?;
         let place = || value.place.clone();
         let mut row = vec![g.zero(); self.model.nv()];
         velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
@@ -82,8 +83,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             return None;
         }
         let at_rest = replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()));
-        let rest = [vec![at_rest]];
-        if !at_rest.is_zero() && !speeds::named_columns(&self.model, &rest.to_vec()).is_empty() {
+        let remainder = [vec![at_rest]];
+        if !at_rest.is_zero() && !speeds::named_columns(&self.model, &remainder.to_vec()).is_empty() {
             cx.error(place(), "a speed has no part that is there at rest")
                 .help("speeds are velocities: zero at rest, and multiplied by a time they are displacements. Take the rates relative to what moves, or make it an `#[output(…)]`");
             return None;
@@ -93,18 +94,18 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn replace_velocities(&mut self, declared: &[DeclaredSpeed<'_, 'g>], cx: &mut Diagnostics) {
         let rows: Vec<Vec<Expr<'g>>> = declared.iter().map(|speed| speed.row.clone()).collect();
-        let named = speeds::named_columns(&self.model, &rows);
-        if !self.check_speeds(declared, &rows, &named, cx) {
+        let columns = speeds::named_columns(&self.model, &rows);
+        if !self.check_speeds(declared, &rows, &columns, cx) {
             return;
         }
         let nv = self.model.nv();
         let block: Vec<Vec<Expr<'g>>> =
-            rows.iter().map(|row| named.iter().map(|k| row[*k]).collect()).collect();
+            rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
         let Some(inverse) = speeds::inverse(&self.model, &block) else {
-            let most = speeds::MOST_COUPLED;
+            let limit = speeds::MOST_COUPLED;
             cx.error(
                 declared[0].value.place.clone(),
-                format!("more than {most} of these speeds depend on each other"),
+                format!("more than {limit} of these speeds depend on each other"),
             )
             .help("choose speeds each of which names few rates");
             return;
@@ -112,7 +113,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let g = self.scope.graph;
         let identity = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
         let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
-            let named_index = |k: usize| named.iter().position(|n| *n == k);
+            let named_index = |k: usize| columns.iter().position(|n| *n == k);
             let entry = |i: usize, j: usize| match (named_index(i), named_index(j)) {
                 (Some(i), Some(j)) => block[i][j],
                 _ => identity(i, j),
@@ -120,11 +121,11 @@ impl<'a, 'g> Builder<'a, 'g> {
             (0..nv).map(|i| (0..nv).map(|j| entry(i, j)).collect()).collect()
         };
         let velocities = self.model.velocities.clone();
-        for (k, speed) in named.iter().zip(declared) {
+        for (k, speed) in columns.iter().zip(declared) {
             self.model.velocities[*k] = (speed.name.text.clone(), speed.name.place.clone());
         }
         let (of_rates, rates) = (full_matrix(&block), full_matrix(&inverse));
-        let replaced = named.into_iter().map(InV).collect();
+        let replaced = columns.into_iter().map(InV).collect();
         self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
 
@@ -134,15 +135,15 @@ impl<'a, 'g> Builder<'a, 'g> {
         &self,
         declared: &[DeclaredSpeed<'_, 'g>],
         rows: &Vec<Vec<Expr<'g>>>,
-        named: &[usize],
+        columns: &[usize],
         cx: &mut Diagnostics,
     ) -> bool {
-        let list = |of: &[usize]| {
+        let list = |indices: &[usize]| {
             let names: Vec<String> =
-                of.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
+                indices.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
             all_of(&names)
         };
-        let (count, all) = (declared.len(), named.len());
+        let (count, all) = (declared.len(), columns.len());
         let last = &declared[count - 1];
         if let Some(k) = speeds::dependent_row(&self.model, rows) {
             let speed = &declared[k];
@@ -157,10 +158,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         if count < all {
             let verb = if count == 1 { "names" } else { "name" };
             let subject = if count == 1 { "one speed" } else { &format!("{count} speeds") };
-            let rate = &self.model.velocities[named[all - 1]].0;
+            let rate = &self.model.velocities[columns[all - 1]].0;
             cx.error(
                 last.name.place.clone(),
-                format!("{subject} {verb} {all} velocities: {}", list(named)),
+                format!("{subject} {verb} {all} velocities: {}", list(columns)),
             )
             .help(format!("every velocity that speeds name is replaced: declare as many speeds, such as one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`", rate.replace('.', "_")));
             return false;
@@ -168,7 +169,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let bounded = self.model.limits.iter().find_map(|limit| {
             let key = if limit.speed.is_some() { "max_speed" } else { "max_effort" };
             let bounds = limit.speed.or(limit.effort).is_some();
-            (bounds && named.contains(&limit.v.0)).then_some((limit.v.0, key))
+            (bounds && columns.contains(&limit.v.0)).then_some((limit.v.0, key))
         });
         if let Some((k, key)) = bounded {
             let (rate, what) =

@@ -69,15 +69,15 @@ impl<'g> Builder<'_, 'g> {
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = kinematics.resolve(&terms, axes, zero);
         // The test for a common line ignores released joints.
-        let held = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
-        if always_zero(held) {
+        let with_closed_joints = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
+        if always_zero(with_closed_joints) {
             cx.error(b.place.clone(), "these two points are always at the same place")
                 .help("let the element act between points that move apart");
             return None;
         }
         let mut v = kinematics.velocity(&second);
         v.extend(kinematics.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
-        if let Some(line) = constant_direction(held) {
+        if let Some(line) = constant_direction(with_closed_joints) {
             let e = Vec3::numbers(self.scope.graph, line);
             let rate = e.dot(kinematics.resolve(&v, axes, zero));
             let value = r.dot(e);

@@ -48,10 +48,10 @@ pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
 
 /// Whether one element is a descendant of another (or the same).
 fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
-    let mut at = Some(carried);
+    let mut current = Some(carried);
     (0..=parents.len()).any(|_| {
-        let here = at;
-        at = here.and_then(|name| parents.get(name).copied());
+        let here = current;
+        current = here.and_then(|name| parents.get(name).copied());
         here == Some(carrier)
     })
 }

@@ -111,8 +111,8 @@ impl Arguments {
     }
 
     fn take(&mut self, key: &str) -> Option<(Name, ArgumentValue)> {
-        let at = self.named.iter().position(|(name, _)| name.text == key)?;
-        let (name, value) = self.named.remove(at);
+        let index = self.named.iter().position(|(name, _)| name.text == key)?;
+        let (name, value) = self.named.remove(index);
         self.seen.push(name.clone());
         Some((name, value))
     }
@@ -166,18 +166,20 @@ impl Arguments {
     /// Removes an option without a value, and returns its span.
     pub fn take_option(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
-        let at = self.plain.iter().position(is_word)?;
-        Some(self.plain.remove(at).place)
+        let index = self.plain.iter().position(is_word)?;
+        Some(self.plain.remove(index).place)
     }
 
     /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
     /// true if there are any.
     pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
-        let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
-        let named = self.take(word);
-        let Some(place) = call.or(named.as_ref().map(|(name, _)| name.place.clone())) else { return false };
-        let off = match &named {
+        let call = self.plain.iter().position(is_call).map(|index| self.plain.remove(index).place);
+        let argument = self.take(word);
+        let Some(place) = call.or(argument.as_ref().map(|(name, _)| name.place.clone())) else {
+            return false;
+        };
+        let off = match &argument {
             Some((_, ArgumentValue::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
             _ => false,
         };
@@ -260,10 +262,10 @@ impl Arguments {
                 Some((word, place))
             }
             ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
-                let said = if key == "formulation" { words::FORMULATIONS } else { &[] };
+                let synonyms = if key == "formulation" { words::FORMULATIONS } else { &[] };
                 words::suggest_meaning(
                     cx.error(place, format!("unknown choice `{word}` for `{key}`")),
-                    said,
+                    synonyms,
                     &word,
                     choices,
                 );
@@ -332,9 +334,9 @@ impl Arguments {
             return Some((left, Some(right)));
         }
         let is_expr = |(_, value): &(Name, ArgumentValue)| matches!(value, ArgumentValue::Expr(_));
-        if let Some(at) = self.named.iter().position(is_expr)
+        if let Some(index) = self.named.iter().position(is_expr)
             && self.plain.is_empty()
-            && let (name, ArgumentValue::Expr(right)) = self.named.remove(at)
+            && let (name, ArgumentValue::Expr(right)) = self.named.remove(index)
         {
             return Some((Expr { kind: ExprKind::Name(name.text), place: name.place }, Some(right)));
         }

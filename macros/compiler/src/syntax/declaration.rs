@@ -50,8 +50,8 @@ fn dedent(text: &str) -> String {
 pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
     let note = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
-        let said = first_paragraph(&field.attrs);
-        (!said.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), said))
+        let paragraph = first_paragraph(&field.attrs);
+        (!paragraph.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), paragraph))
     };
     item.fields.iter().filter_map(note).collect()
 }

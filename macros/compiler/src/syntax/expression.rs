@@ -122,10 +122,10 @@ fn parse_operand(
     parse(input)
 }
 
-fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
+fn binary(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
     let size = left.1.extended().max(right.1.nested());
     let place = left.0.place.to(&right.0.place);
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, size)
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()), place, size)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {

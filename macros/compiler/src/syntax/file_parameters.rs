@@ -115,9 +115,9 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
 }
 
 /// Returns the known kinds, each once; reports unknown ones and duplicates.
-pub fn check(asked: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
+pub fn check(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
     let mut good: Vec<FileParameters> = Vec::new();
-    for figures in asked {
+    for figures in requested {
         let word = &figures.word;
         if !WORDS.contains(&word.text.as_str()) {
             let words = WORDS.map(|word| format!("`{word}`"));

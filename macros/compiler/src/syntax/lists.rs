@@ -28,22 +28,23 @@ impl Lists {
     /// Expands the lists among the fields, and returns them.
     pub fn expand(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
-        let Fields::Named(named) = fields else { return lists };
-        let counts: Vec<Option<usize>> = named.named.iter().map(|field| lists.read(field, cx)).collect();
+        let Fields::Named(named_fields) = fields else { return lists };
+        let counts: Vec<Option<usize>> =
+            named_fields.named.iter().map(|field| lists.read(field, cx)).collect();
         if lists.lists.is_empty() {
             return lists;
         }
         cx.count_alike(lists.lists.iter().map(|(name, _)| name.clone()).collect());
-        lists.check_names(named.named.iter(), cx);
-        let taken = std::mem::take(&mut named.named);
-        for (mut field, count) in taken.into_iter().zip(counts) {
+        lists.check_names(named_fields.named.iter(), cx);
+        let fields_before = std::mem::take(&mut named_fields.named);
+        for (mut field, count) in fields_before.into_iter().zip(counts) {
             let Some(count) = count else {
                 lists.rewrite_attributes(&mut field, None, cx);
-                named.named.push(field);
+                named_fields.named.push(field);
                 continue;
             };
             for k in 0..count {
-                named.named.push(lists.element(&field, k, cx));
+                named_fields.named.push(lists.element(&field, k, cx));
             }
         }
         lists

@@ -48,8 +48,8 @@ pub fn read_options(
 ) -> Option<FileOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
     let rejected: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_option(word, cx)).collect();
-    let asked = take_requests(&mut arguments);
-    *requests = read_requests(&asked, &rejected, &mut arguments, description, cx);
+    let requested = take_requests(&mut arguments);
+    *requests = read_requests(&requested, &rejected, &mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
@@ -88,10 +88,11 @@ pub fn read_options(
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
-    description.inertias = read_inertias(&mut arguments, &asked, description, cx);
+    description.inertias = read_inertias(&mut arguments, &requested, description, cx);
     requests.skipped = skipped::read(&mut arguments, cx);
     let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);
-    let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
+    let printed =
+        printed.and_then(|(requested, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == requested));
     requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
     let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let lock = arguments.take_texts("lock", cx);
@@ -122,14 +123,14 @@ pub fn read_options(
 /// Reads `contacts = file | ignore`: whether contacts of the file are included, for a format that has them.
 fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
     let place = arguments.place_of("contacts");
-    let asked =
+    let from_file =
         arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
-    let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
-    if let (Some(place), Some(other)) = (place, other) {
-        cx.error(place, format!("{} does not say what touches what", other.article()))
+    let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
+    if let (Some(place), Some(unsupported)) = (place, unsupported) {
+        cx.error(place, format!("{} does not say what touches what", unsupported.article()))
             .help(super::contact::CONTACT_HELP);
     }
-    asked && other.is_none()
+    from_file && unsupported.is_none()
 }
 
 /// Reads `urdf = "…"`, `mjcf = "…"` or `sdf = "…"`.
@@ -167,14 +168,14 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
 /// reported.
 fn read_inertias(
     arguments: &mut Arguments,
-    asked: &[(&str, Place)],
+    requested: &[(&str, Place)],
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Inertias {
     match arguments.take_choice("inertia", &["check", "trust", "none"], cx) {
         Some((word, _)) if word == "trust" => Inertias::Trust,
         Some((word, _)) if word == "none" => {
-            for (word, place) in asked.iter().filter(|(word, _)| *word != "drawing") {
+            for (word, place) in requested.iter().filter(|(word, _)| *word != "drawing") {
                 cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
                     "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
                 ));
@@ -226,8 +227,8 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     let independent = arguments.take_list("independent", cx);
     let chosen = arguments.take_choice("formulation", &["multipliers", "speeds"], cx);
     match (chosen, place) {
-        (Some((word, at)), Some(_)) if word == "multipliers" => {
-            cx.error(at, "multipliers need no independent speeds")
+        (Some((word, word_place)), Some(_)) if word == "multipliers" => {
+            cx.error(word_place, "multipliers need no independent speeds")
                 .help("remove `independent`, or write `formulation = speeds`");
             Formulation::Multipliers
         }
@@ -244,15 +245,15 @@ fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
 
 /// Returns the requested functions, and reports unknown or meaningless options.
 fn read_requests(
-    asked: &[(&str, Place)],
+    requested: &[(&str, Place)],
     rejected: &[&str],
     arguments: &mut Arguments,
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Requests {
-    let is_asked = |word: &str| asked.iter().any(|(known, _)| *known == word);
+    let is_asked = |word: &str| requested.iter().any(|(known, _)| *known == word);
     let requests = Requests::from_options(is_asked);
-    for (word, place) in asked {
+    for (word, place) in requested {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
             cx.error(

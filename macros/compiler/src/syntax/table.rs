@@ -52,8 +52,8 @@ pub fn read_table(
             description.tables.push(Table { name: name.clone(), variables });
         }
         Some(1..=3) => {
-            let most = MAX_TABLES;
-            cx.error(span_of(&field.ty), format!("a mechanism has {most} tables at most"))
+            let maximum = MAX_TABLES;
+            cx.error(span_of(&field.ty), format!("a mechanism has {maximum} tables at most"))
                 .help("remove some");
         }
         Some(other) => {

@@ -59,8 +59,9 @@ fn key(word: &str) -> String {
 pub fn meaning(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = key(word);
     let fits = |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
-    let said = |(said, meaning): &&(&str, &str)| fits(meaning) && said.split(' ').any(|one| one == key);
-    words.iter().find(said).map(|(_, meaning)| *meaning)
+    let synonyms =
+        |(synonyms, meaning): &&(&str, &str)| fits(meaning) && synonyms.split(' ').any(|one| one == key);
+    words.iter().find(synonyms).map(|(_, meaning)| *meaning)
 }
 
 /// Whether a word is an option of `#[mechanism]` without a value.

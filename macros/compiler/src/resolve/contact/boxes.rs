@@ -84,12 +84,12 @@ fn minimum<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
 }
 
 /// Returns the value that a selector of three selects.
-fn select_of_three<'g>(which: &[Expr<'g>; 3], of: [Expr<'g>; 3]) -> Expr<'g> {
-    of[0] * which[0] + of[1] * which[1] + of[2] * which[2]
+fn select_of_three<'g>(which: &[Expr<'g>; 3], values: [Expr<'g>; 3]) -> Expr<'g> {
+    values[0] * which[0] + values[1] * which[1] + values[2] * which[2]
 }
 
-fn select_axis<'g>(which: &[Expr<'g>; 3], of: &[Vec3<'g>; 3]) -> Vec3<'g> {
-    of[0] * which[0] + of[1] * which[1] + of[2] * which[2]
+fn select_axis<'g>(which: &[Expr<'g>; 3], axes: &[Vec3<'g>; 3]) -> Vec3<'g> {
+    axes[0] * which[0] + axes[1] * which[1] + axes[2] * which[2]
 }
 
 /// Returns the selector of the cyclically next axis.
@@ -331,8 +331,8 @@ impl<'g> Face<'g> {
 
     /// Returns a contact midway between a position relative to the centre of the box and the face; `over` is
     /// the distance between them.
-    fn midway_contact(&self, gap: Expr<'g>, place: Vec3<'g>, over: Expr<'g>) -> PointContact<'g> {
-        self.contact(gap, place - self.axes[0] * (over * 0.5))
+    fn midway_contact(&self, gap: Expr<'g>, place: Vec3<'g>, distance: Expr<'g>) -> PointContact<'g> {
+        self.contact(gap, place - self.axes[0] * (distance * 0.5))
     }
 
     /// Returns a contact at a position relative to the centre of the box.
@@ -386,10 +386,10 @@ fn face_contacts<'g>(
         let outside = minimum((from - to) * smallest, size);
         let is_cut = is_positive(from + one * (1.0 - TIE_TOLERANCE));
         for (t, counts) in [(maximum(to, -one), one), (minimum(from, one), is_cut)] {
-            let over = start[0] + direction[0] * t - height;
+            let distance = start[0] + direction[0] * t - height;
             let place = middle + off.0 * (one * side) + along.0 * (t * sense);
-            let gap = select(counts, maximum(over, outside), size);
-            points.push(face.midway_contact(gap, holder.center + place, over));
+            let gap = select(counts, maximum(distance, outside), size);
+            points.push(face.midway_contact(gap, holder.center + place, distance));
         }
     }
     let determinant = e1[1] * e2[2] - e1[2] * e2[1];
@@ -398,9 +398,9 @@ fn face_contacts<'g>(
         let first = (x * e2[2] - y * e2[1]) / determinant;
         let second = (e1[1] * y - e1[2] * x) / determinant;
         let outside = (maximum(absolute(first), absolute(second)) - one * (1.0 + TIE_TOLERANCE)) * smallest;
-        let over = f[0] + first * e1[0] + second * e2[0] - height;
+        let distance = f[0] + first * e1[0] + second * e2[0] - height;
         let place = holder.center + middle + d1 * first + d2 * second;
-        points.push(face.midway_contact(maximum(over, outside), place, over));
+        points.push(face.midway_contact(maximum(distance, outside), place, distance));
     }
     points
 }
@@ -418,9 +418,9 @@ fn capsule_axis_contacts<'g>(
     let (zero, one) = (reach.zero(), reach.num(1.0));
     let size = block.half.into_iter().fold(reach + radius, |sum, half| sum + half);
     let cosines = block.axes.map(|axis| own.dot(axis));
-    let away = block.axes.map(|axis| axis.dot(c));
+    let center_offsets = block.axes.map(|axis| axis.dot(c));
     let unit = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
-    let distance = |k: usize| absolute(away[k]) - block.half[k] - reach * absolute(cosines[k]);
+    let distance = |k: usize| absolute(center_offsets[k]) - block.half[k] - reach * absolute(cosines[k]);
     let (mut face_distance, mut which) = (distance(0), unit(0));
     for k in [1, 2] {
         let better = is_positive(distance(k) - face_distance - size * TIE_TOLERANCE);
@@ -432,7 +432,7 @@ fn capsule_axis_contacts<'g>(
         let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
         let square = cosines[j1] * cosines[j1] + cosines[j2] * cosines[j2];
         let sine = maximum(square, one * PARALLEL).sqrt();
-        let along = absolute(away[j1] * cosines[j2] - away[j2] * cosines[j1]);
+        let along = absolute(center_offsets[j1] * cosines[j2] - center_offsets[j2] * cosines[j1]);
         let halves = block.half[j1] * absolute(cosines[j2]) + block.half[j2] * absolute(cosines[j1]);
         let found = (along - halves) / sine;
         let better =

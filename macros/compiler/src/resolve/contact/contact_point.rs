@@ -29,12 +29,12 @@ impl<'g> Builder<'_, 'g> {
         let (first, second, terms) = (first?, second?, terms?);
         let zero = Vec3::zero(self.scope.graph);
         let in_link = self.scope.kinematics.borrow().resolve(&terms, frame.link, zero);
-        let at = frame.pose.rotation.to_child(in_link);
+        let position = frame.pose.rotation.to_child(in_link);
         let is_allowed = |q: Quantity| match q {
             Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
             q => matches!(q, Quantity::Parameter(_)),
         };
-        if !symbols_in(&at.0).into_iter().all(|s| is_allowed(Quantity::of(s))) {
+        if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::of(s))) {
             cx.error(point.place.clone(), "the points of a surface depend on its two coordinates alone")
                 .help("parameters may stand there as well, and the axes of the surface's own body");
             return None;
@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
         let derivatives = |c: &Coordinate| {
             let mut d =
                 Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
-            at.map(|e| d.of(e))
+            position.map(|e| d.of(e))
         };
         let tangents = [derivatives(&first), derivatives(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {
@@ -50,7 +50,7 @@ impl<'g> Builder<'_, 'g> {
                 .help("write the points by two coordinates, as in `surface(u, w, u * x + w * y + u * w / size * z)`");
             return None;
         }
-        Some(Sheet { at, tangents })
+        Some(Sheet { point: position, tangents })
     }
 
     /// Returns the coordinate with this name, which must be declared as a field of its own.
@@ -82,7 +82,7 @@ impl<'g> Builder<'_, 'g> {
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
         let point = -support_point(&pair.a.form, normal, 0.0, &|v| self.first_direction(pair, v).value)?;
-        let offset = pair.center.value - pair.base.value + point - rotate_surface(sheet.at);
+        let offset = pair.center.value - pair.base.value + point - rotate_surface(sheet.point);
         Some(PointContact {
             gap: normal.dot(offset),
             point,

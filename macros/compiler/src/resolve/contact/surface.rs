@@ -51,7 +51,7 @@ pub enum SurfaceForm<'g> {
 #[derive(Clone)]
 pub struct Sheet<'g> {
     /// Point of the surface.
-    pub at: Vec3<'g>,
+    pub point: Vec3<'g>,
     /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
     pub tangents: [Vec3<'g>; 2],
 }

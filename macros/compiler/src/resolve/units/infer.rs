@@ -39,7 +39,7 @@ pub struct Origin<'a> {
     /// Reason for the equation.
     pub reason: Reason<'a>,
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
-    pub at: &'a Expr,
+    pub expression: &'a Expr,
     /// Expression with which it is compared.
     pub compared_with: Option<&'a Expr>,
 }
@@ -49,7 +49,7 @@ pub struct Origin<'a> {
 pub struct Mismatch<'a> {
     /// Origin of the equation.
     pub origin: Origin<'a>,
-    /// Dimension of `origin.at`, or of the second operand.
+    /// Dimension of `origin.expression`, or of the second operand.
     pub found: Dimension,
     /// Expected dimension, or the dimension of the first operand.
     pub expected: Dimension,
@@ -192,7 +192,7 @@ impl<'a> Inference<'a> {
         if anchor == Anchor::Motion && self.are_different(&found, dimension) {
             return Value::Unknown;
         }
-        if !self.equate(&found, dimension, Origin { reason, at: e, compared_with: None }) {
+        if !self.equate(&found, dimension, Origin { reason, expression: e, compared_with: None }) {
             return Value::Unknown;
         }
         if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {

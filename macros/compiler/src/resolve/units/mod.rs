@@ -30,7 +30,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
         let Some((dimension, text)) = si::read(e, cx) else { continue };
-        let origin = Origin { reason: Reason::Unit, at: e, compared_with: None };
+        let origin = Origin { reason: Reason::Unit, expression: e, compared_with: None };
         inference.equate(&Dimension::variable(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
@@ -133,16 +133,16 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     for (k, definition) in definitions.iter().enumerate() {
         let mentioned = mentioned(definition);
         missing.push(mentioned.len());
-        for of in mentioned {
-            if let Some(uses) = uses.get_mut(of) {
+        for used in mentioned {
+            if let Some(uses) = uses.get_mut(used) {
                 uses.push(k);
             }
         }
     }
     let mut order: Vec<usize> = (0..definitions.len()).filter(|k| missing.get(*k) == Some(&0)).collect();
-    let mut at = 0;
-    while let Some(k) = order.get(at).copied() {
-        at += 1;
+    let mut next = 0;
+    while let Some(k) = order.get(next).copied() {
+        next += 1;
         for user in uses.get(k).into_iter().flatten() {
             if let Some(count) = missing.get_mut(*user) {
                 *count -= 1;
@@ -183,27 +183,27 @@ fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
 /// Whether an expression is a product with a single name that determines its dimension. Products with
 /// coordinates or inputs are excluded.
 fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
-    let mut at = e;
-    let mut named = 0;
+    let mut current = e;
+    let mut name_count = 0;
     loop {
-        let (factor, rest) = match &at.kind {
+        let (factor, rest) = match &current.kind {
             ExprKind::Neg(inner) => (None, Some(&**inner)),
             ExprKind::Binary(crate::syntax::BinaryOp::Mul | crate::syntax::BinaryOp::Div, left, right, _) => {
                 (Some(&**right), Some(&**left))
             }
-            _ => (Some(at), None),
+            _ => (Some(current), None),
         };
         match factor.map(|f| &f.kind) {
             None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
             Some(ExprKind::Name(name)) => match inference.names.get(name) {
                 Some(Meaning::Named(_, Anchor::Motion | Anchor::Input)) => return false,
-                found => named += usize::from(found.is_some()),
+                found => name_count += usize::from(found.is_some()),
             },
             Some(_) => return false,
         }
         match rest {
-            Some(rest) => at = rest,
-            None => return named == 1,
+            Some(rest) => current = rest,
+            None => return name_count == 1,
         }
     }
 }

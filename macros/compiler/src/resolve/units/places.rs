@@ -396,7 +396,11 @@ fn input<'a>(
         _ => (direction.unwrap_or(on), Some(input)),
     };
     if let Some(product) = product {
-        inference.equate(&product, force, Origin { reason: Reason::Place, at, compared_with: None });
+        inference.equate(
+            &product,
+            force,
+            Origin { reason: Reason::Place, expression: at, compared_with: None },
+        );
     }
 }
 

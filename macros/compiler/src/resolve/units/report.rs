@@ -23,7 +23,7 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
-        let solid = solid_of(d, mismatch.origin.at);
+        let solid = solid_of(d, mismatch.origin.expression);
         if let Some((call, _)) = &solid {
             if solids.iter().any(|known| std::ptr::eq(*known, *call)) {
                 continue;
@@ -41,7 +41,7 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             } else if error.is_bare() {
                 error.help(missing_factor_help(d, &names));
             }
-            if !names.is_empty() && has_number_as_factor(mismatch.origin.at) {
+            if !names.is_empty() && has_number_as_factor(mismatch.origin.expression) {
                 error.help(NUMBER_WITH_UNIT);
             }
             cx.add(error);
@@ -85,7 +85,7 @@ fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
 /// Collects the names in the expressions of an equation; the compared expressions are first.
 fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     origin.compared_with.iter().for_each(|e| names_in(e, inference, found));
-    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.at.kind, origin.reason) {
+    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.expression.kind, origin.reason) {
         let before = match &left.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, _, before, _) => before,
             _ => left,
@@ -93,7 +93,7 @@ fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<
         names_in(before, inference, found);
         names_in(right, inference, found);
     }
-    names_in(origin.at, inference, found);
+    names_in(origin.expression, inference, found);
 }
 
 /// Collects the parameters and definitions in an expression, each at its first occurrence.
@@ -145,7 +145,7 @@ fn parameter_error(
     let (is, needed) = (describe(&is), describe(&needed));
     if first.reason == Reason::Unit {
         let message = format!("`{name}` is declared as {is}, but used as {needed}");
-        let mut error = Diagnostic::new(first.at.place.clone(), message);
+        let mut error = Diagnostic::new(first.expression.place.clone(), message);
         error.note(format!("it is {needed}{}", location_of(d, here)));
         return Some(error);
     }
@@ -166,9 +166,9 @@ fn mismatch_error(
     let (found, expected) =
         (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
     let (found, expected) = (found?, expected?);
-    let place = match (&mismatch.origin.at.kind, mismatch.origin.reason) {
+    let place = match (&mismatch.origin.expression.kind, mismatch.origin.reason) {
         (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
-        _ => &mismatch.origin.at.place,
+        _ => &mismatch.origin.expression.place,
     };
     let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
     if names.is_empty() {
@@ -198,7 +198,7 @@ fn note_origin(
     let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
         Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", location_of(d, e))),
-        None => diagnostic.note(format!("`{name}` becomes {is}{}", location_of(d, origin.at))),
+        None => diagnostic.note(format!("`{name}` becomes {is}{}", location_of(d, origin.expression))),
     };
 }
 

@@ -71,7 +71,8 @@ impl<'a> Inference<'a> {
         for item in items {
             let value = self.value(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
-            common = self.equate_values(common, value, Origin { reason, at: item, compared_with: first });
+            common =
+                self.equate_values(common, value, Origin { reason, expression: item, compared_with: first });
             first = first.or(is_quantity.then_some(item));
         }
         match common {
@@ -84,12 +85,12 @@ impl<'a> Inference<'a> {
     /// unknown dimension get the expected one, so that an error is reported at the other term.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
-        let mut at = e;
-        while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &at.kind {
-            written.push((Some((Reason::Sum(*op), at)), &**right));
-            at = left;
+        let mut current = e;
+        while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
+            written.push((Some((Reason::Sum(*op), current)), &**right));
+            current = left;
         }
-        written.push((None, at));
+        written.push((None, current));
         let terms: Vec<_> =
             written.into_iter().rev().map(|(sum, term)| (sum, term, self.value(term))).collect();
         let is_anchored = terms.iter().any(|(.., value)| value.anchor() > Anchor::Motion);
@@ -100,15 +101,15 @@ impl<'a> Inference<'a> {
                 self.equate(
                     dimension,
                     expected,
-                    Origin { reason: Reason::Place, at: term, compared_with: None },
+                    Origin { reason: Reason::Place, expression: term, compared_with: None },
                 );
             }
         }
         let mut terms = terms.into_iter();
         let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
-            let (reason, at) = sum.unwrap_or((Reason::Place, term));
-            self.equate_values(total, value, Origin { reason, at, compared_with: None })
+            let (reason, current) = sum.unwrap_or((Reason::Place, term));
+            self.equate_values(total, value, Origin { reason, expression: current, compared_with: None })
         });
         match total {
             Value::Number(_) => Value::Number(f64::NAN),
@@ -120,14 +121,14 @@ impl<'a> Inference<'a> {
     /// are flattened: `a / (2 * b)` is `a / 2 / b`.
     fn product(&mut self, e: &'a Expr) -> Value {
         let mut factors = Vec::new();
-        let mut rest = vec![(false, e)];
-        while let Some((below, at)) = rest.pop() {
-            match &at.kind {
+        let mut waiting = vec![(false, e)];
+        while let Some((below, factor)) = waiting.pop() {
+            match &factor.kind {
                 ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
-                    rest.push((below != (*op == BinaryOp::Div), &**right));
-                    rest.push((below, &**left));
+                    waiting.push((below != (*op == BinaryOp::Div), &**right));
+                    waiting.push((below, &**left));
                 }
-                _ => factors.push((below, self.value(at))),
+                _ => factors.push((below, self.value(factor))),
             }
         }
         let value = self.multiply(&factors);
@@ -228,11 +229,12 @@ impl<'a> Inference<'a> {
             },
             UnitRule::TimeDerivative => match &first.kind {
                 // The rate of a vector in a frame; the frame's name has no dimension.
-                ExprKind::Binary(BinaryOp::Div, of, frame, _) if self.is_frame(frame) => match self.value(of)
-                {
-                    Value::Direction => Value::quantity(RATE),
-                    other => quotient(other, &TIME),
-                },
+                ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
+                    match self.value(vector) {
+                        Value::Direction => Value::quantity(RATE),
+                        other => quotient(other, &TIME),
+                    }
+                }
                 _ => quotient(self.value(first), &TIME),
             },
             UnitRule::Inverse => self.value(first).power(Some(Ratio::integer(-1))),
@@ -343,12 +345,12 @@ impl<'a> Inference<'a> {
 
     /// Infers from the operands between slashes, `y / x`, which may be given by vectors.
     fn points(&mut self, e: &'a Expr) {
-        let mut at = e;
-        while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+        let mut current = e;
+        while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
             self.point(right);
-            at = left;
+            current = left;
         }
-        self.point(at);
+        self.point(current);
     }
 
     /// Infers from a point: `body.at(vector)`.
@@ -363,9 +365,9 @@ impl<'a> Inference<'a> {
 }
 
 /// Returns a quantity divided by another dimension; other values are unchanged.
-fn quotient(value: Value, by: &Dimension) -> Value {
+fn quotient(value: Value, divisor: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.over(by) {
+        Value::Quantity { dimension, anchor } => match dimension.over(divisor) {
             Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },

@@ -55,8 +55,8 @@ impl Arguments {
         let is_unknown = |(name, value): &(Name, ArgumentValue)| {
             !known.contains(&name.text.as_str()) && matches!(value, ArgumentValue::Expr(_))
         };
-        let Some(at) = self.named.iter().position(is_unknown) else { return (place, None) };
-        let (name, value) = self.named.remove(at);
+        let Some(index) = self.named.iter().position(is_unknown) else { return (place, None) };
+        let (name, value) = self.named.remove(index);
         let ArgumentValue::Expr(value) = value else { return (name.place, None) };
         let ends = match (&value.kind, name.text.as_str()) {
             (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => pair(&two[0], &two[1]),

@@ -94,9 +94,9 @@ impl Expr {
     /// Returns this expression and all its subexpressions, outer ones before inner ones.
     pub fn parts(&self) -> Vec<&Expr> {
         let mut parts = vec![self];
-        let mut at = 0;
-        while let Some(part) = parts.get(at) {
-            at += 1;
+        let mut next = 0;
+        while let Some(part) = parts.get(next) {
+            next += 1;
             match &part.kind {
                 ExprKind::Number(_) | ExprKind::Name(_) => {}
                 ExprKind::Field(base, _) | ExprKind::Neg(base) => parts.push(base),
@@ -145,11 +145,11 @@ impl Expr {
     }
 
     /// Returns `of.word(arguments)` at the source position of `of`.
-    pub fn method(of: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
-        let place = of.place.clone();
+    pub fn method(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
+        let place = base.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };
         let member = Member::new(name, arguments.len());
-        Expr { kind: ExprKind::Method(Box::new(of), member, arguments), place }
+        Expr { kind: ExprKind::Method(Box::new(base), member, arguments), place }
     }
 
     /// Returns three numbers as a vector `[a, b, c]` at a source position.
