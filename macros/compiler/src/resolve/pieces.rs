@@ -42,9 +42,9 @@ impl<'g> PiecewiseLaw<'g> {
         self.substitute(0, below) + self.substitute(1, above) - common
     }
 
-    /// Returns the values of both pieces at the border, if they differ for any sample. Samples are used only
-    /// if the nested `nested_borders` borders are in order with this border. Returns `Err` if there are no such
-    /// samples.
+    /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise.
+    /// Samples are used only if the `nested_borders` are in order with this border. Returns `Err` if there
+    /// are no such samples.
     fn gap(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
         let at_border = [0, 1].map(|piece| self.substitute(piece, self.border));
         let mut tried = false;

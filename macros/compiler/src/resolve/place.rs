@@ -320,7 +320,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.register(&body.name.text, link, pose, PlacedKind::Body);
     }
 
-    /// Returns the orientation of link `link` in link `of`.
+    /// Returns the orientation of link `link` in link `base`.
     fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let to_ground = |mut current: Option<LinkId>| {

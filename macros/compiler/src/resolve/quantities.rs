@@ -305,7 +305,7 @@ impl<'g> Kinematics<'g> {
         a
     }
 
-    /// Returns `omega(of / frame)`.
+    /// Returns `omega(body / frame)`.
     pub fn angular_velocity_in(
         &self,
         body: Option<LinkId>,

@@ -45,8 +45,8 @@ impl<'g> Builder<'_, 'g> {
         self.scope.kinematics.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
     }
 
-    /// Returns the joint's frame on the parent, moved by the coordinates of the released joint with the index
-    /// `at` of `count`.
+    /// Returns the joint's frame on the parent, moved by the coordinates of the released joint number `index`
+    /// of `count`.
     pub fn release(
         &mut self,
         index: usize,

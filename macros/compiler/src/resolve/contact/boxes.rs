@@ -329,8 +329,8 @@ impl<'g> Face<'g> {
         [from, to]
     }
 
-    /// Returns a contact midway between a position relative to the centre of the box and the face; `over` is
-    /// the distance between them.
+    /// Returns a contact midway between the face and a position relative to the centre of the box, at this
+    /// distance from the face.
     fn midway_contact(&self, gap: Expr<'g>, place: Vec3<'g>, distance: Expr<'g>) -> PointContact<'g> {
         self.contact(gap, place - self.axes[0] * (distance * 0.5))
     }

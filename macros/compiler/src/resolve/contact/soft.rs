@@ -103,8 +103,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds and returns moments of friction against the angular velocities `turns` about directions. The
-    /// maximum moment is `most` times the normal force. The moment is smaller if `most` times the angular
+    /// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment
+    /// is `coefficient` times the normal force. The moment is smaller if `coefficient` times the angular
     /// velocity is below the regularisation speed.
     fn add_moment(
         &mut self,

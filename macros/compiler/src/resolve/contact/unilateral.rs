@@ -480,7 +480,7 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'
     [lowest, quarter, -lowest, -quarter]
 }
 
-/// Clamps `x` to the interval from `-most` to `most`.
+/// Clamps `x` to the interval from `-limit` to `limit`.
 pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
     x.extreme(Extreme::Max, -limit).extreme(Extreme::Min, limit)
 }

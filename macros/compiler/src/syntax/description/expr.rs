@@ -144,7 +144,7 @@ impl Expr {
         Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b), place.clone()), place }
     }
 
-    /// Returns `of.word(arguments)` at the source position of `of`.
+    /// Returns `base.word(arguments)` at the source position of `base`.
     pub fn method(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
         let place = base.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };
