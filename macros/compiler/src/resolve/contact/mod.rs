@@ -280,8 +280,8 @@ fn sphere_contact<'g>(
 
 /// Returns the farthest point of a convex body along `n`, relative to its centre.
 ///
-/// If `n` is the axis of a rim, all its points are equally far. With a positive `min_sine_squared`, a lower bound on the
-/// squared sine of the angle between axis and `n`, the centre of the rim is returned then.
+/// If `n` is the axis of a rim, all its points are equally far. With a positive `min_sine_squared`, a lower
+/// bound on the squared sine of the angle between axis and `n`, the centre of the rim is returned then.
 fn support_point<'g>(
     form: &SurfaceForm<'g>,
     n: Vec3<'g>,
