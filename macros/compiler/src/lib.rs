@@ -201,7 +201,7 @@ fn model_and_functions<'g>(
 /// ones are not checked, because their errors would only follow from the syntax errors.
 pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
-    if let Some(rest) = reading.rest(description).filter(|_| source.imported) {
+    if let Some(rest) = reading.readable_part(description).filter(|_| source.imported) {
         resolve::build_model(&rest, graph, cx);
     }
 }

@@ -192,7 +192,7 @@ impl Source {
         let facts = self.guess(&outline);
         let mut functions = catalogue::before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
-            if output.touched && !catalogue::has(&output.name, &facts) {
+            if output.has_contact_forces && !catalogue::has(&output.name, &facts) {
                 functions.push(catalogue::touched(&output.name, output.size, &facts));
                 continue;
             }

@@ -5,7 +5,7 @@ use super::item::runtime;
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Need;
 use crate::syntax::Word;
-use crate::syntax::figures::{FileField, FileFieldKind};
+use crate::syntax::file_parameters::{FileField, FileFieldKind};
 use proc_macro2::{Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Result of an import.
 
 use crate::diag::Place;
-use crate::syntax::figures::FileField;
+use crate::syntax::file_parameters::FileField;
 use crate::syntax::{Body, Collision, Constraint, Contact, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 

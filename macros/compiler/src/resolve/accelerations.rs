@@ -1,9 +1,9 @@
-//! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear
-//! in them.
+//! Quantities that depend on accelerations: time derivatives of velocity-dependent expressions, and forces
+//! that are linear in the accelerations.
 
 use super::builder::Builder;
 use super::quantities::{in_links, vector};
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
@@ -14,7 +14,7 @@ use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
-    /// The rate of an expression along the motion.
+    /// Returns the time derivative of a scalar expression along the motion.
     pub fn rate_of_value(
         &self,
         function: &Place,
@@ -36,40 +36,40 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// `rate(vector / frame)`: the rate of a vector or a matrix as seen from a frame, which is that of its
-    /// components there.
+    /// Resolves `rate(vector / frame)`: the time derivative of a vector or a matrix in a frame, that is, of
+    /// its components in that frame.
     pub fn rate_in(
         &self,
         function: &Place,
-        of: &syntax::Expr,
+        argument: &syntax::Expr,
         frame: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let terms = match self.value(of, cx)? {
+        let terms = match self.value(argument, cx)? {
             Value::Vector(terms) => terms,
             Value::Matrix(m) => {
                 let link = self.frame(frame, cx)?;
                 let entries = self.kinematics.borrow().matrix_in(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
-                let rates = self.rates(function, &of.place, &all, cx)?;
-                return Some(Value::Matrix(Resolved {
+                let rates = self.rates(function, &argument.place, &all, cx)?;
+                return Some(Value::Matrix(ResolvedMatrix {
                     link,
                     entries: Mat3::from_fn(|i, j| rates[3 * i + j]),
                 }));
             }
             Value::Scalar(_) => {
-                cx.error(of.place.clone(), "expected a vector, found a scalar")
+                cx.error(argument.place.clone(), "expected a vector, found a scalar")
                     .help("the rate of a scalar needs no frame: `rate(scalar)`");
                 return None;
             }
         };
         let link = self.frame(frame, cx)?;
         let components = self.kinematics.borrow().resolve(&in_links(terms), link, Vec3::zero(self.graph));
-        let rates = self.rates(function, &of.place, &components.0, cx)?;
+        let rates = self.rates(function, &argument.place, &components.0, cx)?;
         Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
 
-    /// The rates of several expressions along the motion.
+    /// Returns the time derivatives of several expressions along the motion.
     fn rates(
         &self,
         function: &Place,
@@ -77,12 +77,13 @@ impl<'g> Scope<'_, 'g> {
         values: &[Expr<'g>],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Expr<'g>>> {
-        let of: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
-        let has = |what: fn(&Quantity) -> bool| of.iter().any(what);
+        let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
+        let has = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
         let is_state = |k: &usize| {
             self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
         };
-        let state = of.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
+        let state =
+            quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
         if let Some(state) = state {
             cx.error(place.clone(), format!("this depends on the state `{}`", state.text)).help(
                 "a rate is known of what depends on coordinates, velocities and time: write the state's own rate",
@@ -119,8 +120,8 @@ impl<'g> Scope<'_, 'g> {
         Some(values.iter().zip(gradients).map(rate).collect())
     }
 
-    /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that
-    /// moves.
+    /// Whether the argument of `rate` is an expression of moving quantities, or the name of a definition,
+    /// instead of a coordinate.
     pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
         match &argument.kind {
             ExprKind::Name(name) => self.definitions.iter().any(|definition| definition.name.text == *name),
@@ -131,43 +132,44 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// A force on a rate, with what of it is linear in the accelerations apart.
+    /// Adds a force on a rate. Terms that are linear in the accelerations are separated from the others.
     pub fn add_value_load(&mut self, rate: Expr<'g>, force: Expr<'g>, place: &Place, cx: &mut Diagnostics) {
         let graph = self.scope.graph;
         let acceleration = |s| match Quantity::of(s) {
             Quantity::Acceleration(k) => Some((s, k)),
             _ => None,
         };
-        let named: Vec<_> = symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
-        if named.is_empty() {
+        let acceleration_symbols: Vec<_> =
+            symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
+        if acceleration_symbols.is_empty() {
             self.model.loads.push(Load { rate, force, dissipative: false });
             return;
         }
         let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).of(force));
         let factors: Vec<(usize, Expr<'g>)> =
-            named.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
+            acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
         let all: Vec<Expr<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
-        let of: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
-        if of.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
+        let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
+        if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
             cx.error(place.clone(), "a force can depend on accelerations linearly alone")
                 .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one of them each");
             return;
         }
-        if of.iter().any(|q| matches!(q, Quantity::Input(_))) {
+        if quantities.iter().any(|q| matches!(q, Quantity::Input(_))) {
             cx.error(place.clone(), "what multiplies an acceleration cannot depend on inputs")
                 .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
             return;
         }
-        let rest = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
-        if !rest.is_zero() {
-            self.model.loads.push(Load { rate, force: rest, dissipative: false });
+        let remainder = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
+        if !remainder.is_zero() {
+            self.model.loads.push(Load { rate, force: remainder, dissipative: false });
         }
         if !factors.is_empty() {
             self.model.acceleration_forces.push(AccelerationForce { rate, factors, place: place.clone() });
         }
     }
 
-    /// A force with a value, at a point: a load for each component.
+    /// Adds a force vector at a point: a load for each component.
     pub fn add_load(&mut self, rate: Vec3<'g>, force: Vec3<'g>, place: &Place, cx: &mut Diagnostics) {
         for k in 0..3 {
             let before = cx.len();
@@ -180,8 +182,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Reports forces linear in accelerations where the forces of constraints and contacts follow from a
-    /// symmetric mass matrix.
+    /// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The
+    /// constraint and contact forces are computed with a symmetric mass matrix.
     pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {
         let Some(force) = self.model.acceleration_forces.first() else { return };
         let found = match (self.model.constraints.is_empty(), self.model.contacts.is_empty()) {

@@ -1,4 +1,4 @@
-//! Directions: unit length is checked, and turning axes are brought onto coordinate axes where numbers allow.
+//! Directions: checks for unit length, and alignment of constant joint axes with coordinate axes.
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -7,7 +7,7 @@ use crate::expr::{Graph, Mat3, Rotation, Vec3};
 use crate::syntax;
 
 impl<'g> Scope<'_, 'g> {
-    /// A direction: a vector of unit length, or normalised if `normalise` says so.
+    /// Returns a direction: a vector of unit length. If `normalise` is set, a constant vector is normalised.
     pub fn unit_vector(&self, e: &syntax::Expr, normalise: bool, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
         if let Some(n) = e.literal().filter(|n| *n != 0.0) {
             let sign = if n < 0.0 { "-" } else { "" };
@@ -42,34 +42,37 @@ fn length(v: [f64; 3]) -> f64 {
     v[0].hypot(v[1]).hypot(v[2])
 }
 
-/// A vector divided by its length; components that are exactly ±1 stay so.
+/// Divides a vector by its length; components that are exactly ±1 are preserved.
 fn normalised(v: [f64; 3]) -> [f64; 3] {
     let norm = length(v);
     v.map(|c| c / norm)
 }
 
-/// For a numeric axis off the coordinate axes: the coordinate axis nearest to it and the rotation that takes
-/// that one to it. Then the joint turns about the coordinate axis, which is cheap, and the rotation is a
-/// constant.
+/// Returns the coordinate axis nearest to a constant axis, and the rotation from that coordinate axis to the
+/// axis. The joint then rotates about the coordinate axis, which is cheap, and the rotation is constant. An
+/// axis that is not constant is returned with the identity.
 pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
     let identity = Rotation::identity(graph);
     let Some(n) = axis.values() else {
         return (axis, identity);
     };
     let k = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
-    let mut near = [0.0; 3];
-    near[k] = n[k].signum();
-    if near == n {
+    let mut nearest = [0.0; 3];
+    nearest[k] = n[k].signum();
+    if nearest == n {
         return (axis, identity);
     }
     // R = 1 + [w]× + [w]×² / (1 + c), w = near × n, c = near · n.
-    let w =
-        [near[1] * n[2] - near[2] * n[1], near[2] * n[0] - near[0] * n[2], near[0] * n[1] - near[1] * n[0]];
-    let c = near[k] * n[k];
+    let w = [
+        nearest[1] * n[2] - nearest[2] * n[1],
+        nearest[2] * n[0] - nearest[0] * n[2],
+        nearest[0] * n[1] - nearest[1] * n[0],
+    ];
+    let c = nearest[k] * n[k];
     let skew = [[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]];
     let matrix = Mat3::from_fn(|i, j| {
         let square: f64 = (0..3).map(|l| skew[i][l] * skew[l][j]).sum();
         graph.num(f64::from(u8::from(i == j)) + skew[i][j] + square / (1.0 + c))
     });
-    (Vec3::numbers(graph, near), Rotation::from_matrix(matrix))
+    (Vec3::numbers(graph, nearest), Rotation::from_matrix(matrix))
 }

@@ -1,4 +1,4 @@
-//! Puts the model together: scope, tree, links, bodies, force elements.
+//! Assembly of the model: scope, tree, links, bodies and force elements.
 
 use super::builder::{Builder, JointedBody};
 use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
@@ -13,21 +13,21 @@ use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-/// Most velocities of a mechanism: beyond it the generated code would be unreasonably large.
+/// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
 const MAX_VELOCITIES: usize = 128;
-/// Parameters that nothing uses: so many are told one by one.
-const TOLD_ONE_BY_ONE: usize = 3;
+/// Maximum number of unused parameters that are reported separately.
+const MAX_SEPARATE_REPORTS: usize = 3;
 
-/// What to do with more.
-const TOO_MANY: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
+/// Help for mechanisms with too many velocities.
+const DIVIDE_HELP: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
 
-/// Most bodies of a mechanism.
+/// Maximum number of bodies of a mechanism.
 const MAX_BODIES: usize = 1024;
 
-/// Speed at which dry friction is regularised, unless given.
+/// Default speed at which dry friction is regularised, m/s.
 const FRICTION_SPEED: f64 = 0.01;
 
-/// Checks a description and builds its model. `None` after a mistake; every mistake is in `cx`.
+/// Checks a description and builds its model. Returns `None` after an error; all errors are in `cx`.
 pub fn build_model<'g>(
     description: &Description,
     graph: &'g Graph,
@@ -44,20 +44,20 @@ pub fn build_model<'g>(
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
-    let joints = reaction::to_release(&model);
+    let joints = reaction::joints_to_release(&model);
     if !joints.is_empty() {
-        let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
+        let released_model = build(description, graph, Some((&joints, &model.constraints)), cx)?;
         for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
-            // What acts on a body follows from its joints being released.
-            let found = same.outputs.iter().find(|other| other.name == output.name);
+            // The forces on a body are the reactions of its released joints.
+            let found = released_model.outputs.iter().find(|other| other.name == output.name);
             found.into_iter().for_each(|found| output.clone_from(found));
         }
-        model.released = Some(Rc::new(Released { model: same, joints }));
+        model.released = Some(Rc::new(Released { model: released_model, joints }));
     }
     Some(model)
 }
 
-/// Builds the model; with released joints it keeps the given constraints.
+/// Builds the model. A model with released joints has only the given constraints.
 fn build<'g>(
     description: &Description,
     graph: &'g Graph,
@@ -72,7 +72,7 @@ fn build<'g>(
             description.name.place.clone(),
             format!("{n} degrees of freedom, more than {MAX_VELOCITIES}"),
         )
-        .help(TOO_MANY);
+        .help(DIVIDE_HELP);
         return None;
     }
     builder.number_released_coordinates(releasing.map_or(&[], |(joints, _)| joints));
@@ -82,14 +82,14 @@ fn build<'g>(
         None => builder.check_joints(cx),
     }
     builder.add_masses(cx);
-    match order.and_then(|order| Some((order, builder.know_motion()?))) {
+    match order.and_then(|order| Some((order, builder.compute_motion()?))) {
         Some((order, moving)) => {
             builder.add_drives(moving, cx);
             builder.add_actions(moving, cx);
             builder.add_limits(cx);
             let solved = builder.add_solved(cx);
             let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
-            builder.know_slipping();
+            builder.record_slipping_power();
             builder.add_contacts(moving, cx);
             builder.check_acceleration_forces(cx);
             builder.add_expressions(constrained, cx);
@@ -118,7 +118,7 @@ fn build<'g>(
     cx.is_empty().then_some(builder.model)
 }
 
-/// A model without contents.
+/// Returns a model without contents.
 fn empty_model<'g>(
     graph: &'g Graph,
     description: &Description,
@@ -209,11 +209,11 @@ impl<'a, 'g> Builder<'a, 'g> {
             speeds: &description.speeds,
             context: Context::new(Allowed::Constant, None).into(),
             kinematics: Kinematics::default().into(),
-            single: description.scalar == ScalarType::F32,
-            unknown: BTreeSet::new().into(),
-            failed: BTreeSet::new().into(),
-            constrains: false.into(),
-            known: BTreeMap::new().into(),
+            is_f32: description.scalar == ScalarType::F32,
+            reported_names: BTreeSet::new().into(),
+            reported_definitions: BTreeSet::new().into(),
+            in_holonomic_constraint: false.into(),
+            definition_values: BTreeMap::new().into(),
             requirements: Vec::new().into(),
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
@@ -251,9 +251,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             solved_loops: Vec::new(),
             releasing: None,
             joint_frames: BTreeMap::new(),
-            applied: Vec::new(),
-            touching: BTreeMap::new(),
-            moved_by_place: Vec::new(),
+            released_forces: Vec::new(),
+            contact_points: BTreeMap::new(),
+            moving_placements: Vec::new(),
             frame_links: Vec::new(),
             partials: Partials::default(),
             group: 0,
@@ -261,7 +261,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// A parameter that nothing uses is most likely a slip; a leading underscore says that it is meant.
+    /// Reports unused parameters, which are most likely typing errors. A leading underscore marks an intended
+    /// one.
     fn check_unused(&self, cx: &mut Diagnostics) {
         if !cx.is_empty() {
             return;
@@ -270,14 +271,14 @@ impl<'a, 'g> Builder<'a, 'g> {
         let unused = self.description.parameters.iter().zip(used.iter());
         let names = self.description.tables.iter().map(|table| &table.name);
         let unused = unused.chain(names.zip(tables.iter()));
-        // A state counts: what it adds up is seen by whoever integrates it.
+        // A state counts as used: its value is visible to the caller that integrates it.
         let is_state = |p: &Name| self.description.states.iter().any(|(state, _)| state.text == p.text);
         let unused = unused.filter(|(p, _)| !is_state(p));
         let unused: Vec<_> =
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
-        // A whole attribute that says nothing of what was meant is one mistake.
+        // Many unused parameters are reported as one error.
         if let [first, rest @ ..] = unused.as_slice()
-            && rest.len() >= TOLD_ONE_BY_ONE
+            && rest.len() >= MAX_SEPARATE_REPORTS
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
             cx.error(first.place.clone(), format!("nothing uses the parameters {}", all_of(&list)))
@@ -291,7 +292,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// Gravity, a vector in ground axes.
+/// Reads gravity, a vector in ground axes.
 fn read_gravity<'g>(
     e: &crate::syntax::Expr,
     scope: &Scope<'_, 'g>,
@@ -302,23 +303,23 @@ fn read_gravity<'g>(
     {
         let (sign, size) = match e.literal() {
             Some(n) => ("-", n.abs().to_string()),
-            None => ("-", e.spelt()),
+            None => ("-", e.to_source()),
         };
         cx.error(e.place.clone(), "expected a vector, found a scalar")
             .help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
         return None;
     }
-    // Its own axes are the ground's.
+    // The expression is in ground axes.
     let mut terms = scope.vector(e, cx)?;
     for (axes, _) in &mut terms {
         if *axes == Axes::Of(GROUND.to_string()) {
             *axes = Axes::Own;
         }
     }
-    scope.own_sum(terms, e, cx)
+    scope.own_axes_sum(terms, e, cx)
 }
 
-/// Reports names that mean something else in expressions.
+/// Reports names that have another meaning in expressions.
 fn check_names(description: &Description, cx: &mut Diagnostics) {
     let written = description.parameters.iter().chain(&description.inputs);
     let written = written.chain(description.coordinates.iter().map(|c| &c.name));

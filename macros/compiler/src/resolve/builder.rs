@@ -1,7 +1,7 @@
-//! The mechanism while it is put together, and what its parts ask of it.
+//! The mechanism under construction, with queries about its elements.
 
-use super::figures::Range;
 use super::joint::full_name;
+use super::range::ValueRange;
 use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{self, Rotation, Vec3};
@@ -12,94 +12,94 @@ use crate::mechanism::{
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
 use std::collections::BTreeMap;
 
-/// What is known of a joint once its coordinates are numbered.
+/// Coordinates of a joint, after numbering.
 pub struct JointCoordinates {
     /// First index in `q`.
     pub q: InQ,
     /// First index in `v`.
     pub v: InV,
-    /// The coordinates that force elements can act on: name, coordinate, whether an angle.
+    /// Coordinates that force elements can act on: name, coordinate, and whether it is an angle.
     pub plain: Vec<(String, Coordinate, bool)>,
 }
 
-/// A loop with the joints that are solved for.
+/// A loop that is solved in closed form, with the joints that are solved for.
 pub struct ClosedFormLoop {
-    /// The joint that closes it.
+    /// Index of the joint that closes the loop.
     pub closing: usize,
-    /// The joints that hold the parent and the child of it.
+    /// Indices of the joints whose children are the parent and the child of the closing joint.
     pub sides: [usize; 2],
 }
 
-/// What a joint can hold: a body, or a particle without a place of its own.
+/// A body that can be the child of a joint: a body, or a particle without a position of its own.
 pub struct JointedBody<'a> {
-    /// Its name.
+    /// Name of the body or particle.
     pub name: &'a Name,
 }
 
-/// Index into bodies and jointed particles together.
+/// Index into the list of bodies and jointed particles.
 pub type BodyIndex = usize;
 
 /// The model under construction.
 pub struct Builder<'a, 'g> {
-    /// Where names are looked up.
+    /// Scope for the resolution of names.
     pub scope: Scope<'a, 'g>,
-    /// What is built.
+    /// Model built so far.
     pub model: Model<'g>,
-    /// What the user wrote.
+    /// Description written by the user.
     pub description: &'a Description,
     /// Bodies and jointed particles.
     pub jointed: Vec<JointedBody<'a>>,
-    /// Their placement, once known.
+    /// Link and pose on it by body, once resolved.
     pub places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
-    /// Names of everything that has a place or axes.
+    /// Names of all elements that have a position or axes.
     pub placeable: Vec<String>,
-    /// By body: mass, centre of mass, central inertia.
+    /// Mass, centre of mass and central inertia by body.
     pub masses: Vec<Option<MassProperties<'g>>>,
-    /// By joint.
+    /// Coordinates by joint.
     pub coordinates: Vec<JointCoordinates>,
     /// Loops that are solved in closed form.
     pub solved_loops: Vec<ClosedFormLoop>,
-    /// Joints to be released, and the names of the constraints that a mechanism with released joints keeps.
+    /// Joints to release, and the constraints that the mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
-    /// By joint of the tree its frame on the parent, and by body that is placed its own, before they are
-    /// released.
+    /// Frame of each tree joint on its parent before the release, by joint. Bodies placed by `at` and `frame`
+    /// have their own frame here.
     pub joint_frames: BTreeMap<usize, Placed<'g>>,
-    /// By force element, energy and dissipation: its generalized forces on the coordinates of released
-    /// joints.
-    pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
-    /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and
-    /// what carries them.
-    pub moved_by_place: Vec<(usize, Option<LinkId>)>,
-    /// Links of frames that move with respect to what they start from.
+    /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
+    /// dissipation.
+    pub released_forces: Vec<(String, Vec<expr::Expr<'g>>)>,
+    /// Bodies and particles placed by a moving `at` or `frame`: index among the releasable joints, and the
+    /// link that carries them.
+    pub moving_placements: Vec<(usize, Option<LinkId>)>,
+    /// Links of frames that move relative to the link in which they are defined.
     pub frame_links: Vec<LinkId>,
-    /// By constraint of surfaces that touch at a point: where, from the ground's origin.
-    pub touching: BTreeMap<String, Terms<'g>>,
-    /// Derivatives of the places of the links so far.
+    /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.
+    pub contact_points: BTreeMap<String, Terms<'g>>,
+    /// Partial derivatives of the poses of the links so far.
     pub partials: Partials<'g>,
-    /// Number of the group of constraints that is being added.
+    /// Index of the group of constraints that is being added.
     pub group: usize,
-    /// Mistakes that only the motion shows: they are told together with those of units.
+    /// Errors that depend on the motion; they are reported together with errors of units.
     pub mobility: Diagnostics,
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The loop that solves for a joint.
+    /// Returns the loop that solves for a joint.
     pub fn solving_loop(&self, j: usize) -> Option<&ClosedFormLoop> {
         self.solved_loops.iter().find(|e| e.sides.contains(&j))
     }
 
-    /// Index of a body or jointed particle.
+    /// Returns the index of a body or jointed particle.
     pub fn jointed_index(&self, name: &str) -> Option<usize> {
         self.jointed.iter().position(|h| h.name.text == name)
     }
 
-    /// The coordinates of a joint that force elements can act on; `None` if there is no such joint.
+    /// Returns the coordinates of a joint that force elements can act on; `None` if the joint does not exist.
     pub fn joint_coordinates(&self, name: &str) -> Option<Vec<(String, Coordinate, bool)>> {
         let j = self.description.joints.iter().position(|j| j.name.text == name)?;
         Some(self.coordinates[j].plain.clone())
     }
 
-    /// True for the name of a coordinate that is an angle.
+    /// Whether an expression is the name of a coordinate that is an angle.
     pub fn is_angle(&self, e: &Expr) -> bool {
         let name = match &e.kind {
             ExprKind::Name(name) => name.clone(),
@@ -110,16 +110,16 @@ impl<'g> Builder<'_, 'g> {
         kinematics.coordinates.iter().any(|(known, _, angle)| *known == name && *angle)
     }
 
-    /// Names of all joints.
+    /// Returns the names of all joints.
     pub fn joint_names(&self) -> Vec<String> {
         self.description.joints.iter().map(|j| j.name.text.clone()).collect()
     }
 
-    /// The joint's frame on the body of one of its ends.
+    /// Returns the frame of a joint on the body of one of its ends.
     pub fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
-                let range = Range::of(&self.description.scalar);
+                let range = ValueRange::of_scalar(&self.description.scalar);
                 let place = || format!("the place of a joint on `{}`", end.body.text);
                 v.0.iter().for_each(|c| self.scope.require(Rule::Length, place, &[*c]));
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
@@ -130,9 +130,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Pose { rotation: rotation?, translation: translation? })
     }
 
-    /// A place for what has a mistake, with figures that nothing else has: where it should have been does not
-    /// matter.
-    pub fn somewhere(&self, moves: bool) -> Pose<'g> {
+    /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
+    pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
         let g = self.scope.graph;
         let mut translation = Vec3::numbers(g, [0.731, 0.417, 0.593]);
         if moves {
@@ -141,7 +140,8 @@ impl<'g> Builder<'_, 'g> {
         Pose { rotation: Rotation::identity(g), translation }
     }
 
-    /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
+    /// Adds a massless link for a placement that moves, and returns the link. A constant placement is
+    /// returned unchanged.
     pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
         let moves = symbols_in(&pose.entries())
             .into_iter()
@@ -166,12 +166,12 @@ impl<'g> Builder<'_, 'g> {
         LinkId(self.model.links.len() - 1)
     }
 
-    /// Makes a place known by its name.
+    /// Registers a placement under its name.
     pub fn register(&self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
         self.scope.kinematics.borrow_mut().places.insert(name.to_string(), Placed { link, pose, kind });
     }
 
-    /// The parent of a joint: a body, or a point.
+    /// Returns the placement of the parent of a joint: a body or a point.
     pub fn joint_parent(&self, name: &Name, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         if name.text == GROUND {
             return Some((None, Pose::identity(self.scope.graph)));

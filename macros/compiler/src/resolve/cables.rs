@@ -1,4 +1,4 @@
-//! Cables that run around spheres and cylinders.
+//! Cables around spheres and cylinders.
 
 use super::call::{Call, flatten};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
@@ -14,27 +14,27 @@ const CYLINDER: Option<Method> = Some(Method::Surface(SurfaceId::Cylinder));
 const DRUM: Option<Method> = Some(Method::Surface(SurfaceId::Drum));
 
 impl<'g> Scope<'_, 'g> {
-    /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut
-    /// cable between two points, laid around a surface where that stands in its way.
+    /// Resolves `cable(a / b, drum.cylinder(radius, axis))` and `cable(a / b, ball.sphere(radius))`: the
+    /// length of a taut cable between two points, wrapped around the surface if the surface is in its path.
     ///
-    /// Around a cylinder it turns about the axis from `a` to `b`, by less than a full turn. Across the axis
-    /// the points have distances `d`, and lie at an angle `θ` from each other; what touches is
-    /// `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents and a
-    /// helix, which is straight on the unrolled cylinder; elsewhere it is straight.
+    /// A cable around a cylinder winds about the axis from `a` to `b`, by less than a full revolution. The
+    /// points have the distances `d_a` and `d_b` from the axis and the angle `θ` between them. The angle of
+    /// contact is `φ = θ − acos(R / d_a) − acos(R / d_b)`. If it is positive, the cable consists of tangents
+    /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
     pub fn cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of, surface] = call.take(cx)?;
-        let Ok(ends) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [points, surface] = call.take(cx)?;
+        let Ok(ends) = <[_; 2]>::try_from(flatten(points)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }
-        let (frame, radius, axis) = self.round(surface, cx)?;
-        let [a, b] = ends.map(|end| self.place_now(end, cx));
+        let (frame, radius, axis) = self.cable_surface(surface, cx)?;
+        let [a, b] = ends.map(|end| self.current_place(end, cx));
         let (a, b) = (a?, b?);
         let kinematics = self.kinematics.borrow();
-        let from = |p: &Placed<'g>| {
-            kinematics.resolve(&kinematics.between(p, &frame), frame.link, Vec3::zero(self.graph))
+        let from_center = |p: &Placed<'g>| {
+            kinematics.resolve(&kinematics.position_between(p, &frame), frame.link, Vec3::zero(self.graph))
         };
-        let (a, b) = (from(&a), from(&b));
+        let (a, b) = (from_center(&a), from_center(&b));
         let (across, rise) = match axis {
             None => ([a, b], self.graph.zero()),
             Some(n) => {
@@ -51,25 +51,25 @@ impl<'g> Scope<'_, 'g> {
             None => (a.cross(b).length(), a.dot(b)),
             Some(n) => (frame.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
         };
-        // Around a cylinder from zero to a full turn.
+        // Around a cylinder, between zero and a full revolution.
         let angle = match axis {
             None => sine.atan2(cosine),
             Some(_) => (-sine).atan2(-cosine) + self.graph.num(PI),
         };
         let square = radius.square();
         let tangents = [a, b].map(|p| (p.dot(p) - square).sqrt());
-        let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
-        let wound = tangents[0] + tangents[1] + radius * touched;
+        let contact_angle = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
+        let wrapped = tangents[0] + tangents[1] + radius * contact_angle;
         let straight = (a - b).length();
-        // One where it touches, zero elsewhere; its derivative is zero.
-        let touches = touched.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
-        let flat = straight + touches * (wound - straight);
+        // One if the cable touches, otherwise zero. The derivative is zero.
+        let touches = contact_angle.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
+        let flat = straight + touches * (wrapped - straight);
         let length = if rise.is_zero() { flat } else { (flat.square() + rise.square()).sqrt() };
         Some(Value::Scalar(length))
     }
 
-    /// A sphere or a cylinder of a body: its place, its radius and its axis.
-    fn round(
+    /// Returns the pose, the radius and the axis of a sphere or cylinder; a sphere has no axis.
+    fn cable_surface(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -119,19 +119,19 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Reports an end of a cable that lies inside of what the cable runs around wherever the mechanism is.
+/// Reports an end of a cable that lies inside the surface in all configurations.
 fn check_outside(
     end: &syntax::Expr,
     across: Vec3<'_>,
     radius: Expr<'_>,
-    round: bool,
+    is_cylinder: bool,
     cx: &mut Diagnostics,
 ) -> Option<()> {
     let (Some(square), Some(radius)) = (across.dot(across).value(), radius.value()) else { return Some(()) };
     if square >= radius * radius {
         return Some(());
     }
-    let (surface, middle) = if round { ("cylinder", "axis") } else { ("sphere", "centre") };
+    let (surface, middle) = if is_cylinder { ("cylinder", "axis") } else { ("sphere", "centre") };
     cx.error(end.place.clone(), format!("this end of the cable lies inside of the {surface}"))
         .help(format!("it is {:.4} m from the {middle}, and the radius is {radius} m", square.sqrt()));
     None

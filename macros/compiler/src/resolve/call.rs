@@ -1,4 +1,4 @@
-//! Calls of functions of the language, with their arguments as written.
+//! Calls of functions of the language, with their unresolved arguments.
 
 use crate::diag::{Diagnostics, Place};
 use crate::language::FunctionId;
@@ -7,11 +7,11 @@ use crate::syntax::{self, BinaryOp, ExprKind};
 /// A call of a function of the language.
 #[derive(Clone, Copy)]
 pub struct Call<'a> {
-    /// The function.
+    /// Function that is called.
     pub id: FunctionId,
-    /// Position of its name.
+    /// Source span of the name.
     pub place: &'a Place,
-    /// The arguments as written.
+    /// Arguments as written.
     pub arguments: &'a [syntax::Expr],
 }
 
@@ -33,22 +33,22 @@ impl<'a> Call<'a> {
         self.arguments.try_into().ok().or_else(|| self.reject(cx))
     }
 
-    /// Returns the parts between the slashes of the only argument, `y / x / A`; nothing if there are several
+    /// Returns the operands between the slashes of the only argument, `y / x / A`; empty if there are several
     /// arguments.
     pub fn parts(&self) -> Vec<&'a syntax::Expr> {
         if let [one] = self.arguments { flatten(one) } else { Vec::new() }
     }
 }
 
-/// Returns the parts of `a / b / c`.
+/// Returns the operands of `a / b / c`.
 pub fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
-    let mut at = e;
-    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+    let mut current = e;
+    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
         parts.push(&**right);
-        at = left;
+        current = left;
     }
-    parts.push(at);
+    parts.push(current);
     parts.reverse();
     parts
 }

@@ -1,30 +1,29 @@
-//! Which particles carry something, so that their axes matter: those from which a place, a direction or a
-//! joint starts.
+//! Particles whose axes matter because a position, a direction or a joint is defined relative to them.
 
 use crate::syntax::{Description, Expr, ExprKind, Target};
 
-/// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what
-/// acts on it.
-pub fn carries(d: &Description, name: &str) -> bool {
+/// Whether the axes of a particle are used: by a joint on it, by `name.at(…)` or `name.x`, or by a force on
+/// it.
+pub fn uses_axes(d: &Description, name: &str) -> bool {
     let is_name = |e: &Expr| e.name() == Some(name);
-    let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));
+    let acts_on_particle = |target: &Target| matches!(target, Target::On(e) if is_name(e));
     d.joints.iter().any(|joint| joint.parent.body.text == name)
         || d.points.iter().filter_map(|p| p.on.as_ref()).any(is_name)
         || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(is_name)
         || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(is_name)
-        || d.actions.iter().any(|action| on(&action.on))
-        || expressions(d).into_iter().any(|e| names_axes(e, name))
+        || d.actions.iter().any(|action| acts_on_particle(&action.on))
+        || expressions(d).into_iter().any(|e| contains_axes_of(e, name))
 }
 
-/// `name.at(…)` or `name.x` somewhere in an expression.
-fn names_axes(e: &Expr, name: &str) -> bool {
+/// Whether an expression contains `name.at(…)` or `name.x`.
+fn contains_axes_of(e: &Expr, name: &str) -> bool {
     e.parts().into_iter().any(|part| match &part.kind {
         ExprKind::Field(base, _) | ExprKind::Method(base, ..) => base.name() == Some(name),
         _ => false,
     })
 }
 
-/// The expressions in which places can be named.
+/// Returns the expressions that can contain positions.
 pub fn expressions(d: &Description) -> Vec<&Expr> {
     let mut all: Vec<&Expr> = Vec::new();
     all.extend(d.bodies.iter().filter_map(|b| b.at.as_ref()));

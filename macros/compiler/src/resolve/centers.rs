@@ -1,5 +1,5 @@
-//! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is
-//! a vector from a place of the body.
+//! Characteristic points of a motion: instantaneous centres, the screw axis, the centre of percussion. Each
+//! is a vector from the origin of the body or a point of it.
 
 use super::call::{Call, flatten};
 use super::quantities::vector;
@@ -10,20 +10,20 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax;
 
-/// The motion of a body with respect to a frame, in the axes of the body's link.
+/// Motion of a body relative to a frame, in the axes of the body's link.
 struct Relative<'g> {
     link: Option<LinkId>,
     /// Velocity of the body's origin.
     v: Vec3<'g>,
     /// Angular velocity.
     w: Vec3<'g>,
-    /// Acceleration of the body's origin, and angular acceleration, where they are asked for.
+    /// Acceleration of the body's origin and angular acceleration, if requested.
     rates: Option<[Vec3<'g>; 2]>,
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `instant_center(body / frame)`: the vector from the body's origin to the point at rest, `ω × v / ω²`
-    /// with the velocity `v` of the origin.
+    /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest,
+    /// `ω × v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
@@ -35,23 +35,23 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
-    /// `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the screw axis
-    /// (Mozzi, Chasles), `ω × v / ω²`.
+    /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
+    /// screw axis (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
-    /// `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
+    /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(Value::Scalar(w.dot(v) / square))
     }
 
-    /// `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to the point
-    /// without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
+    /// Resolves `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to
+    /// the point without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, w, rates, .. } = self.relative(call, Allowed::Acceleration, cx)?;
         let [a, alpha] = rates?;
@@ -65,7 +65,8 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(vec![(link, center)]))
     }
 
-    /// Reads the motion of a body that rotates relative to a frame, with accelerations where they are allowed.
+    /// Returns the motion of a body that rotates relative to a frame, with accelerations if `allowed`
+    /// includes them.
     fn relative(&self, call: &Call<'_>, allowed: Allowed, cx: &mut Diagnostics) -> Option<Relative<'g>> {
         let Ok([body, frame]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
         if !self.check_allowed(allowed, &format!("`{}(…)`", call.name()), call.place, cx) {
@@ -75,7 +76,7 @@ impl<'g> Scope<'_, 'g> {
         if motion.w.is_zero() {
             cx.error(
                 body.place.clone(),
-                format!("`{}` does not turn with respect to `{}`", body.spelt(), frame.spelt()),
+                format!("`{}` does not turn with respect to `{}`", body.to_source(), frame.to_source()),
             )
             .help("what moves without turning has no centre: all its points move alike");
             return None;
@@ -90,42 +91,43 @@ impl<'g> Scope<'_, 'g> {
         accelerates: bool,
         cx: &mut Diagnostics,
     ) -> Option<Relative<'g>> {
-        let (of, by) = (self.frame(body, cx), self.frame(frame, cx));
+        let (body_link, frame_link) = (self.frame(body, cx), self.frame(frame, cx));
         let place = self.place(body, cx);
-        let (_, by, place) = (of?, by?, place?);
+        let (_, frame_link, place) = (body_link?, frame_link?, place?);
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (place.link, Vec3::zero(self.graph));
-        // Any point that the frame carries.
-        let from = Placed { link: by, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
+        // Any point fixed in the frame.
+        let from = Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
         let here = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
-            let a = kinematics.acceleration_in(&place, &from, by, self.graph);
-            [here(&a), here(&kinematics.turning_rate(link, by, by, self.graph))]
+            let a = kinematics.acceleration_in(&place, &from, frame_link, self.graph);
+            [here(&a), here(&kinematics.angular_acceleration_in(link, frame_link, frame_link, self.graph))]
         });
         Some(Relative {
             link,
-            v: here(&kinematics.velocity_in(&place, &from, by, self.graph)),
-            w: here(&kinematics.turning_in(link, by, self.graph)),
+            v: here(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
+            w: here(&kinematics.angular_velocity_in(link, frame_link, self.graph)),
             rates,
         })
     }
 
-    /// `center_of_percussion(body / point, axis)`: the vector from a point, about which a body turns, to
-    /// where a blow across the arm to its centre of mass leaves the point at rest. With the arm `r` across
-    /// the axis `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
+    /// Resolves `center_of_percussion(body / point, axis)`: the vector from the point to the centre of
+    /// percussion of a body that rotates about an axis through the point. An impulse there, perpendicular to
+    /// the arm to the centre of mass, leaves the point at rest. With the arm `r` perpendicular to the axis
+    /// `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of, axis] = call.take(cx)?;
-        let Ok([body, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands, axis] = call.take(cx)?;
+        let Ok([body, about]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }
-        let heavy = self.heavy(body, cx)?;
-        let about = self.place_now(about, cx)?;
+        let body_with_mass = self.body_with_mass(body, cx)?;
+        let about = self.current_place(about, cx)?;
         let n = self.terms(axis, cx)?;
         let kinematics = self.kinematics.borrow();
-        let (placed, (mass, com, central)) = &heavy;
+        let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
-            cx.error(body.place.clone(), format!("`{}` has no mass", body.spelt()))
+            cx.error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
                 .help("name a body with a `mass`");
             return None;
         }
@@ -133,14 +135,14 @@ impl<'g> Scope<'_, 'g> {
         let length = kinematics.resolve(&n, link, zero).length();
         let n: Terms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
         let pose = Pose { translation: placed.pose.point(*com), ..placed.pose.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, &about);
-        let [axis_here, arm] = [&n, &between].map(|terms| kinematics.resolve(terms, link, zero));
+        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
+        let [axis_here, arm] = [&n, &offset].map(|terms| kinematics.resolve(terms, link, zero));
         drop(kinematics);
         let arm = arm + -(axis_here * axis_here.dot(arm));
         if vanishes(arm) {
             cx.error(
                 call.place.clone(),
-                format!("the centre of mass of `{}` lies on this axis", body.spelt()),
+                format!("the centre of mass of `{}` lies on this axis", body.to_source()),
             )
             .help(
                 "there is no centre of percussion then: a couple turns the body without a force at the axis",
@@ -151,20 +153,20 @@ impl<'g> Scope<'_, 'g> {
         if !vanishes((central * axis_here).cross(axis_here)) {
             cx.error(
                 axis.place.clone(),
-                format!("this axis is no principal axis of inertia of `{}`", body.spelt()),
+                format!("this axis is no principal axis of inertia of `{}`", body.to_source()),
             )
             .help(
                 "a blow then pushes against the bearings wherever it falls: there is no centre of percussion",
             );
             return None;
         }
-        let moment = self.inertia_about(&heavy, &about, [&n, &n]);
+        let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector(vec![(link, arm * share)]))
     }
 }
 
-/// True for a vector that is zero for all values of what it depends on.
+/// Whether a vector is zero for all values of its symbols.
 fn vanishes(v: Vec3<'_>) -> bool {
     v.0.iter().all(|c| always(*c, 0.0))
 }

@@ -1,4 +1,4 @@
-//! Joints: each becomes a chain of links, one for each elementary motion.
+//! Joints as chains of links, one link per elementary motion.
 
 use super::builder::Builder;
 use super::elementary::Elementary;
@@ -10,14 +10,14 @@ use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, P
 use crate::syntax::Joint;
 
 impl<'g> Builder<'_, 'g> {
-    /// Resolves what the joints say although the tree is broken, so that all mistakes are reported at once.
+    /// Resolves the arguments of all joints although the tree is broken, to report all errors at once.
     pub fn check_joints(&self, cx: &mut Diagnostics) {
         for joint in &self.description.joints {
             self.check_joint(joint, cx);
         }
     }
 
-    /// Resolves what one joint says, for its mistakes alone.
+    /// Resolves the arguments of a joint only to report their errors.
     pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
         let _ = self.scope.motions(joint, cx);
         let _ = self.endpoint(&joint.parent, cx);
@@ -32,21 +32,21 @@ impl<'g> Builder<'_, 'g> {
         let start = self.joint_parent(&joint.parent.body, cx);
         // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::default_motions(self.scope.graph, joint));
-        let on_parent = on_parent.unwrap_or_else(|| self.somewhere(false));
-        let on_child = on_child.unwrap_or_else(|| self.somewhere(false));
+        let on_parent = on_parent.unwrap_or_else(|| self.substitute_pose(false));
+        let on_child = on_child.unwrap_or_else(|| self.substitute_pose(false));
         if let Some((link, pose)) = start {
             let frame = pose.then(&on_parent);
-            self.transmit(j, link, &frame.rotation);
+            self.record_transmission(j, link, &frame.rotation);
             let placed = Placed { link, pose: frame.clone(), kind: PlacedKind::Body };
             self.joint_frames.insert(j, placed);
             let (joints, _) = self.releasing.unwrap_or_default();
             let (link, frame) = match joints.iter().position(|open| *open == j) {
-                Some(at) => self.release(at, joints.len(), link, frame),
+                Some(index) => self.release(index, joints.len(), link, frame),
                 None => (link, frame),
             };
             let (link, pose) = match self.solving_loop(j) {
                 Some(_) => {
-                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.somewhere(true));
+                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.substitute_pose(true));
                     self.link_if_moving(link, frame.then(&solved))
                 }
                 None => self.add_chain(j, &motions, link, frame),
@@ -60,7 +60,7 @@ impl<'g> Builder<'_, 'g> {
         self.add_passive(j, joint, cx);
     }
 
-    /// Adds one link for each motion; returns the last link and the joint's child frame on it.
+    /// Adds one link for each motion. Returns the last link and the joint's child frame on it.
     fn add_chain(
         &mut self,
         j: usize,
@@ -81,26 +81,26 @@ impl<'g> Builder<'_, 'g> {
         (link, pose)
     }
 
-    /// Damping, friction and motor of a joint itself.
+    /// Adds damping, friction and motor of a joint with one degree of freedom.
     fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
-        let [(name, on, _)] = self.coordinates[j].plain.as_slice() else {
+        let [(name, coordinate, _)] = self.coordinates[j].plain.as_slice() else {
             return;
         };
-        let (name, on) = (name.clone(), *on);
+        let (name, coordinate) = (name.clone(), *coordinate);
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
         for (value, what) in [(damping, "damping"), (friction, "friction")] {
-            let figure = || format!("the {what} of `{}`", joint.name.text);
-            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, figure, &[*value]));
+            let quantity = || format!("the {what} of `{}`", joint.name.text);
+            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, quantity, &[*value]));
         }
-        self.model.dashpots.extend(damping.map(|damping| Dashpot { on, damping }));
-        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on, friction }));
+        self.model.dashpots.extend(damping.map(|damping| Dashpot { on: coordinate, damping }));
+        self.model.frictions.extend(friction.map(|friction| CoulombFriction { on: coordinate, friction }));
         if joint.driven && joint.mimic.is_none() {
-            self.model.inputs.push((name, Input::Coordinate(on)));
+            self.model.inputs.push((name, Input::Coordinate(coordinate)));
         }
     }
 
-    /// True if every body has its place.
+    /// Whether every body has been placed.
     pub fn is_placed(&self) -> bool {
         self.places.iter().all(Option::is_some)
     }

@@ -1,7 +1,7 @@
-//! Loops that are solved in closed form: a Pin closes a loop in a plane between two bodies that are held by
-//! Pins, or by a Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of
-//! two circles, or of a circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI);
-//! `branch` says which of two.
+//! Loops that are solved in closed form: a Pin closes a planar loop between two bodies, each of which is the
+//! child of a Pin or a Sleeve (at most one Sleeve). The coordinates of these two joints become expressions of
+//! the other coordinates, by the intersection of two circles, or of a circle and a line (Bottema and Roth,
+//! *Theoretical Kinematics*, 1979, ch. XI). The argument `branch` selects one of the two assembly modes.
 
 use super::builder::{Builder, ClosedFormLoop};
 use super::elementary::Elementary;
@@ -15,23 +15,23 @@ use crate::kinematics::{change_axes, perpendicular};
 use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
-/// A side of a loop where its joint is at zero, in the axes of the first side's joint.
+/// A side of a loop with its joint coordinate at zero, in the axes of the first side's joint.
 struct Side<'g> {
-    /// Origin of the joint, from that of the first.
+    /// Origin of the joint, relative to that of the first joint.
     base: Vec3<'g>,
-    /// The point that the loop closes in, from the origin.
+    /// Closing point of the loop, relative to the joint's origin.
     point: Vec3<'g>,
-    /// Direction of a slide; none for a Pin.
+    /// Sliding direction; `None` for a Pin.
     slide: Option<Vec3<'g>>,
 }
 
-/// That the joints which loops are solved for are known. Comes of [`Builder::add_solved`] alone.
+/// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
 pub struct Solved(());
 
-const HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
+const CLOSED_FORM_HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
 
-/// The loops whose joints name a branch.
-pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
+/// Returns the loops whose closing joint has a `branch`, and reports joints for which that is not allowed.
+pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
     let mut found: Vec<ClosedFormLoop> = Vec::new();
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
@@ -46,20 +46,21 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Clos
             };
             d.joints.iter().enumerate().find(holds).map(|(k, _)| k)
         };
-        let taken = |k: usize| found.iter().any(|e| e.sides.contains(&k));
-        let solved = |k: &usize| {
+        let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
+        let can_be_solved = |k: &usize| {
             matches!(d.joints[*k].kind, JointKind::Pin | JointKind::Sleeve)
                 && d.joints[*k].mimic.is_none()
-                && !taken(*k)
+                && !is_in_other_loop(*k)
         };
-        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(solved));
+        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         match (joint.kind, sides) {
             (JointKind::Pin, [Some(a), Some(b)]) if a != b && pins > 0 => {
                 found.push(ClosedFormLoop { closing: j, sides: [a, b] });
             }
             _ => {
-                cx.error(branch.place.clone(), "this loop is not solved in closed form").help(HELP);
+                cx.error(branch.place.clone(), "this loop is not solved in closed form")
+                    .help(CLOSED_FORM_HELP);
             }
         }
     }
@@ -67,7 +68,7 @@ pub fn find(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<Clos
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Makes known which motions of which joints are solved for.
+    /// Records the joints that are solved for, with their axes.
     pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
         let side = |j: &usize| {
             let joint = &self.description.joints[*j];
@@ -78,7 +79,7 @@ impl<'g> Builder<'_, 'g> {
         Solved(())
     }
 
-    /// The child's joint frame in the parent's frame: the joint at its solution.
+    /// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.
     pub fn solved_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let ClosedFormLoop { closing, sides } = self.solving_loop(j)?;
         let joint = &self.description.joints[*closing];
@@ -88,50 +89,51 @@ impl<'g> Builder<'_, 'g> {
             cx.error(place.clone(), "unknown branch").help("write `branch = 1` or `branch = -1`");
             return None;
         }
-        // The first side is a Pin; its joint's axes are those of all that follows.
+        // The first side is a Pin; all following vectors are in the axes of its joint.
         let pin = usize::from(self.description.joints[sides[0]].kind != JointKind::Pin);
         let (first, second) = (sides[pin], sides[1 - pin]);
         let (frame, axis) = self.joint_frame(first, cx)?;
         let ends = [&joint.parent, &joint.child];
         let a = self.side(first, ends[pin], &frame, cx)?;
         let b = self.side(second, ends[1 - pin], &frame, cx)?;
-        let (away, other) = self.joint_frame(second, cx)?;
-        let normal = self.seen_from(&frame, away.link, away.pose.rotation.to_parent(other));
-        let still = |e: Expr<'g>| always(e, 0.0);
+        let (second_frame, second_axis) = self.joint_frame(second, cx)?;
+        let normal =
+            self.in_frame(&frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
+        let vanishes = |e: Expr<'g>| always(e, 0.0);
         let in_plane = match b.slide {
-            None => normal.cross(axis).0.iter().all(|e| still(*e)),
-            Some(slide) => still(slide.dot(axis)),
+            None => normal.cross(axis).0.iter().all(|e| vanishes(*e)),
+            Some(slide) => vanishes(slide.dot(axis)),
         };
-        if !in_plane || !still((b.base + b.point - a.point).dot(axis)) {
-            cx.error(place.clone(), "this loop does not lie in one plane").help(HELP);
+        if !in_plane || !vanishes((b.base + b.point - a.point).dot(axis)) {
+            cx.error(place.clone(), "this loop does not lie in one plane").help(CLOSED_FORM_HELP);
             return None;
         }
         let [(_, e1), (_, e2)] = perpendicular(axis);
-        let flat = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
-        let meeting = meeting(&a, &b, branch, &flat);
+        let planar = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
+        let closing_point = closing_point(&a, &b, branch, &planar);
         if j == first {
-            let angle = turned(flat(a.point), meeting);
-            return Some(self.turn(axis, angle));
+            let angle = angle_between(planar(a.point), closing_point);
+            return Some(self.rotation_pose(axis, angle));
         }
-        let reached = e1 * meeting[0] + e2 * meeting[1] - b.base;
+        let reached = e1 * closing_point[0] + e2 * closing_point[1] - b.base;
         Some(match b.slide {
-            // In the axes of the second joint, a slide by what is missing.
+            // Slide by the remaining distance, in the axes of the second joint.
             Some(slide) => {
                 let length = (reached - b.point).dot(slide);
-                Pose { rotation: Rotation::identity(self.scope.graph), translation: other * length }
+                Pose { rotation: Rotation::identity(self.scope.graph), translation: second_axis * length }
             }
             None => {
                 let sense = normal.dot(axis);
-                self.turn(other, turned(flat(b.point), flat(reached)) * sense)
+                self.rotation_pose(second_axis, angle_between(planar(b.point), planar(reached)) * sense)
             }
         })
     }
 
-    fn turn(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
+    fn rotation_pose(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
         Pose { rotation: Rotation::eigenaxis(axis, angle), translation: Vec3::zero(self.scope.graph) }
     }
 
-    /// A joint's frame on its parent, and its axis there.
+    /// Returns the frame of a joint on its parent, and its axis in that frame.
     fn joint_frame(&self, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
         let joint = &self.description.joints[j];
         let (link, pose) = self.joint_parent(&joint.parent.body, cx)?;
@@ -145,56 +147,57 @@ impl<'g> Builder<'_, 'g> {
 
     fn side(&self, j: usize, end: &Endpoint, frame: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
         let joint = &self.description.joints[j];
-        let (own, axis) = self.joint_frame(j, cx)?;
+        let (joint_frame, axis) = self.joint_frame(j, cx)?;
         let on_child = self.endpoint(&joint.child, cx)?;
         let closing = self.endpoint(end, cx)?.translation;
         let point = on_child.inverse().point(closing);
-        let out = |v| self.seen_from(frame, own.link, own.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.borrow().between(&own, frame);
+        let in_first_frame =
+            |v| self.in_frame(frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
+        let terms = self.scope.kinematics.borrow().position_between(&joint_frame, frame);
         let zero = Vec3::zero(self.scope.graph);
-        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(frame, *link, *v));
-        let slide = (joint.kind == JointKind::Sleeve).then(|| out(axis));
-        Some(Side { base, point: out(point), slide })
+        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.in_frame(frame, *link, *v));
+        let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
+        Some(Side { base, point: in_first_frame(point), slide })
     }
 
-    /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the
-    /// solution is that of the mechanism itself.
-    fn seen_from(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
+    /// Transforms a vector from the axes of a link to those of a frame. Released joints count as closed: the
+    /// solution is that of the original mechanism.
+    fn in_frame(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
-        let own = self.model.nq() - RELEASED * joints.len();
-        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);
+        let first_released = self.model.nq() - RELEASED * joints.len();
+        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= first_released);
         let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
         closed.try_into().map_or(v, Vec3)
     }
 }
 
-/// Where both sides meet, in the plane, from the origin of the first.
-fn meeting<'g>(
+/// Returns the point in the plane at which both sides meet, relative to the origin of the first joint.
+fn closing_point<'g>(
     a: &Side<'g>,
     b: &Side<'g>,
     branch: Expr<'g>,
-    flat: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
+    planar: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
 ) -> [Expr<'g>; 2] {
     let square = |v: [Expr<'g>; 2]| v[0].square() + v[1].square();
-    let reach = square(flat(a.point));
+    let reach = square(planar(a.point));
     if let Some(slide) = b.slide {
         // The line w + s x, |w + s x| = |a|.
-        let (w, s) = (flat(b.base + b.point), flat(slide));
+        let (w, s) = (planar(b.base + b.point), planar(slide));
         let along = w[0] * s[0] + w[1] * s[1];
         let x = branch * (along.square() - square(w) + reach).sqrt() - along;
         return [w[0] + s[0] * x, w[1] + s[1] * x];
     }
-    // On the line between the origins by `part` of it, and across by `height`.
-    let d = flat(b.base);
+    // `part` is the fraction along the line between the origins, `height` the offset perpendicular to it.
+    let d = planar(b.base);
     let distance = square(d);
-    let part = (distance + reach - square(flat(b.point))) * 0.5 / distance;
+    let part = (distance + reach - square(planar(b.point))) * 0.5 / distance;
     let height = branch * (reach / distance - part.square()).sqrt();
     [d[0] * part - d[1] * height, d[1] * part + d[0] * height]
 }
 
-/// The angle from one direction to another.
-fn turned<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
+/// Returns the angle from one direction to another.
+fn angle_between<'g>(from: [Expr<'g>; 2], to: [Expr<'g>; 2]) -> Expr<'g> {
     (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1])
 }

@@ -1,4 +1,4 @@
-//! Joints that close loops: what they restrict, as scalar rows.
+//! Joints that close loops, as scalar constraint rows.
 
 use super::builder::Builder;
 use super::elementary::Elementary;
@@ -9,8 +9,8 @@ use crate::kinematics::jet::{Jet, Moving, Relative};
 use crate::kinematics::{AXES, change_axes, perpendicular, time_derivative, unit};
 use crate::mechanism::{Constraint, Measure, Transmission};
 
-/// The two ends of a joint that closes a loop.
-struct Closing<'g> {
+/// The two ends of a joint that closes a loop, with their motions.
+struct ClosingJoint<'g> {
     j: usize,
     parent: Placed<'g>,
     child: Placed<'g>,
@@ -19,8 +19,12 @@ struct Closing<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// What the joint of a loop allows, and its two ends.
-    fn closing(&self, j: usize, cx: &mut Diagnostics) -> Option<(Vec<Elementary<'g>>, Closing<'g>)> {
+    /// Returns the elementary motions of a loop-closing joint, and its two ends.
+    fn closing_joint(
+        &self,
+        j: usize,
+        cx: &mut Diagnostics,
+    ) -> Option<(Vec<Elementary<'g>>, ClosingJoint<'g>)> {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
         let [parent, child] = [&joint.parent, &joint.child].map(|end| {
@@ -31,14 +35,14 @@ impl<'g> Builder<'_, 'g> {
         let (parent, child) = (parent?, child?);
         let on_parent = self.relative(parent.link, child.link);
         let on_child = self.relative(child.link, parent.link);
-        Some((motions?, Closing { j, parent, child, on_parent, on_child }))
+        Some((motions?, ClosingJoint { j, parent, child, on_parent, on_child }))
     }
 
-    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's
-    /// plane.
+    /// Adds the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane
+    /// of the loop.
     pub fn close_in_plane(&mut self, j: usize, cx: &mut Diagnostics) {
         self.group += 1;
-        if let Some((motions, ends)) = self.closing(j, cx)
+        if let Some((motions, ends)) = self.closing_joint(j, cx)
             && let [Elementary::Turn(axis)] = motions.as_slice()
         {
             self.translation_rows(&ends, &[Elementary::Slide(*axis)]);
@@ -48,7 +52,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the rows of a joint that closes a loop.
     pub fn close_loop(&mut self, j: usize, cx: &mut Diagnostics) {
         let joint = &self.description.joints[j];
-        let Some((motions, ends)) = self.closing(j, cx) else { return };
+        let Some((motions, ends)) = self.closing_joint(j, cx) else { return };
         let place = &joint.name.place;
         if matches!(motions.as_slice(), [Elementary::Free]) {
             cx.error(place.clone(), format!("`{}` closes a loop, but it restricts nothing", joint.name.text))
@@ -60,22 +64,22 @@ impl<'g> Builder<'_, 'g> {
                 .help("let the joint act between bodies that move relative to each other");
             return;
         }
-        self.transmit(j, None, &Rotation::identity(self.scope.graph));
+        self.record_transmission(j, None, &Rotation::identity(self.scope.graph));
         self.translation_rows(&ends, &motions);
         self.group += 1;
         self.rotation_rows(&ends, &motions);
     }
 
-    /// The child's joint frame has its origin where the slides of the joint let it be.
-    fn translation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
+    /// Adds rows that keep the origin of the child's joint frame in the directions in which the joint slides.
+    fn translation_rows(&mut self, ends: &ClosingJoint<'g>, motions: &[Elementary<'g>]) {
         let g = self.scope.graph;
         let slides: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::slide).collect();
-        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let ClosingJoint { parent, child, on_parent, on_child, .. } = ends;
         let origin = self.point(on_parent, parent.pose.translation);
         let gap = self.point(on_child, child.pose.translation).minus(&origin);
         if slides.is_empty() {
             for (k, word) in AXES.iter().enumerate() {
-                self.push(ends, word, gap.component(k), (Measure::Length, Vec3::axis(g, k)));
+                self.push_row(ends, word, gap.component(k), (Measure::Length, Vec3::axis(g, k)));
             }
             return;
         }
@@ -86,77 +90,92 @@ impl<'g> Builder<'_, 'g> {
         };
         for (word, direction) in across {
             let e = self.direction(on_parent, parent.pose.rotation.to_parent(direction));
-            self.push(ends, word, gap.dot(&e), (Measure::Length, e.value));
+            self.push_row(ends, word, gap.dot(&e), (Measure::Length, e.value));
         }
         for motion in motions {
             match motion {
                 Elementary::Helix(axis, pitch) => self.advance_row(ends, (*axis, *pitch), gap.value),
-                // Their rows are those of what slides and of what turns.
+                // The rows of the other motions are those of the slides and rotations.
                 Elementary::Turn(_) | Elementary::Slide(_) | Elementary::Ball | Elementary::Free => {}
             }
         }
     }
 
-    /// Along the axis of a screw the child's joint frame is where its turn leads: `gap` is from the parent's
-    /// to it.
-    fn advance_row(&mut self, ends: &Closing<'g>, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) {
-        let Closing { parent, child, on_parent, on_child, .. } = ends;
+    /// Adds the row of a screw joint that couples the child's advance along the axis to its rotation. `gap`
+    /// leads from the parent's joint frame to the child's.
+    fn advance_row(&mut self, ends: &ClosingJoint<'g>, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) {
+        let ClosingJoint { parent, child, on_parent, on_child, .. } = ends;
         let n = self.direction(on_parent, parent.pose.rotation.to_parent(axis)).value;
         let [(_, first), (_, second)] = perpendicular(axis);
-        let on = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
-        let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
-        let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
+        let parent_direction = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
+        let rotated = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
+        let (sine, cosine) = (parent_direction(second).dot(rotated), parent_direction(first).dot(rotated));
         let advance = gap.dot(n) / pitch;
         let value = pitch * (sine * advance.cos() - cosine * advance.sin());
         let rate = time_derivative(self.model.space(), value);
         let second = time_derivative(self.model.space(), rate);
-        // It pushes the child back along the axis and turns it by the pitch.
-        self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
-        let turned = self.transmission(ends, true, n * pitch);
-        self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
+        // The force pushes the child back along the axis; the torque rotates it by the pitch.
+        self.push_row(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
+        let rotated = self.transmission(ends, true, n * pitch);
+        self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(rotated));
     }
 
-    /// The child's joint axes are turned as the turns of the joint let them be.
-    fn rotation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
+    /// Adds rows that allow only the rotations of the joint between the axes of its two ends.
+    fn rotation_rows(&mut self, ends: &ClosingJoint<'g>, motions: &[Elementary<'g>]) {
         if matches!(motions, [Elementary::Ball]) {
             return;
         }
         let turns: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::turn).collect();
-        let Closing { parent, child, on_parent, on_child, .. } = ends;
-        let of_parent = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
-        let of_child = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
+        let ClosingJoint { parent, child, on_parent, on_child, .. } = ends;
+        let parent_direction = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
+        let child_direction = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
         let axis = |k| Vec3::axis(self.scope.graph, k);
-        // Directions of the parent and of the child that stay orthogonal, or at a constant angle.
+        // Directions of the parent and of the child that remain orthogonal, or at a constant angle.
         let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
-            // The sines of the angles about three axes.
+            // Sines of the angles about three axes.
             [] => (0..3)
                 .map(|k| {
                     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-                    (format!("w{}", AXES[k]), of_parent(axis(m)), of_child(axis(l)), self.scope.graph.zero())
+                    (
+                        format!("w{}", AXES[k]),
+                        parent_direction(axis(m)),
+                        child_direction(axis(l)),
+                        self.scope.graph.zero(),
+                    )
                 })
                 .collect(),
             [axis] => perpendicular(*axis)
                 .into_iter()
                 .map(|(word, e)| {
-                    (format!("tilt_{word}"), of_parent(e), of_child(*axis), self.scope.graph.zero())
+                    (
+                        format!("tilt_{word}"),
+                        parent_direction(e),
+                        child_direction(*axis),
+                        self.scope.graph.zero(),
+                    )
                 })
                 .collect(),
             [first, second, ..] => {
-                vec![("axes".to_string(), of_parent(*first), of_child(*second), first.dot(*second))]
+                vec![(
+                    "axes".to_string(),
+                    parent_direction(*first),
+                    child_direction(*second),
+                    first.dot(*second),
+                )]
             }
         };
         for (word, e, carried, angle) in rows {
             let mut jet = e.dot(&carried);
             jet.value -= angle;
-            self.push(ends, &word, jet, (Measure::Angle, carried.value.cross(e.value)));
+            self.push_row(ends, &word, jet, (Measure::Angle, carried.value.cross(e.value)));
         }
     }
 
-    /// A row of a joint, with the force of a length or the torque of an angle on the child that its
-    /// multiplier is, in the axes of the link that carries both ends.
-    fn push(
+    /// Adds a row of a joint. Its multiplier is a force (of a length) or a torque (of an angle) on the child
+    /// along `direction`, in the axes of the link that carries both ends.
+    fn push_row(
         &mut self,
-        ends: &Closing<'g>,
+        ends: &ClosingJoint<'g>,
         word: &str,
         jet: Jet<'g>,
         (measure, direction): (Measure, Vec3<'g>),
@@ -178,7 +197,7 @@ impl<'g> Builder<'_, 'g> {
         });
     }
 
-    fn transmission(&self, ends: &Closing<'g>, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
+    fn transmission(&self, ends: &ClosingJoint<'g>, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
         let joints = &self.scope.kinematics.borrow().joints;
         let direction = change_axes(joints, direction, ends.on_child.ancestor, None);
         Transmission { joint: ends.j, torque, direction }

@@ -1,12 +1,12 @@
-//! Constraints: joints that close loops, expressions that stay zero, rolling pairs. Each becomes scalar rows
-//! with their rates and the derivatives of those. Motions are taken relative to the nearest link that carries
-//! both sides, so that what both share drops out.
+//! Constraints: joints that close loops, expressions that remain zero, rolling and slipping pairs. Each
+//! becomes scalar rows with their rates and the time derivatives of the rates. Motions are relative to the
+//! nearest link that carries both sides, so that their common motion cancels.
 
 use super::builder::Builder;
 use super::closed_form::Solved;
+use super::corrections;
 use super::motion::Moving;
 use super::scope::{Allowed, Context, Value};
-use super::slips;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::replace;
@@ -17,15 +17,16 @@ use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Freedom, Measure, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
-/// Most scalar constraints of a mechanism, twice as many as velocities: half of them may be redundant.
+/// Maximum number of scalar constraints of a mechanism: twice the maximum number of velocities, because half
+/// of the constraints may be redundant.
 const MAX_CONSTRAINTS: usize = 256;
 
-/// That all constraints are there. Comes of [`Builder::add_constraints`] alone.
+/// Proof that all constraints have been added. Created only by [`Builder::add_constraints`].
 #[derive(Clone, Copy)]
 pub struct Constrained(());
 
 impl<'g> Builder<'_, 'g> {
-    /// All constraints: those of the joints that close loops, then those declared.
+    /// Adds all constraints: first those of loop-closing joints, then the declared ones.
     pub fn add_constraints(
         &mut self,
         closing: &[usize],
@@ -35,7 +36,7 @@ impl<'g> Builder<'_, 'g> {
         if !cx.is_empty() {
             for j in closing {
                 self.check_joint(&self.description.joints[*j], cx);
-                self.transmit(*j, None, &Rotation::identity(self.scope.graph));
+                self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
             }
             for constraint in &self.description.constraints {
                 self.check_constraint(constraint, cx);
@@ -73,10 +74,10 @@ impl<'g> Builder<'_, 'g> {
             return Constrained(());
         }
         for j in &solved {
-            self.transmit(*j, None, &Rotation::identity(self.scope.graph));
+            self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
         }
-        if let Some((_, kept)) = self.releasing {
-            self.model.constraints.retain(|c| kept.iter().any(|k| k.name == c.name));
+        if let Some((_, retained)) = self.releasing {
+            self.model.constraints.retain(|c| retained.iter().any(|k| k.name == c.name));
             for j in &solved {
                 self.close_in_plane(*j, cx);
             }
@@ -91,10 +92,10 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        self.scope.constrains.set(true);
+        self.scope.in_holonomic_constraint.set(true);
         let rows = self.difference(constraint, Allowed::Placement, cx);
-        self.scope.constrains.set(false);
-        for (name, residual) in self.without_idle(rows) {
+        self.scope.in_holonomic_constraint.set(false);
+        for (name, residual) in self.without_vanishing(rows) {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
@@ -105,30 +106,30 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The components of a vector without those that are zero wherever the mechanism is, as they are across
-    /// its plane; all of them if they all are.
-    fn without_idle(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
-        let is_idle = |e: &Expr<'g>| {
+    /// Returns the components of a vector without those that vanish identically, such as the component normal
+    /// to the plane of a planar mechanism. If all vanish, all are returned.
+    fn without_vanishing(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
+        let is_vanishing = |e: &Expr<'g>| {
             let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
             symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
         };
-        let (idle, rest): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_idle(e));
-        if rest.is_empty() {
-            return idle;
+        let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
+        if remaining.is_empty() {
+            return vanishing;
         }
-        self.model.redundant.extend(idle.into_iter().map(|(name, _)| name));
-        rest
+        self.model.redundant.extend(vanishing.into_iter().map(|(name, _)| name));
+        remaining
     }
 
-    /// Reads what a constraint says, for its mistakes alone.
+    /// Resolves a constraint only to report its errors.
     fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {
             ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
-                self.scope.constrains.set(holonomic);
+                self.scope.in_holonomic_constraint.set(holonomic);
                 let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
                 let _ = self.difference(constraint, allowed, cx);
-                self.scope.constrains.set(false);
+                self.scope.in_holonomic_constraint.set(false);
             }
             ConstraintKind::Rolling | ConstraintKind::Slipping => self.check_pair(constraint, cx),
         }
@@ -136,11 +137,11 @@ impl<'g> Builder<'_, 'g> {
 
     fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
         let rows = self.difference(constraint, Allowed::Motion, cx);
-        for (name, rate) in self.without_idle(rows) {
+        for (name, rate) in self.without_vanishing(rows) {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
-            let is = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+            let contains = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
                 symbols_in(e).into_iter().any(|s| f(Quantity::of(s)))
             };
             if gradient.is_empty() {
@@ -148,12 +149,12 @@ impl<'g> Builder<'_, 'g> {
                     .help("a constraint on coordinates is a `Holonomic` one");
                 return;
             }
-            if is(&[rate], |q| matches!(q, Quantity::Input(_))) {
+            if contains(&[rate], |q| matches!(q, Quantity::Input(_))) {
                 cx.error(place.clone(), "a constraint contains no input")
                     .help("a motion that is given is an expression of time `t`");
                 return;
             }
-            let linear = match is(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+            let linear = match contains(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
                 true => linear_form(rate, &gradient),
                 false => Some(rate),
             };
@@ -167,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Left side minus right side: one component, or three.
+    /// Returns the left side minus the right side: one component, or three with names.
     fn difference(
         &self,
         constraint: &syntax::Constraint,
@@ -185,14 +186,14 @@ impl<'g> Builder<'_, 'g> {
             if let (Some(side), Some(other)) = (side, other)
                 && allowed == Allowed::Placement
                 && turns(side)
-                && !slips::check_angle(other, cx)
+                && !corrections::check_angle(other, cx)
             {
                 return Vec::new();
             }
         }
         let left = self.scope.in_context(context(), |scope| scope.value(&constraint.value, cx));
         if left.is_none() {
-            // What the other side says is told as well.
+            // Report the errors of the other side as well.
             if let Some(other) = &constraint.other {
                 let _ = self.scope.in_context(context(), |scope| scope.value(other, cx));
             }
@@ -221,11 +222,11 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// A rate whose derivatives by the velocities name velocities, but do not depend on them: the same without
-/// those. `None` if they do.
+/// Removes velocities from the coefficients of a linear constraint if the coefficients contain velocities but
+/// do not depend on them. Returns `None` if they depend on velocities.
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
-    // Signs and corners show where velocities change their signs, together or not.
-    let at = |e: Expr<'g>, pattern: u64| {
+    // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
+    let evaluate = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::of(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
             Quantity::Velocity(_) => sample(s, pattern),
@@ -233,17 +234,22 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
         })
     };
     let is_constant = |e: Expr<'g>| {
-        let first = at(e, 0);
-        let near = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
-        first.is_finite() && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| near(at(e, *p)))
+        let first = evaluate(e, 0);
+        let is_close = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
+        first.is_finite()
+            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate(e, *p)))
     };
-    let with = |e: Expr<'g>, value: f64| {
+    let substitute = |e: Expr<'g>, value: f64| {
         replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| e.num(value)))
     };
-    let rest = with(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !at(rest, 0).is_finite() {
+    let remainder = substitute(rate, 0.0);
+    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(remainder, 0).is_finite() {
         return None;
     }
     let g = rate.graph();
-    Some(gradient.iter().fold(rest, |sum, (k, c)| sum + with(*c, 1.0) * Quantity::Velocity(*k).expr(g)))
+    Some(
+        gradient
+            .iter()
+            .fold(remainder, |sum, (k, c)| sum + substitute(*c, 1.0) * Quantity::Velocity(*k).expr(g)),
+    )
 }

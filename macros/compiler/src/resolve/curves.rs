@@ -1,4 +1,4 @@
-//! Curves and fields: what follows from derivatives of an expression by a coordinate or a place.
+//! Curves and fields: derivatives of an expression by a coordinate or a position.
 
 use super::call::Call;
 use super::quantities::{in_links, vector};
@@ -14,8 +14,8 @@ use crate::mechanism::{Coordinate, LinkId, Pose, Quantity};
 use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns the axes that follow from a vector or a curve, in those of a place: `cylindrical(vector)`,
-    /// `spherical(vector)`, `frenet(curve, coordinate)`.
+    /// Returns the axes defined by a vector or a curve, relative to the axes of a frame:
+    /// `cylindrical(vector)`, `spherical(vector)`, `frenet(curve, coordinate)`.
     pub fn natural_axes(
         &self,
         (rotation, name): (language::Rotation, &Callee),
@@ -31,13 +31,13 @@ impl<'g> Scope<'_, 'g> {
                     .help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
                 None
             }
-            (_, [of]) => {
-                let terms = scope.terms(of, cx)?;
+            (_, [argument]) => {
+                let terms = scope.terms(argument, cx)?;
                 let v = scope.kinematics.borrow().resolve(&terms, start.link, Vec3::zero(scope.graph));
                 let [x, y, z] = start.pose.rotation.to_child(v).0;
                 if always(x.square() + y.square(), 0.0) {
                     cx.error(
-                        of.place.clone(),
+                        argument.place.clone(),
                         format!("this vector lies on the z axis, where `{}` has no directions", name.text),
                     )
                     .help("the axes follow from a vector that leaves the z axis of the frame it starts from");
@@ -58,7 +58,7 @@ impl<'g> Scope<'_, 'g> {
         })
     }
 
-    /// Tangent, normal and binormal of a curve (Frenet and Serret) in the axes of a place.
+    /// Returns tangent, normal and binormal of a curve (Frenet and Serret), in the axes of a frame.
     fn frenet(
         &self,
         curve: &syntax::Expr,
@@ -86,7 +86,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
     }
 
-    /// `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
+    /// Resolves `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
     pub fn curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, _] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
@@ -97,7 +97,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(normal.length() / (speed * speed * speed)))
     }
 
-    /// `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
+    /// Resolves `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
     pub fn torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, third] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
@@ -109,7 +109,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(normal.dot(third) / normal.dot(normal)))
     }
 
-    /// Returns three derivatives of the curve that a function takes, by the coordinate that it takes.
+    /// Returns the first three derivatives of a function's curve argument by its coordinate argument.
     fn curve_derivatives(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Vec3<'g>; 3]> {
         let [curve, along] = call.take(cx)?;
         let text = call.name();
@@ -119,7 +119,8 @@ impl<'g> Scope<'_, 'g> {
         Some(self.derivatives_along(text, curve, along, cx)?.0)
     }
 
-    /// Three derivatives of a vector by a coordinate, in the axes of a link that do not depend on it.
+    /// Returns the first three derivatives of a vector by a coordinate. They are in the axes of the returned
+    /// link, which do not depend on the coordinate.
     fn derivatives_along(
         &self,
         text: &str,
@@ -139,13 +140,13 @@ impl<'g> Scope<'_, 'g> {
         };
         let link = terms.first().and_then(|(link, _)| *link);
         let link = if turns(link) { None } else { link };
-        let at = kinematics.resolve(&terms, link, zero);
+        let position = kinematics.resolve(&terms, link, zero);
         let mut derivative = Derivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
         let mut next = |v: Vec3<'g>| v.map(|c| derivative.of(c) * scale);
-        let first = next(at);
+        let first = next(position);
         if first.is_zero() {
-            cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.spelt()))
+            cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.to_source()))
                 .help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
             return None;
         }
@@ -153,9 +154,9 @@ impl<'g> Scope<'_, 'g> {
         Some(([first, second, next(second)], link))
     }
 
-    /// A plain coordinate by its name.
+    /// Returns a coordinate by its name.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let name = e.spelt();
+        let name = e.to_source();
         let kinematics = self.kinematics.borrow();
         if let Some((_, c, _)) = kinematics.coordinates.iter().find(|(known, ..)| *known == name) {
             return Some(*c);
@@ -172,34 +173,35 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// `gradient(field / point)`: how a scalar changes with the place of a point, all else held.
+    /// Resolves `gradient(field / point)`: the derivative of a scalar by the position of a point; all other
+    /// quantities are constant.
     pub fn gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [whole] = call.take(cx)?;
-        let ExprKind::Binary(BinaryOp::Div, of, at, _) = &whole.kind else { return call.reject(cx) };
+        let ExprKind::Binary(BinaryOp::Div, field, point, _) = &whole.kind else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`gradient(…)`", call.place, cx) {
             return None;
         }
-        let placed = self.place(at, cx)?;
-        let Some(name) = at.name().filter(|name| *name != syntax::GROUND) else {
-            cx.error(at.place.clone(), "expected the name of a point")
+        let placed = self.place(point, cx)?;
+        let Some(name) = point.name().filter(|name| *name != syntax::GROUND) else {
+            cx.error(point.place.clone(), "expected the name of a point")
                 .help("name a `Point`, a particle or a body");
             return None;
         };
-        // The point is moved by three numbers, and the field differentiated by them.
+        // The point is displaced by three symbols, and the field is differentiated by them.
         let moves = [0, 1, 2].map(|k| Quantity::Displacement(k).symbol());
-        let by = Vec3(moves.map(|s| self.graph.symbol(s)));
-        let pose = Pose { translation: placed.pose.translation + by, ..placed.pose.clone() };
+        let displacement = Vec3(moves.map(|s| self.graph.symbol(s)));
+        let pose = Pose { translation: placed.pose.translation + displacement, ..placed.pose.clone() };
         let moved = Placed { pose, ..placed.clone() };
-        self.known.borrow_mut().clear();
+        self.definition_values.borrow_mut().clear();
         self.kinematics.borrow_mut().places.insert(name.to_string(), moved);
-        let value = self.scalar(of, cx);
+        let value = self.scalar(field, cx);
         self.kinematics.borrow_mut().places.insert(name.to_string(), placed.clone());
-        self.known.borrow_mut().clear();
+        self.definition_values.borrow_mut().clear();
         let value = value?;
         let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient = Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).of(value))));
         if gradient.is_zero() {
-            cx.error(of.place.clone(), format!("this does not depend on the place of `{name}`"))
+            cx.error(field.place.clone(), format!("this does not depend on the place of `{name}`"))
                 .help(format!("a field is an expression of `r({name} / ground)`"));
             return None;
         }

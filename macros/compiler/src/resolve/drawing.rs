@@ -1,8 +1,8 @@
-//! What the word `drawing` asks for: pieces that show what is declared, in the axes of named frames, so that
-//! no pass over the links moves them.
+//! Pieces of the drawing, added by the option `drawing`. They show the declared elements in the axes of named
+//! frames, so that a viewer needs no traversal of the links.
 
 use super::builder::Builder;
-use super::joint::drawn;
+use super::joint::drawing_symbol;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -15,16 +15,16 @@ use crate::syntax::{
 };
 use std::collections::BTreeSet;
 
-/// A place: the frame that it is fixed in, the ground if none, and where.
+/// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
 pub type Anchor<'g> = (Option<usize>, Pose<'g>);
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the drawing, if it was asked for.
+    /// Adds the drawing if it is requested.
     pub fn add_drawing(&mut self) {
         if !self.description.drawing {
             return;
         }
-        // What is read a second time requires nothing a second time.
+        // The second reading of expressions adds no requirements.
         let required = self.scope.requirements.borrow().clone();
         let context = Context::new(Allowed::Constant, None);
         let previous = self.scope.context.replace(context);
@@ -55,22 +55,22 @@ impl<'g> Builder<'_, 'g> {
         self.model.heights = heights;
     }
 
-    /// A place on a link in the axes of a frame that the link carries; `None` if it carries none.
+    /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
     pub(super) fn anchor(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
         if link.is_none() {
             return Some((None, pose.clone()));
         }
-        let at = self.model.frames.iter().position(|frame| frame.link == link)?;
-        Some((Some(at), self.model.frames[at].pose.inverse().then(pose)))
+        let index = self.model.frames.iter().position(|frame| frame.link == link)?;
+        Some((Some(index), self.model.frames[index].pose.inverse().then(pose)))
     }
 
-    /// A body's own frame.
+    /// Returns the index of a body's own frame.
     fn body_frame(&self, name: &str) -> Option<usize> {
         self.model.frames.iter().position(|frame| frame.name == name)
     }
 
-    /// The end of a joint.
-    fn end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
+    /// Returns the pose of the end of a joint.
+    fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::unread();
         let on_body = self.endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
@@ -83,12 +83,13 @@ impl<'g> Builder<'_, 'g> {
         self.anchor(link, &pose.then(&on_body))
     }
 
-    /// Adds the visual geometry of a file; returns the bodies that have any, and no mesh among it. Those with
-    /// meshes are drawn by their mass properties as well, which are shown where a mesh cannot be read.
+    /// Adds the visual geometry of a file. Returns the bodies that have visual geometry without meshes.
+    /// Bodies with meshes are also drawn by their mass properties, which are visible if a mesh cannot be
+    /// read.
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
-            let Some((frame, pose)) = self.end(on) else { continue };
+            let Some((frame, pose)) = self.joint_end(on) else { continue };
             let z = pose.rotation.to_parent(Vec3::axis(g, 2));
             let number = |x: f64| g.num(x);
             let round = |numbers: &[f64]| {
@@ -120,7 +121,7 @@ impl<'g> Builder<'_, 'g> {
         pieces.iter().map(|piece| &piece.name).filter(|name| !meshes.contains(name)).cloned().collect()
     }
 
-    /// Solids and particles, but for bodies that are shown already.
+    /// Adds solids and particles, except for the bodies in `shown`.
     fn draw_bodies(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let g = self.scope.graph;
         for (k, body) in self.description.bodies.iter().enumerate() {
@@ -142,9 +143,10 @@ impl<'g> Builder<'_, 'g> {
                 let tensor = inertia.diagonal.into_iter().chain(inertia.off);
                 let is_point = inertia.diagonal.iter().all(|i| i.is_zero());
                 let kind = if is_point { PieceKind::Point } else { PieceKind::Inertia };
-                let figures = std::iter::once(mass).chain(tensor);
-                let figures: Vec<Expr<'g>> = if is_point { Vec::new() } else { figures.collect() };
-                solids = vec![(kind, entries(&[com]).into_iter().chain(figures).collect())];
+                let inertial_parameters = std::iter::once(mass).chain(tensor);
+                let inertial_parameters: Vec<Expr<'g>> =
+                    if is_point { Vec::new() } else { inertial_parameters.collect() };
+                solids = vec![(kind, entries(&[com]).into_iter().chain(inertial_parameters).collect())];
             }
             pieces.extend(solids.into_iter().map(|(kind, numbers)| Piece {
                 name: name.clone(),
@@ -164,22 +166,23 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The solids of an inertia about a point; false if it has figures that are no solid's.
+    /// Collects the solids of an inertia about a point; returns false if a term of the inertia is not a
+    /// solid.
     fn solids(
         &self,
         e: &syntax::Expr,
-        turned: &Rotation<'g>,
+        orientation: &Rotation<'g>,
         com: Vec3<'g>,
         found: &mut Vec<(PieceKind, Vec<Expr<'g>>)>,
     ) -> bool {
         let mut silent = Diagnostics::unread();
         match &e.kind {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
-                self.solids(a, turned, com, found) && self.solids(b, turned, com, found)
+                self.solids(a, orientation, com, found) && self.solids(b, orientation, com, found)
             }
             ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
                 let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
-                self.solids(inner, &turned.clone().then(&rotation), com, found)
+                self.solids(inner, &orientation.clone().then(&rotation), com, found)
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
                 let Some(kind) = solid.row().piece.clone() else { return false };
@@ -190,13 +193,13 @@ impl<'g> Builder<'_, 'g> {
                 };
                 match axis {
                     Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
-                        Some(axis) => numbers.extend(entries(&[turned.to_parent(axis)])),
+                        Some(axis) => numbers.extend(entries(&[orientation.to_parent(axis)])),
                         None => return false,
                     },
                     None if kind == PieceKind::Sphere => {}
-                    None => numbers.extend(rows(&turned.matrix())),
+                    None => numbers.extend(rows(&orientation.matrix())),
                 }
-                // The mass comes first.
+                // The first argument is the mass.
                 for size in sizes.iter().skip(1) {
                     match self.scope.scalar(size, &mut silent) {
                         Some(size) => numbers.push(size),
@@ -213,21 +216,21 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Joints, and bars from the joint that holds a body to its others and to its centre of mass.
+    /// Adds joints, and bars from a body's first joint to its other joints and to its centre of mass.
     fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
-        let mut held: Vec<(&str, Vec3<'g>)> = Vec::new();
+        let mut joint_positions: Vec<(&str, Vec3<'g>)> = Vec::new();
         for joint in &self.description.joints {
             let (Some((parent, on_parent)), Some((_, on_child))) =
-                (self.end(&joint.parent), self.end(&joint.child))
+                (self.joint_end(&joint.parent), self.joint_end(&joint.child))
             else {
                 continue;
             };
             for (body, place) in
                 [(&joint.parent.body, on_parent.translation), (&joint.child.body, on_child.translation)]
             {
-                held.push((&body.text, place));
+                joint_positions.push((&body.text, place));
             }
-            let Some((kind, axis)) = self.joint_kind(joint) else { continue };
+            let Some((kind, axis)) = self.joint_symbol(joint) else { continue };
             let mut numbers = entries(&[on_parent.translation]);
             numbers.extend(axis.iter().flat_map(|axis| entries(&[on_parent.rotation.to_parent(*axis)])));
             let name = joint.name.text.clone();
@@ -236,7 +239,7 @@ impl<'g> Builder<'_, 'g> {
         for (k, body) in self.description.bodies.iter().enumerate() {
             let name = &body.name.text;
             let Some(frame) = self.body_frame(name).filter(|_| !shown.contains(name)) else { continue };
-            let mut places = held.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
+            let mut places = joint_positions.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
             let Some(first) = places.next() else { continue };
             let com = self.masses.get(k).copied().flatten().map(|(_, com, _)| com);
             for other in places.chain(com).filter(|other| !(*other - first).is_zero()) {
@@ -251,16 +254,16 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// How a joint is drawn, with its axis on the parent.
-    fn joint_kind(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
-        let (kind, axes) = drawn(joint)?;
+    /// Returns the symbol of a joint, with its axis on the parent.
+    fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
+        let (kind, axes) = drawing_symbol(joint)?;
         let axis = |axes: &[syntax::Expr]| {
             self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
         };
         Some((kind, axes.map_or(Some(None), |axes| axis(axes).map(Some))?))
     }
 
-    /// Springs, dashpots and inputs.
+    /// Adds springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.description.actions {
             let row = action.kind.row();
@@ -271,12 +274,13 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {
-            let Some((kind, frames, numbers)) = self.input(k, name, input) else { continue };
+            let Some((kind, frames, numbers)) = self.input_arrow(k, name, input) else { continue };
             pieces.push(Piece { name: name.clone(), role: Role::Input, kind, frames, numbers });
         }
     }
 
-    /// An element between two points or on a joint: `long` if it spans a length, `round` if it turns.
+    /// Adds an element between two points or on a joint: `long` if it spans a length, `round` if it acts on a
+    /// rotation.
     fn draw_element(&self, action: &Action, long: PieceKind, round: PieceKind, pieces: &mut Vec<Piece<'g>>) {
         let found = match &action.on {
             Target::Between(a, b) => {
@@ -296,28 +300,28 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The joint with one coordinate that an expression names: whether it turns, the frames and places of its
-    /// ends, its axis on the parent.
+    /// Returns the data of a joint with one coordinate: whether it is revolute, the frames and positions of
+    /// its ends, and its axis on the parent.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.name()?;
         let joint = self.description.joints.iter().find(|joint| joint.name.text == name)?;
-        let ((a, on_a), (b, on_b)) = self.end(&joint.parent).zip(self.end(&joint.child))?;
-        let (kind, axis) = self.joint_kind(joint)?;
+        let ((a, on_a), (b, on_b)) = self.joint_end(&joint.parent).zip(self.joint_end(&joint.child))?;
+        let (kind, axis) = self.joint_symbol(joint)?;
         let axis = on_a.rotation.to_parent(axis?);
         Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
     }
 
-    /// The joint that an input of a file drives.
-    fn driven(&self, input: &str) -> Option<&str> {
+    /// Returns the joint that an input of a file drives.
+    fn driven_joint(&self, input: &str) -> Option<&str> {
         let drives = &self.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
         found.and_then(|drive| drive.on.terms().first()).map(|(joint, _)| joint.text.as_str())
     }
 
-    /// An arrow for an input, if it has one direction.
-    fn input(
+    /// Returns an arrow for an input, if the input has one direction.
+    fn input_arrow(
         &self,
         k: usize,
         name: &str,
@@ -332,14 +336,14 @@ impl<'g> Builder<'_, 'g> {
                     Some(Target::On(on)) => self.on_joint(on),
                     Some(Target::Between(..)) => None,
                     None => {
-                        let joint = self.driven(name).unwrap_or(name).to_string();
+                        let joint = self.driven_joint(name).unwrap_or(name).to_string();
                         let place = self.description.name.place.clone();
                         self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
                     }
                 };
-                let (turns, [a, _], [at, _], axis) = joint?;
+                let (turns, [a, _], [position, _], axis) = joint?;
                 let kind = if turns { PieceKind::Torque(k) } else { PieceKind::Force(k) };
-                return Some((kind, [a, a], entries(&[at, axis])));
+                return Some((kind, [a, a], entries(&[position, axis])));
             }
             Input::Force { link, point, along } => (*link, *point, along, false),
             Input::Torque { link, about } => (*link, Vec3::zero(g), about, true),

@@ -1,7 +1,8 @@
-//! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, at a point of a body.
+//! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, or at a point of a
+//! body.
 
 use super::builder::Builder;
-use super::forces::{Law, report_lost};
+use super::forces::{Law, report_unused_input};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -10,8 +11,8 @@ use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Input, Spring};
 use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Wrench};
 
-/// Inputs among the force elements of a file, in their order in `u`: after the driven joints, before all
-/// others.
+/// Returns the inputs among the force elements of a file, in the order of their entries in `u`. These entries
+/// follow those of the driven joints and precede all others.
 pub fn inputs(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }
@@ -27,9 +28,9 @@ impl<'g> Builder<'_, 'g> {
     fn add_drive(&mut self, drive: &Drive, cx: &mut Diagnostics) {
         let mut terms: Vec<Coordinate> = Vec::new();
         for (joint, weight) in drive.on.terms() {
-            match self.weighted(&joint.text, *weight) {
+            match self.weighted_coordinate(&joint.text, *weight) {
                 Some(coordinate) => terms.push(coordinate),
-                None => report_lost(&drive.name, cx),
+                None => report_unused_input(&drive.name, cx),
             }
         }
         if let DriveLaw::Input(unit) = drive.law {
@@ -48,7 +49,7 @@ impl<'g> Builder<'_, 'g> {
             DriveOn::Sum(_) => Some(self.sum_stretch(&terms)),
             on => self.spatial_stretch(on, cx),
         };
-        // Nothing has an effect on what stands still.
+        // A force on a constant length has no effect.
         let Some(stretch) = stretch else { return };
         let (place, g) = (&drive.name.place, self.scope.graph);
         let number = |value| Expr::number(value, place);
@@ -74,7 +75,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The stretch of what is no sum of coordinates; none of what stands still.
+    /// Returns the stretch of a length or a wrench; `None` if its rate is identically zero.
     fn spatial_stretch(&self, on: &DriveOn, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let stretch = match on {
             DriveOn::Sum(_) => None,
@@ -84,8 +85,8 @@ impl<'g> Builder<'_, 'g> {
         stretch.filter(|stretch| !velocity_gradient(stretch.rate).is_empty())
     }
 
-    /// The rate that a force and a torque work on: `f · v + t · ω` of the point, or of it relative to the one
-    /// that the reaction is on.
+    /// Returns the rate on which a force and a torque at a point do work, `f · v + t · ω`. The velocities are
+    /// relative to the body on which the reaction acts, if there is one.
     fn wrench_stretch(&self, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let g = self.scope.graph;
         let on = self.scope.place(&wrench.on, cx)?;
@@ -105,9 +106,9 @@ impl<'g> Builder<'_, 'g> {
             }),
             Some(against) => {
                 let zero = Vec3::zero(g);
-                let between = kinematics.between(&on, against);
+                let between = kinematics.position_between(&on, against);
                 let path = kinematics.resolve(&between, against.link, zero).dot(force);
-                let turning = kinematics.turning_in(on.link, against.link, g);
+                let turning = kinematics.angular_velocity_in(on.link, against.link, g);
                 let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
                 time_derivative(self.model.space(), path) + turning
             }
@@ -115,16 +116,16 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value: g.zero(), rate, square: g.zero(), signed: false })
     }
 
-    /// The coordinate of a joint with one, times a weight.
-    fn weighted(&self, joint: &str, weight: f64) -> Option<Coordinate> {
+    /// Returns the coordinate of a joint with one degree of freedom, multiplied by a weight.
+    fn weighted_coordinate(&self, joint: &str, weight: f64) -> Option<Coordinate> {
         match self.joint_coordinates(joint)?.as_slice() {
             [(_, c, _)] => Some(Coordinate { ratio: weight * c.ratio, offset: weight * c.offset, ..*c }),
             _ => None,
         }
     }
 
-    /// What the model has for single coordinates; false for everything else. A [`Coordinate`] with its ratio
-    /// is the sum itself.
+    /// Adds springs, dampers and friction on a single coordinate; returns false for other laws. The ratio of
+    /// the [`Coordinate`] is the weight.
     fn add_to_coordinate(&mut self, on: Coordinate, law: DriveLaw) -> bool {
         let g = self.scope.graph;
         match law {
@@ -140,7 +141,7 @@ impl<'g> Builder<'_, 'g> {
         true
     }
 
-    /// The stretch of a sum of coordinates.
+    /// Returns the stretch of a sum of coordinates.
     fn sum_stretch(&self, terms: &[Coordinate]) -> Stretch<'g> {
         let zero = self.scope.graph.zero();
         let mut sum = Stretch { value: zero, rate: zero, square: zero, signed: false };

@@ -1,10 +1,10 @@
-//! The elementary motions that joints are made of, before they have coordinates.
+//! Elementary motions of joints, before coordinates are assigned.
 
 use super::axis::align;
 use crate::expr::{Expr, Graph, Rotation, Vec3};
 use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
-/// One motion of a joint.
+/// An elementary motion of a joint.
 pub enum Elementary<'g> {
     /// Rotation about an axis.
     Turn(Vec3<'g>),
@@ -19,7 +19,7 @@ pub enum Elementary<'g> {
 }
 
 impl<'g> Elementary<'g> {
-    /// The axis that it slides along.
+    /// Returns the axis of translation, if there is one.
     pub fn slide(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
@@ -27,7 +27,7 @@ impl<'g> Elementary<'g> {
         }
     }
 
-    /// The axis that it turns about.
+    /// Returns the axis of rotation, if there is one.
     pub fn turn(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
@@ -35,8 +35,9 @@ impl<'g> Elementary<'g> {
         }
     }
 
-    /// The motion of a link with its coordinate, or with its first entries of `q` and `v`; and the axes that
-    /// the link has in those of the joint: axes of rotation become coordinate axes.
+    /// Returns the motion of a link, and the orientation of the link in the axes of the joint. The motion has
+    /// the given coordinate, or the given first entries of `q` and `v`. Constant axes of rotation become
+    /// coordinate axes of the link.
     pub fn motion(
         &self,
         graph: &'g Graph,

@@ -1,5 +1,5 @@
-//! Declared equilibria → the values of all coordinates, inputs and states in them. Whether they are
-//! equilibria, the equations of motion tell.
+//! Declared equilibria, with the values of all coordinates, inputs and states. The equations of motion are
+//! checked elsewhere.
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;
@@ -9,7 +9,7 @@ use crate::resolve::scope::{Allowed, Context};
 use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
 
-/// What can have a value at rest, by index.
+/// A variable with a value at rest, by index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Variable {
     Coordinate(usize),
@@ -20,8 +20,8 @@ enum Variable {
 impl<'g> Builder<'_, 'g> {
     /// Adds all equilibria to the model.
     pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
-        let rubs = |action: &Action| action.kind == ForceKind::Friction;
-        let dry = self.description.actions.iter().any(rubs);
+        let is_friction = |action: &Action| action.kind == ForceKind::Friction;
+        let dry = self.description.actions.iter().any(is_friction);
         for declared in &self.description.equilibria {
             if dry {
                 cx.error(
@@ -58,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
         for (place, value) in &declared.values {
             let Some(variable) = self.variable(place, cx) else { continue };
             if !given.insert(variable) {
-                cx.error(place.place.clone(), format!("`{}` is given twice", place.spelt()))
+                cx.error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
                     .help("remove one of the two");
                 continue;
             }
@@ -72,7 +72,7 @@ impl<'g> Builder<'_, 'g> {
         (cx.len() == before).then_some(found)
     }
 
-    /// The states of first order, at zero.
+    /// Returns the states of first order with the value zero.
     fn resting_states(&self) -> Vec<RestingState<'g>> {
         let g = self.scope.graph;
         let rate_of = |name: &str| {
@@ -90,7 +90,7 @@ impl<'g> Builder<'_, 'g> {
             .collect()
     }
 
-    /// An expression of the parameters.
+    /// Returns the value of a variable, an expression of the parameters.
     fn value_at_rest(&self, variable: Variable, value: &Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = match variable {
             Variable::Coordinate(k) => self.model.configuration.get(k)?,
@@ -109,9 +109,9 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// What a name stands for that can have a value at rest.
+    /// Returns the variable with this name, or reports an error.
     fn variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
-        let text = place.spelt();
+        let text = place.to_source();
         let coordinate = self.model.configuration.iter().position(|name| *name == text);
         let input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
         let state =
@@ -136,7 +136,7 @@ impl<'g> Builder<'_, 'g> {
         let known: Vec<&str> =
             self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
         let follows = self.scope.joints.iter().any(|joint| joint == text);
-        let what = self.scope.what(text);
+        let what = self.scope.kind_of_name(text);
         let error = cx.error(place.place.clone(), format!("`{text}` has no value at rest of its own"));
         match (own.as_slice(), what) {
             ([first, ..], _) => error.help(format!("its coordinates have: write `{first} = …`")),

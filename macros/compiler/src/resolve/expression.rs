@@ -1,13 +1,14 @@
-//! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
+//! Resolution of written expressions into expressions of the graph: names are looked up, and scalars, vectors
+//! and matrices are distinguished.
 
+use super::corrections::VECTOR_SYNTAX;
 use super::scope::{Axes, Scope, Value};
-use super::slips::VECTOR;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::syntax::{self, BinaryOp, ExprKind};
 
 impl<'a, 'g> Scope<'a, 'g> {
-    /// A scalar.
+    /// Returns the value of a scalar expression.
     pub fn scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         match self.value(e, cx)? {
             Value::Scalar(s) => Some(s),
@@ -24,13 +25,13 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
     }
 
-    /// A vector in the attribute's own axes.
+    /// Returns the value of a vector expression in the attribute's own axes.
     pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
-        self.vector(e, cx).and_then(|terms| self.own_sum(terms, e, cx))
+        self.vector(e, cx).and_then(|terms| self.own_axes_sum(terms, e, cx))
     }
 
-    /// The sum of a vector's terms, all in the attribute's own axes.
-    pub fn own_sum(
+    /// Returns the sum of a vector's terms, which must all be in the attribute's own axes.
+    pub fn own_axes_sum(
         &self,
         terms: Vec<(Axes, Vec3<'g>)>,
         e: &syntax::Expr,
@@ -48,13 +49,13 @@ impl<'a, 'g> Scope<'a, 'g> {
         Some(sum)
     }
 
-    /// A vector as a sum over axes.
+    /// Returns the value of a vector expression as a sum over axes.
     pub fn vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
         self.vector_or(e, "multiply it by a direction, as in `length * y`", cx)
     }
 
-    /// A vector as a sum over axes, with the help for a scalar in its place. What is in `e` is read once,
-    /// however deep expressions are nested.
+    /// Returns the value of a vector expression as a sum over axes, and reports a scalar with the given help.
+    /// Each subexpression is evaluated once, for any depth of nesting.
     pub fn vector_or(
         &self,
         e: &syntax::Expr,
@@ -63,7 +64,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     ) -> Option<Vec<(Axes, Vec3<'g>)>> {
         match self.value(e, cx)? {
             Value::Vector(v) => Some(v),
-            // The number zero is the zero vector too.
+            // The number zero is also the zero vector.
             Value::Scalar(s) if s.is_zero() => Some(vec![(Axes::Own, Vec3::zero(self.graph))]),
             Value::Scalar(_) => {
                 cx.error(e.place.clone(), "expected a vector, found a scalar").help(help);
@@ -77,16 +78,15 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
     }
 
-    /// Returns the value of an expression, or reports an error; a value that is not finite is an error as
-    /// well.
+    /// Returns the value of an expression, or reports an error. A value that is not finite is also an error.
     ///
-    /// The left operands of a chain of operators, such as a long sum, are visited in a loop: the depth of the
-    /// recursion is the nesting of brackets and signs, which `syntax::guard` bounds.
+    /// The left operands of a chain of operators, such as a long sum, are visited in a loop. The depth of the
+    /// recursion is therefore the nesting of brackets and signs, which `syntax::guard` bounds.
     pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let mut operations = Vec::new();
         let mut first = e;
         while let ExprKind::Binary(op, left, right, _) = &first.kind
-            && self.deciding(first).is_none()
+            && self.compared_symbol(first).is_none()
         {
             operations.push((*op, &**right, first));
             first = left;
@@ -101,15 +101,15 @@ impl<'a, 'g> Scope<'a, 'g> {
         value
     }
 
-    /// Returns the value of an expression that is no binary operation.
+    /// Returns the value of an expression that is not a binary operation.
     fn operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        if let Some(symbol) = self.deciding(e) {
+        if let Some(symbol) = self.compared_symbol(e) {
             return Some(Value::Scalar(symbol));
         }
         match &e.kind {
             ExprKind::Number(n) => {
                 let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
-                if self.single && (small || n.abs() > f64::from(f32::MAX)) {
+                if self.is_f32 && (small || n.abs() > f64::from(f32::MAX)) {
                     let what = if small { "small" } else { "large" };
                     cx.error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
                         .help("use `f64`, or other units");
@@ -142,7 +142,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             }
             ExprKind::Array(items) => {
                 cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()))
-                    .help(VECTOR);
+                    .help(VECTOR_SYNTAX);
                 None
             }
             ExprKind::Tuple(items) => {
@@ -150,11 +150,11 @@ impl<'a, 'g> Scope<'a, 'g> {
                 match items.as_slice() {
                     [a, b, c] => error.help(format!(
                         "write `[{}, {}, {}]` for a vector",
-                        a.spelt(),
-                        b.spelt(),
-                        c.spelt()
+                        a.to_source(),
+                        b.to_source(),
+                        c.to_source()
                     )),
-                    _ => error.help(VECTOR),
+                    _ => error.help(VECTOR_SYNTAX),
                 };
                 None
             }
@@ -214,7 +214,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 }
 
-/// Returns the value if it is finite, else reports an error at the expression.
+/// Returns the value if it is finite; otherwise reports an error at the expression.
 fn finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
     let is_finite = |s: &Expr<'g>| s.value().is_none_or(f64::is_finite);
     let is_valid = match &value {
@@ -229,7 +229,7 @@ fn finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Optio
     is_valid.then_some(value)
 }
 
-/// A sum of vectors by their axes.
+/// Returns the sum of two vectors, combined by axes.
 pub fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
     for (axes, v) in b {
         match a.iter_mut().find(|(known, _)| *known == axes) {

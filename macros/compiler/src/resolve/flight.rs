@@ -1,5 +1,5 @@
-//! Functions of flight: the standard atmosphere, and the angles of bodies and velocities whose axes are
-//! forward, right and down, the ground's north, east and down.
+//! Functions of flight mechanics: the standard atmosphere, and the angles of bodies and velocities. Body axes
+//! are forward, right and down; ground axes are north, east and down.
 
 use super::call::Call;
 use super::expression::sum;
@@ -10,7 +10,7 @@ use crate::expr::{Expr, Function, air};
 use crate::language::names::AXES;
 use crate::syntax::{self, ExprKind, GROUND, Name};
 
-/// The standard atmosphere at a height.
+/// Standard atmosphere at a height.
 pub struct Air<'g> {
     /// Temperature, K.
     pub temperature: Expr<'g>,
@@ -19,19 +19,19 @@ pub struct Air<'g> {
 }
 
 impl<'g> Air<'g> {
-    /// Density, kg/m³.
+    /// Returns the density, kg/m³.
     pub fn density(&self) -> Expr<'g> {
         self.pressure / (self.temperature * air::GAS)
     }
 
-    /// Speed of sound, m/s.
+    /// Returns the speed of sound, m/s.
     pub fn speed_of_sound(&self) -> Expr<'g> {
         (self.temperature * (air::HEATS * air::GAS)).sqrt()
     }
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns a value of the standard atmosphere at a height above the sea.
+    /// Returns a value of the standard atmosphere at a height above sea level.
     pub fn air(
         &self,
         call: &Call<'_>,
@@ -46,7 +46,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(value(Air { temperature, pressure })))
     }
 
-    /// Returns an angle of a velocity relative to a body, by its components in the body's axes.
+    /// Returns an angle of a velocity relative to a body, computed from its components in the body's axes.
     pub fn flight_angle(
         &self,
         call: &Call<'_>,
@@ -57,7 +57,7 @@ impl<'g> Scope<'_, 'g> {
         self.components(velocity, body, cx).map(|parts| Value::Scalar(angle(parts)))
     }
 
-    /// Returns an angle of a velocity, by its components in the axes of the ground.
+    /// Returns an angle of a velocity, computed from its components in ground axes.
     pub fn velocity_angle(
         &self,
         call: &Call<'_>,
@@ -68,7 +68,7 @@ impl<'g> Scope<'_, 'g> {
         self.components(velocity, &ground(call.place), cx).map(|parts| Value::Scalar(angle(parts)))
     }
 
-    /// Returns an angle of a body, by the components of its forward axis in the axes of the ground.
+    /// Returns an angle of a body, computed from the components of its forward axis in ground axes.
     pub fn attitude_angle(
         &self,
         call: &Call<'_>,
@@ -86,9 +86,9 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(right.atan2(below)))
     }
 
-    /// A vector by its components in the axes of stability, which turn with the angle of attack, or of wind,
-    /// which turn with the sideslip, too: forward along the velocity, right, down (Etkin and Reid, *Dynamics
-    /// of Flight*, 1996, § 1.6 and appendix A.7).
+    /// Returns a vector given by its components in stability axes, which are body axes rotated by the angle
+    /// of attack, or in wind axes, which are also rotated by the sideslip angle: forward along the velocity,
+    /// right, down (Etkin and Reid, *Dynamics of Flight*, 1996, § 1.6 and appendix A.7).
     pub fn in_flight_axes(&self, call: &Call<'_>, of_wind: bool, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [body, velocity, list] = call.take(cx)?;
         let ExprKind::Array(items) = &list.kind else {
@@ -102,7 +102,7 @@ impl<'g> Scope<'_, 'g> {
         let [ahead, aside, below] = [parts[0]?, parts[1]?, parts[2]?];
         let plane = length(forward, down);
         let (cosine, sine) = (forward / plane, down / plane);
-        // In the plane of symmetry along the velocity, then to the right.
+        // Components along the velocity's projection onto the plane of symmetry, and to the right.
         let (along, across) = match of_wind {
             true => {
                 let speed = length(plane, right);
@@ -120,7 +120,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Vector(total))
     }
 
-    /// The components of a vector along the axes of a body.
+    /// Returns the components of a vector along the axes of a body.
     fn components(
         &self,
         vector: &syntax::Expr,
@@ -144,7 +144,7 @@ fn ground(place: &crate::diag::Place) -> syntax::Expr {
     syntax::Expr { kind: ExprKind::Name(GROUND.to_string()), place: place.clone() }
 }
 
-/// An axis of a body.
+/// Returns the expression of an axis of a body.
 fn axis(body: &syntax::Expr, k: usize) -> syntax::Expr {
     let text = AXES.get(k).unwrap_or(&AXES[0]).to_string();
     let member = Name { text, place: body.place.clone() };

@@ -1,12 +1,13 @@
-//! Free-body diagrams: all that acts on a body at once, for outputs of the type `FreeBody`. The joints of the
-//! body are released, six motions each; what a force element, a constraint or a contact does to the body is
-//! its generalized force on the joint that holds the body, less those on the joints that the body holds
-//! (virtual work: the body moves alone while all others stay). What joints transmit are their reactions, with
-//! the motors, springs and dashpots on their own coordinates.
+//! Free-body diagrams: all forces on a body, for outputs of the type `FreeBody`. Each joint of the body is
+//! released to six degrees of freedom. The wrench of a force element, a constraint or a contact on the body
+//! is its generalized force on the joint of which the body is the child, minus those on the joints of which
+//! the body is the parent. This is the principle of virtual work: the body moves alone while all others are
+//! fixed. The wrenches of joints are their reactions, including the motors, springs and dashpots on their own
+//! coordinates.
 
 use super::builder::Builder;
 use super::holders::name_of;
-use super::power::Counts;
+use super::power::ForceCounts;
 use super::reaction::RELEASED;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
 use crate::diag::Diagnostics;
@@ -19,36 +20,36 @@ use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
 use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
-/// States in which is looked at what acts.
+/// Number of sampled states at which actions are tested for zero.
 const SAMPLES: u64 = 3;
-/// Below this part of what it is the sum of, a force is none.
+/// Magnitude, relative to that of the summands, below which a sum of forces counts as zero.
 const ROUNDING: f64 = 1e-10;
 
-/// A force and a torque about the centre of mass of the body, in the axes of one link.
+/// Force and torque about the centre of mass of the body, in the axes of one link.
 #[derive(Clone, Copy)]
 struct Wrench<'g> {
     force: Vec3<'g>,
     torque: Vec3<'g>,
 }
 
-/// The body of a diagram, in the axes of one link.
-struct Freed<'g> {
+/// Body of a diagram.
+struct FreedBody<'g> {
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
     center: Placed<'g>,
-    /// The released joints: number among them, whether it holds the body.
+    /// Released joints: index among the released joints, and whether the body is the child.
     joints: Vec<(usize, bool)>,
-    /// The axes of the result.
+    /// Link and pose of the axes of the result.
     axes: (Option<LinkId>, Pose<'g>),
 }
 
-/// An action: its name, where it comes from, where it acts, and what it does.
-type Acting<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
+/// An action: name, origin, point of action, and wrench.
+type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
 
 impl<'g> Builder<'_, 'g> {
-    /// Expressions with the coordinates of released joints at zero, and their rates.
-    pub fn with_released_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
+    pub fn with_released_at_zero(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let Some((joints, _)) = self.releasing else { return e.to_vec() };
         let open = RELEASED * joints.len();
         let (nq, nv) = (self.model.nq() - open, self.model.nv() - open);
@@ -62,9 +63,9 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Remembers what an element has added since then: its generalized forces on the coordinates of released
-    /// joints.
-    pub fn know_applied(&mut self, before: &Counts, name: &str) {
+    /// Records the generalized forces of a new element on the coordinates of released joints. `before` counts
+    /// the elements of the model before it.
+    pub fn record_applied(&mut self, before: &ForceCounts, name: &str) {
         let Some((joints, _)) = self.releasing else { return };
         if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
             return;
@@ -93,30 +94,30 @@ impl<'g> Builder<'_, 'g> {
             let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * a(k));
             add(element.rate, -(element.inertance * change));
         }
-        for force in &m.acceleration_forces[before.by_acceleration..] {
+        for force in &m.acceleration_forces[before.acceleration_forces..] {
             let value = force.factors.iter().fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * a(*k));
             add(force.rate, value);
         }
         add(self.power_of_input(name), m.graph.one());
-        self.applied.push((name.to_string(), forces));
+        self.released_forces.push((name.to_string(), forces));
     }
 
-    /// The free-body diagram that an output asks for. Before joints are released it has no actions yet.
+    /// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
     pub fn free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<OutputValue<'g>> {
         let name = self.check_free_body(output, cx)?;
         let axes = self.output_axes(output, cx)?;
         let holders = self.holders_of(&name);
         let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
         let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
-        let named =
+        let output_value =
             |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
-        let Some((released, _)) = self.releasing else { return Some(named(Vec::new(), empty)) };
-        let at = |number: &usize| released.iter().position(|open| open == number);
+        let Some((released, _)) = self.releasing else { return Some(output_value(Vec::new(), empty)) };
+        let released_index = |number: &usize| released.iter().position(|open| open == number);
         let joints: Vec<(usize, bool)> =
-            holders.iter().filter_map(|(number, holds)| Some((at(number)?, *holds))).collect();
+            holders.iter().filter_map(|(number, holds)| Some((released_index(number)?, *holds))).collect();
         let (link, mass, center) = self.rigid_part(&name, &joints, output, cx)?;
-        let body = Freed { name, link, mass, center, joints, axes };
-        let mut all: Vec<Acting<'g>> = self.gravity_on(&body).into_iter().collect();
+        let body = FreedBody { name, link, mass, center, joints, axes };
+        let mut all: Vec<DiagramAction<'g>> = self.gravity_on(&body).into_iter().collect();
         all.extend(self.elements_on(&body));
         all.extend(self.joints_on(&body));
         all.extend(self.constraints_on(&body));
@@ -125,18 +126,19 @@ impl<'g> Builder<'_, 'g> {
         let rotation = &body.axes.1.rotation;
         for (name, origin, place, wrench) in all {
             let zero = Vec3::zero(self.scope.graph);
-            let point = place.map_or(zero, |terms| self.arm_to(&body, &terms));
+            let point = place.map_or(zero, |terms| self.arm_from_center(&body, &terms));
             values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
             actions.push((name, origin));
         }
-        Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions, ..empty }))
+        Some(output_value(self.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
     }
 
-    /// The name of the body, if it can have a diagram.
+    /// Returns the name of the body, if it can have a diagram.
     fn check_free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<String> {
         let ground = Some((None, Pose::identity(self.scope.graph)));
         let e = &output.value;
-        self.scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.heavy(e, cx))?;
+        self.scope
+            .in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
         let name = e.name()?;
         if self.holders_of(name).iter().all(|(_, holds)| !holds) {
             cx.error(e.place.clone(), format!("nothing holds `{name}` that could be released"))
@@ -146,8 +148,8 @@ impl<'g> Builder<'_, 'g> {
         Some(name.to_string())
     }
 
-    /// What moves as one with a body: its link, its mass and its centre of mass. Reports what moves on it
-    /// without a joint.
+    /// Returns the link, the mass and the centre of mass of a body and all elements fixed to it. Reports
+    /// elements that move on it without a joint.
     fn rigid_part(
         &self,
         name: &str,
@@ -158,8 +160,10 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         let kinematics = self.scope.kinematics.borrow();
         let link = kinematics.places.get(name)?.link;
-        let released: Vec<Option<LinkId>> =
-            joints.iter().filter_map(|(at, holds)| (!holds).then_some(self.first_of_released(*at))).collect();
+        let released: Vec<Option<LinkId>> = joints
+            .iter()
+            .filter_map(|(at, holds)| (!holds).then_some(self.first_released_link(*at)))
+            .collect();
         let (mut mass, mut sum) = (g.zero(), Vec3::zero(g));
         for (other, (m, com, _)) in &kinematics.masses {
             let Some(placed) = kinematics.places.get(other) else { continue };
@@ -186,17 +190,17 @@ impl<'g> Builder<'_, 'g> {
         Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
     }
 
-    /// The first link of the motions of a released joint.
-    fn first_of_released(&self, at: usize) -> Option<LinkId> {
+    /// Returns the first link of the motions of a released joint.
+    fn first_released_link(&self, index: usize) -> Option<LinkId> {
         let count = self.releasing?.0.len();
-        let v = self.model.nv() - RELEASED * (count - at);
+        let v = self.model.nv() - RELEASED * (count - index);
         let links = self.scope.kinematics.borrow();
         let is_it = |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
         links.joints.iter().position(is_it).map(LinkId)
     }
 
-    /// A place from the centre of mass, in the axes' link.
-    fn arm_to(&self, body: &Freed<'g>, place: &Terms<'g>) -> Vec3<'g> {
+    /// Returns a position relative to the centre of mass, in the axes of the result's link.
+    fn arm_from_center(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = self.scope.kinematics.borrow();
         let mut terms = place.clone();
         let center = kinematics.position(body.center.link, body.center.pose.translation);
@@ -214,7 +218,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.kinematics.borrow().position(placed.link, placed.pose.translation)
     }
 
-    fn gravity_on(&self, body: &Freed<'g>) -> Option<Acting<'g>> {
+    fn gravity_on(&self, body: &FreedBody<'g>) -> Option<DiagramAction<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         let weight = self.model.gravity * body.mass;
         if weight.is_zero() {
@@ -224,13 +228,13 @@ impl<'g> Builder<'_, 'g> {
         Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
     }
 
-    /// A force and a torque on the coordinates of released joints as what acts on the body.
-    fn on_body(&self, body: &Freed<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
+    /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
+    fn wrench_on_body(&self, body: &FreedBody<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
         let mut sum = Wrench { force: zero, torque: zero };
-        for (at, holds) in &body.joints {
-            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * at + k + i]));
-            let Some(w) = self.at_joint(body, *at, part(0), part(3)) else { continue };
+        for (index, holds) in &body.joints {
+            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
+            let Some(w) = self.joint_wrench(body, *index, part(0), part(3)) else { continue };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
             sum.force += w.force * sign;
             sum.torque += w.torque * sign;
@@ -238,36 +242,43 @@ impl<'g> Builder<'_, 'g> {
         sum
     }
 
-    /// What a force and a torque at a released joint, in its frame, are about the centre of mass.
-    fn at_joint(&self, body: &Freed<'g>, at: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<Wrench<'g>> {
+    /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
+    /// frame of the joint.
+    fn joint_wrench(
+        &self,
+        body: &FreedBody<'g>,
+        index: usize,
+        force: Vec3<'g>,
+        torque: Vec3<'g>,
+    ) -> Option<Wrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
             return Some(Wrench { force: zero, torque: zero });
         }
-        let j = self.releasing?.0.get(at)?;
+        let j = self.releasing?.0.get(index)?;
         let frame = self.joint_frames.get(j)?;
-        let out = |v: Vec3<'g>| {
+        let in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
             self.scope.kinematics.borrow().resolve(&terms, body.axes.0, zero)
         };
-        let (force, torque) = (out(force), out(torque));
-        let arm = self.arm_to(body, &self.position_of(frame));
+        let (force, torque) = (in_result_axes(force), in_result_axes(torque));
+        let arm = self.arm_from_center(body, &self.position_of(frame));
         Some(Wrench { force, torque: torque + arm.cross(force) })
     }
 
-    fn elements_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    fn elements_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let mut all = Vec::new();
-        for (name, forces) in &self.applied {
-            let forces = self.with_released_at_rest(forces);
-            let wrench = self.on_body(body, &forces);
-            if !self.acts(&wrench, &forces) {
+        for (name, forces) in &self.released_forces {
+            let forces = self.with_released_at_zero(forces);
+            let wrench = self.wrench_on_body(body, &forces);
+            if !self.is_nonzero(&wrench, &forces) {
                 continue;
             }
             let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
             let origin = if is_input { Origin::Input } else { Origin::Element };
             let place = self.place_of_element(body, name);
             let wrench = match &place {
-                // A force through its point, where nothing is left of its torque.
+                // A force through its point of action has no torque about that point.
                 Some(_) => Wrench { torque: Vec3::zero(self.scope.graph), ..wrench },
                 None => wrench,
             };
@@ -276,12 +287,12 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// Where an element pulls at a body, if it does so at one point.
-    fn place_of_element(&self, body: &Freed<'g>, name: &str) -> Option<Terms<'g>> {
+    /// Returns the point of the body at which an element acts, if it acts at a single point.
+    fn place_of_element(&self, body: &FreedBody<'g>, name: &str) -> Option<Terms<'g>> {
         let action = self.description.actions.iter().find(|action| action.name.text == name)?;
         let mut unread = Diagnostics::unread();
         let mut here = |e: &syntax::Expr| {
-            let placed = self.scope.place_now(e, &mut unread)?;
+            let placed = self.scope.current_place(e, &mut unread)?;
             (placed.link == body.link).then(|| self.position_of(&placed))
         };
         let row = action.kind.row();
@@ -297,14 +308,14 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What the joints of the tree transmit to the body, and what holds it, or what it carries, on a place
-    /// that is given.
-    fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    /// Returns the reactions of the tree's joints on the body, and those of elements placed by `at` and
+    /// `frame`.
+    fn joints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
         let mut all = Vec::new();
-        for (at, holds) in &body.joints {
-            let Some(&j) = released.get(*at) else { continue };
+        for (index, holds) in &body.joints {
+            let Some(&j) = released.get(*index) else { continue };
             let (name, origin) = match (self.description.joints.get(j), name_of(self.description, j)) {
                 (Some(joint), _) if joint.kind == JointKind::Free => continue,
                 (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
@@ -313,19 +324,19 @@ impl<'g> Builder<'_, 'g> {
             };
             let Some(frame) = self.joint_frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
-            let out = |k: usize| {
+            let reaction_part = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
                 self.scope.kinematics.borrow().resolve(&terms, body.axes.0, Vec3::zero(g))
             };
-            let wrench = Wrench { force: out(0), torque: out(3) };
+            let wrench = Wrench { force: reaction_part(0), torque: reaction_part(3) };
             all.push((name, origin, Some(self.position_of(frame)), wrench));
         }
         all
     }
 
-    /// What constraints, and the joints that close loops, do to the body.
-    fn constraints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    /// Returns the wrenches of constraints and of loop-closing joints on the body.
+    fn constraints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
         let first = self.model.nv() - open;
@@ -347,30 +358,30 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
         }
-        let act = |(name, forces): (String, Vec<Expr<'g>>)| {
-            let forces = self.with_released_at_rest(&forces);
-            let wrench = self.on_body(body, &forces);
-            if !self.acts(&wrench, &forces) {
+        let action_of = |(name, forces): (String, Vec<Expr<'g>>)| {
+            let forces = self.with_released_at_zero(&forces);
+            let wrench = self.wrench_on_body(body, &forces);
+            if !self.is_nonzero(&wrench, &forces) {
                 return None;
             }
             let joint = self.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
-                let place = self.end_on(body, [&joint.parent, &joint.child]);
-                let wrench = self.moved_to(body, place.as_ref(), wrench);
+                let place = self.joint_end_on(body, [&joint.parent, &joint.child]);
+                let wrench = self.wrench_about(body, place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
-            let place = self.touching.get(&name).cloned();
+            let place = self.contact_points.get(&name).cloned();
             let wrench = match &place {
                 Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
                 None => wrench,
             };
             Some((name, Origin::Constraint, place, wrench))
         };
-        by_name.into_iter().filter_map(act).collect()
+        by_name.into_iter().filter_map(action_of).collect()
     }
 
-    /// What contacts that open and close do to the body, by their forces.
-    fn contacts_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+    /// Returns the wrenches of unilateral contacts on the body.
+    fn contacts_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
         let first = self.model.nv() - open;
@@ -384,10 +395,10 @@ impl<'g> Builder<'_, 'g> {
                     forces[v - first] += force * d;
                 }
             }
-            let forces = self.with_released_at_rest(&forces);
-            let wrench = self.on_body(body, &forces);
-            if self.acts(&wrench, &forces) {
-                let place = self.touching.get(&contact.name).cloned();
+            let forces = self.with_released_at_zero(&forces);
+            let wrench = self.wrench_on_body(body, &forces);
+            if self.is_nonzero(&wrench, &forces) {
+                let place = self.contact_points.get(&contact.name).cloned();
                 let wrench = match &place {
                     Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
                     None => wrench,
@@ -398,8 +409,8 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// The end of a joint that belongs to the body.
-    fn end_on(&self, body: &Freed<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+    /// Returns the position of the end of a joint that belongs to the body.
+    fn joint_end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::unread();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
@@ -409,31 +420,31 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// The wrench about another point of the body.
-    fn moved_to(&self, body: &Freed<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
+    /// Returns the wrench about another point of the body.
+    fn wrench_about(&self, body: &FreedBody<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
-        let arm = self.arm_to(body, place);
+        let arm = self.arm_from_center(body, place);
         Wrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
-    /// Whether something is left where forces on several joints are added: what acts between two bodies that
-    /// the same joint carries cancels, up to rounding.
-    fn acts(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
-        let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
+    /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
+    /// carries cancel up to rounding.
+    fn is_nonzero(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
+        let all = self.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;
         }
         (0..SAMPLES).any(|seed| {
-            // Quaternions are unit: what cancels does so for rotations alone.
+            // Sampled quaternions have unit length, because terms may cancel only for rotations.
             let q = random_configuration(&self.model, seed);
             let number = |s: Symbol| match Quantity::of(s) {
                 Quantity::Configuration(k) => q[k],
                 _ => sample(s, seed),
             };
             let largest = |e: &[Expr<'g>]| eval(e, &number).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            let (left, size) = (largest(&all), largest(forces));
-            // Numbers that are not finite tell nothing.
-            !left.is_finite() || left > ROUNDING * size
+            let (residual, size) = (largest(&all), largest(forces));
+            // Values that are not finite are inconclusive; they count as nonzero.
+            !residual.is_finite() || residual > ROUNDING * size
         })
     }
 }

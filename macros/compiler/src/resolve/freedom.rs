@@ -1,4 +1,4 @@
-//! Degrees of freedom: redundant rows go, independent speeds are chosen.
+//! Degrees of freedom: removal of redundant rows, and choice of independent velocities.
 
 use super::builder::Builder;
 use super::contact;
@@ -7,7 +7,7 @@ use crate::kinematics::{Rows, mobility, redundancy};
 use crate::syntax::{ExprKind, Formulation};
 
 impl<'g> Builder<'_, 'g> {
-    /// Drops rows that follow from others and counts the degrees of freedom.
+    /// Removes redundant rows and counts the degrees of freedom.
     pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
         let mut rows = Rows::of(&self.model);
         let constant = redundancy::constant(&self.model, &rows);
@@ -25,7 +25,7 @@ impl<'g> Builder<'_, 'g> {
         self.choose_speeds(&rows, &samples, cx);
     }
 
-    /// Finds the velocities that follow from independent speeds, if those are asked for.
+    /// Computes the dependence of velocities on independent ones, if independent velocities are requested.
     fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
@@ -41,12 +41,12 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => e.name().map(str::to_string),
             };
-            let known = || self.model.velocities.iter().map(|(name, _)| name.as_str());
-            match known().position(|v| Some(v) == name.as_deref()) {
+            let velocity_names = || self.model.velocities.iter().map(|(name, _)| name.as_str());
+            match velocity_names().position(|v| Some(v) == name.as_deref()) {
                 Some(k) => independent.push(k),
                 None => {
                     cx.error(e.place.clone(), "expected a velocity")
-                        .suggest(name.as_deref().unwrap_or(""), known());
+                        .suggest(name.as_deref().unwrap_or(""), velocity_names());
                     return;
                 }
             }

@@ -1,9 +1,9 @@
-//! Calls of functions of expressions, and their values: one arm for each function.
+//! Calls of functions in expressions, and their values: one match arm per function.
 
 use super::call::Call;
+use super::corrections::{DOMAIN_HELP, check_angle, degrees};
 use super::momenta::Sum;
 use super::scope::{Axes, Scope, Value};
-use super::slips::{DOMAIN, check_angle, degrees};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
 use crate::kinematics::unit;
@@ -11,8 +11,7 @@ use crate::language::{Callable, FunctionId, Solid};
 use crate::syntax::{self, Callee, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns the value of a call: of a function of the language, a table of the user's, or a law in two
-    /// pieces.
+    /// Returns the value of a call of a function of the language, a table of the user, or a piecewise law.
     pub fn call(
         &self,
         callee: &Callee,
@@ -62,11 +61,11 @@ impl<'g> Scope<'_, 'g> {
                 Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
             }
             F::Norm => {
-                let (_, v) = self.only_vector(call, "the size of a scalar is `abs(a)`", cx)?;
+                let (_, v) = self.vector_argument(call, "the size of a scalar is `abs(a)`", cx)?;
                 Some(Value::Scalar(v.length()))
             }
             F::Unit => {
-                let (axes, v) = self.only_vector(call, "a scalar has no direction", cx)?;
+                let (axes, v) = self.vector_argument(call, "a scalar has no direction", cx)?;
                 if v.is_zero() {
                     cx.error(call.arguments[0].place.clone(), "the zero vector has no direction")
                         .help("a direction is a vector of some length");
@@ -157,32 +156,34 @@ impl<'g> Scope<'_, 'g> {
             && let Some(number) = self.graph.expr(inner).value()
         {
             let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
-            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name())).help(DOMAIN);
+            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()))
+                .help(DOMAIN_HELP);
             return None;
         }
         Some(Value::Scalar(s))
     }
 
-    /// Returns the vector that a function takes alone, in common axes; `help` is for a scalar in its place.
-    fn only_vector(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
+    /// Returns the only argument of a function, a vector, in common axes. `help` is the help for a scalar
+    /// argument.
+    fn vector_argument(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
         let [a] = call.take(cx)?;
         let vector = self.vector_or(a, help, cx)?;
         let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
         Some((axes, v[0]))
     }
 
-    /// Reports a function that is not known, with the one that is most likely meant.
+    /// Reports an unknown function, with the function that is most likely meant.
     fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
         let text = callee.text.as_str();
         let own = self.tables.iter().map(|table| table.name.text.as_str());
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.error(callee.place.clone(), format!("unknown function `{text}`"));
-        let greek = words::spelt_otherwise(text, &known);
+        let greek = words::known_spelling(text, &known);
         match (greek, solid) {
             (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
             (_, Some(_)) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
-            _ => words::point(error, &words::functions(), text, &known),
+            _ => words::suggest_meaning(error, &words::functions(), text, &known),
         }
         if error.is_bare() {
             error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
@@ -221,7 +222,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Reports a power that is not a number in any state.
+/// Reports a power that is undefined in all states. Returns false then.
 fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(x) = base.value() else { return true };
     let what = match exponent.value() {

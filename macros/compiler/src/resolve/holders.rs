@@ -1,5 +1,5 @@
-//! What holds bodies and can be released, for free-body diagrams: joints of the tree, and places that are
-//! given by `at` and `frame`.
+//! Releasable connections of bodies, for free-body diagrams: joints of the tree, and placements by `at` and
+//! `frame`.
 
 use super::builder::Builder;
 use super::scope::{Placed, PlacedKind};
@@ -7,17 +7,18 @@ use super::tree;
 use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose};
 use crate::syntax::{self, Description, GROUND, Rank};
 
-/// The number of a body's place among what can be released: joints come first, then bodies, then particles.
-pub fn of_body(d: &Description, body: usize) -> usize {
+/// Returns the index of a body's placement among the releasable connections: joints are first, then bodies,
+/// then particles.
+pub fn body_placement(d: &Description, body: usize) -> usize {
     d.joints.len() + body
 }
 
-/// The number of a particle's place.
-pub fn of_particle(d: &Description, particle: usize) -> usize {
+/// Returns the index of a particle's placement among the releasable connections.
+pub fn particle_placement(d: &Description, particle: usize) -> usize {
     d.joints.len() + d.bodies.len() + particle
 }
 
-/// The name of a joint, or of a body or particle that is placed.
+/// Returns the name of a releasable connection: that of a joint, a body or a particle.
 pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
     let joints = d.joints.iter().map(|joint| &joint.name);
     let bodies = d.bodies.iter().map(|body| &body.name);
@@ -25,8 +26,8 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the link of a body or a particle that is placed, if it moves by that; if its place is
-    /// released, the last of six more.
+    /// Returns the link of a placed body or particle, with a new link if its placement moves. If the
+    /// placement is released, returns the last of six further links.
     pub fn link_of_place(
         &mut self,
         number: usize,
@@ -38,21 +39,22 @@ impl<'g> Builder<'_, 'g> {
         if link == carrier {
             let frame = carrier.filter(|link| self.frame_links.contains(link) && self.is_on_frame(number));
             let Some(frame) = frame else { return (link, pose) };
-            // What carries the frame holds the body by it, apart from other bodies on the frame.
+            // The link that carries the frame is the holder; other bodies on the frame have connections of
+            // their own.
             holder = self.model.links.get(frame.0).and_then(|frame| frame.parent);
             let (motion, inertia) = (Motion::Placed, Inertia::zero(self.scope.graph));
             link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
             pose = Pose::identity(self.scope.graph);
         }
-        self.moved_by_place.push((number, holder));
+        self.moving_placements.push((number, holder));
         let Some((released, _)) = self.releasing else { return (link, pose) };
-        let Some(at) = released.iter().position(|open| *open == number) else { return (link, pose) };
+        let Some(index) = released.iter().position(|open| *open == number) else { return (link, pose) };
         self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
-        self.release(at, released.len(), link, pose)
+        self.release(index, released.len(), link, pose)
     }
 
-    /// Whether a body or a particle is fixed in a frame, not on a body or at a point, in a mechanism with
-    /// free-body diagrams.
+    /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
+    /// with free-body diagrams.
     fn is_on_frame(&self, number: usize) -> bool {
         let d = self.description;
         let is_placed = |e: &syntax::Expr| {
@@ -70,32 +72,34 @@ impl<'g> Builder<'_, 'g> {
             && !places.into_iter().flatten().any(is_placed)
     }
 
-    /// The body that carries a point, or a particle that does not move on it; a body itself.
+    /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
     fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
         let d = self.description;
         let moves = |name: &str| {
-            let numbers = self.moved_by_place.iter().map(|(number, _)| *number);
+            let numbers = self.moving_placements.iter().map(|(number, _)| *number);
             numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
         };
-        let on = |name: &str| {
+        let carrier_name = |name: &str| {
             let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
             let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
             tree::base_name(point.or(particle.filter(|_| !moves(name)))?)
         };
-        (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
+        (0..=d.points.len() + d.particles.len())
+            .fold(name, |current, _| carrier_name(current).unwrap_or(current))
     }
 
-    /// What holds a body or is held by it, and whether it holds: joints of the tree, and places.
+    /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is
+    /// the child.
     pub fn holders_of(&self, body: &str) -> Vec<(usize, bool)> {
         let d = self.description;
-        let closing = tree::closing(d);
+        let closing = tree::loop_closing_joints(d);
         let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
             let holds = joint.child.body.text == body;
             let joins = holds || self.carrier(&joint.parent.body.text) == body;
             (joins && closing.get(j) == Some(&false)).then_some((j, holds))
         });
         let own = self.scope.kinematics.borrow().places.get(body).and_then(|placed| placed.link);
-        let places = self.moved_by_place.iter().filter_map(|(number, carrier)| {
+        let places = self.moving_placements.iter().filter_map(|(number, carrier)| {
             let holds = name_of(d, *number).is_some_and(|name| name.text == body);
             (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
         });

@@ -1,4 +1,4 @@
-//! Mass and inertia of bodies: solids, matrices, and whether a real body can have them.
+//! Mass and inertia of bodies: solids, matrices, and checks of physical consistency.
 
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -7,17 +7,17 @@ use crate::language::{Argument, Callable, Method, Solid};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
-/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
-const NOTHING: f64 = 1e-18;
+/// Moments below this value, kg·m², count as zero: exporters write such values for bodies without inertia.
+const ZERO_MOMENT: f64 = 1e-18;
 
-/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten
-/// nanometres.
-const SMALLEST: f64 = 1e-16;
+/// Squared radius of gyration, m², below which the moments of a body with mass also count as zero (a radius
+/// of ten nanometres).
+const MIN_GYRATION_SQUARED: f64 = 1e-16;
 
-/// Relative tolerance of the checks: published figures are rounded.
+/// Relative tolerance of the checks: published values are rounded.
 const TOLERANCE: f64 = 1e-6;
 
-/// An operation on the inertia that is written to the left of it.
+/// Operation on the inertia that is written to its left.
 enum Operation<'a> {
     Add(&'a syntax::Expr),
     Rotate(&'a [syntax::Expr]),
@@ -77,7 +77,7 @@ impl<'g> Scope<'_, 'g> {
                 let error = cx.error(e.place.clone(), format!("expected an inertia{found}"));
                 match kind {
                     ExprKind::Tuple(items) if items.len() == 3 => {
-                        let items: Vec<String> = items.iter().map(syntax::Expr::spelt).collect();
+                        let items: Vec<String> = items.iter().map(syntax::Expr::to_source).collect();
                         error.help(format!("write `diagonal({})`", items.join(", ")));
                     }
                     ExprKind::Number(n) => {
@@ -121,9 +121,9 @@ impl<'g> Scope<'_, 'g> {
         let Some(Callable::Solid(solid)) = callee.id else {
             let known: Vec<&str> = Solid::names().collect();
             let error = cx.error(callee.place.clone(), format!("unknown solid `{text}`"));
-            let said = words::solids();
-            words::point(error, &said, text, &known);
-            if let Some(solid) = words::meant(&said, text, &known).and_then(Solid::of_name) {
+            let synonyms = words::solids();
+            words::suggest_meaning(error, &synonyms, text, &known);
+            if let Some(solid) = words::meaning(&synonyms, text, &known).and_then(Solid::of_name) {
                 error.help(format!("it is written `{}`", solid.usage()));
             }
             if error.is_bare() {
@@ -137,7 +137,7 @@ impl<'g> Scope<'_, 'g> {
                 .help(format!("write `{}`", solid.usage()));
             return None;
         }
-        if self.confused(solid, arguments, cx) {
+        if self.report_swapped(solid, arguments, cx) {
             return None;
         }
         let (mut numbers, mut axis, mut complete) = (Vec::new(), None, true);
@@ -158,9 +158,9 @@ impl<'g> Scope<'_, 'g> {
         complete.then(|| (row.inertia)(&numbers, axis.unwrap_or_else(|| Vec3::zero(self.graph))))
     }
 
-    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely
-    /// the arguments stand in another order.
-    fn confused(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+    /// Reports the first argument that is a vector instead of a scalar or vice versa: most likely the
+    /// arguments are in the wrong order.
+    fn report_swapped(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
             let mut silent = Diagnostics::unread();
             let found = match (self.value(argument, &mut silent), kind.is_direction()) {
@@ -178,10 +178,10 @@ impl<'g> Scope<'_, 'g> {
         false
     }
 
-    fn check_not_negative(&self, s: Expr<'g>, at: &syntax::Expr, cx: &mut Diagnostics) -> bool {
+    fn check_not_negative(&self, s: Expr<'g>, argument: &syntax::Expr, cx: &mut Diagnostics) -> bool {
         match s.value() {
             Some(n) if n < 0.0 => {
-                cx.error(at.place.clone(), format!("this cannot be negative, but it is {n}"))
+                cx.error(argument.place.clone(), format!("this cannot be negative, but it is {n}"))
                     .help("masses, sizes and moments are zero or more");
                 false
             }
@@ -190,13 +190,13 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// True for a solid with its arguments.
+/// Whether an expression is a solid with its arguments.
 fn is_solid(e: &syntax::Expr) -> bool {
     matches!(&e.kind, ExprKind::Call(Callee { id: Some(Callable::Solid(_)), .. }, _))
 }
 
-/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to
-/// take it anyway.
+/// Reports a constant inertia that is physically impossible for a body of this mass. `hint` is the help on
+/// how to accept the inertia anyway.
 pub fn check_inertia(
     body: &str,
     mass: Option<f64>,
@@ -208,8 +208,8 @@ pub fn check_inertia(
     let Some(m) = inertia.full().values() else { return };
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
-    let list = moments.map(brief).join(", ");
-    if scale <= NOTHING.max(SMALLEST * mass.unwrap_or(0.0)) {
+    let list = moments.map(rounded_text).join(", ");
+    if scale <= ZERO_MOMENT.max(MIN_GYRATION_SQUARED * mass.unwrap_or(0.0)) {
         return;
     }
     if moments[0] < -TOLERANCE * scale {
@@ -227,8 +227,8 @@ pub fn check_inertia(
     }
 }
 
-/// A number with about five digits.
-fn brief(x: f64) -> String {
+/// Formats a number with about five digits.
+fn rounded_text(x: f64) -> String {
     let rounded: f64 = format!("{x:.4e}").parse().unwrap_or(x);
     match rounded.abs() {
         size if size == 0.0 || (1e-3..1e6).contains(&size) => rounded.to_string(),
@@ -236,7 +236,7 @@ fn brief(x: f64) -> String {
     }
 }
 
-/// Eigenvalues of a symmetric matrix in ascending order (Jacobi rotations).
+/// Returns the eigenvalues of a symmetric matrix in ascending order (Jacobi rotations).
 fn principal_moments(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     for _ in 0..32 {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {

@@ -1,5 +1,5 @@
-//! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of
-//! simple ones with massless frames between.
+//! Elementary motions of joints. A joint with several degrees of freedom is a chain of simple joints with
+//! massless links between them.
 
 use super::elementary::Elementary;
 use super::scope::Scope;
@@ -23,8 +23,8 @@ pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     }
 }
 
-/// Returns how a joint is drawn, if it is, and the axes of which it shows the first.
-pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
+/// Returns the symbol of a joint in the drawing, if it has one, and the axes of which the first is drawn.
+pub fn drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
         DrawnAxis::About => joint.about.as_slice(),
@@ -33,13 +33,13 @@ pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     Some((kind, axes))
 }
 
-/// The full name of a coordinate.
+/// Returns the full name of a coordinate, `joint.coordinate`.
 pub fn full_name(joint: &str, coordinate: &str) -> String {
     if coordinate.is_empty() { joint.to_string() } else { format!("{joint}.{coordinate}") }
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The motions of a joint in order from parent to child.
+    /// Returns the motions of a joint in order from parent to child.
     pub fn motions(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
         use Elementary::{Slide, Turn};
         let about = self.axes(joint, &joint.about, cx);
@@ -47,26 +47,26 @@ impl<'g> Scope<'_, 'g> {
         let (about, along) = (about?, along?);
         let place = &joint.name.place;
         match joint.kind {
-            JointKind::Pin => Some(vec![Turn(one(&about, "about", "a Pin", place, cx)?)]),
-            JointKind::Sleeve => Some(vec![Slide(one(&along, "along", "a Sleeve", place, cx)?)]),
+            JointKind::Pin => Some(vec![Turn(single_axis(&about, "about", "a Pin", place, cx)?)]),
+            JointKind::Sleeve => Some(vec![Slide(single_axis(&along, "along", "a Sleeve", place, cx)?)]),
             JointKind::Screw => self.screw(joint, &about, &along, cx),
             JointKind::Collar => {
-                let axis = either(&about, &along, "a Collar", place, cx)?;
+                let axis = common_axis(&about, &along, "a Collar", place, cx)?;
                 Some(vec![Slide(axis), Turn(axis)])
             }
             JointKind::Slot => {
-                let slide = one(&along, "along", "a Slot", place, cx);
-                let turn = one(&about, "about", "a Slot", place, cx);
+                let slide = single_axis(&along, "along", "a Slot", place, cx);
+                let turn = single_axis(&about, "about", "a Slot", place, cx);
                 Some(vec![Slide(slide?), Turn(turn?)])
             }
             JointKind::Universal => {
-                let axes = several(&about, 2..=2, "about", "a Universal", place, cx)?;
+                let axes = axis_list(&about, 2..=2, "about", "a Universal", place, cx)?;
                 check_independent(axes, "a Universal", joint.about.get(1), cx)?;
                 Some(axes.iter().map(|a| Turn(*a)).collect())
             }
             JointKind::Planar => self.planar(&about, &along, place, cx),
             JointKind::Stage => {
-                let axes = several(&along, 2..=3, "along", "a Stage", place, cx)?;
+                let axes = axis_list(&along, 2..=3, "along", "a Stage", place, cx)?;
                 check_independent(axes, "a Stage", joint.along.last(), cx)?;
                 Some(axes.iter().map(|a| Slide(*a)).collect())
             }
@@ -88,7 +88,7 @@ impl<'g> Scope<'_, 'g> {
         along: &[Vec3<'g>],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Elementary<'g>>> {
-        let axis = either(about, along, "a Screw", &joint.name.place, cx);
+        let axis = common_axis(about, along, "a Screw", &joint.name.place, cx);
         let pitch = match (&joint.pitch, &joint.lead) {
             (Some(pitch), None) => self.scalar(pitch, cx),
             (None, Some(lead)) => self.scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
@@ -102,7 +102,7 @@ impl<'g> Scope<'_, 'g> {
         Some(vec![Elementary::Helix(axis?, pitch?)])
     }
 
-    /// Two slides in the plane, then a turn about its normal.
+    /// Returns two slides in the plane, followed by a rotation about its normal.
     fn planar(
         &self,
         about: &[Vec3<'g>],
@@ -141,7 +141,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("leave one of them out");
             return None;
         }
-        // The given normal is exact, the product is rounded.
+        // The written normal is exact, the product is rounded.
         let normal = about.first().copied().unwrap_or(normal);
         Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
     }
@@ -168,22 +168,22 @@ pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g
     }
 }
 
-/// True if an expression is zero for all values of the parameters, within rounding.
+/// Whether an expression is zero for all values of the parameters, within rounding.
 fn vanishes(e: Expr<'_>) -> bool {
     (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
 }
 
-fn one<'g>(
+fn single_axis<'g>(
     axes: &[Vec3<'g>],
     key: &str,
     what: &str,
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    several(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
+    axis_list(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
 }
 
-fn several<'a, 'g>(
+fn axis_list<'a, 'g>(
     axes: &'a [Vec3<'g>],
     count: std::ops::RangeInclusive<usize>,
     key: &str,
@@ -207,7 +207,7 @@ fn several<'a, 'g>(
     None
 }
 
-/// Reports axes that are parallel, or three in a plane: one of the coordinates would do what the others do.
+/// Reports axes that are parallel, or three coplanar ones: one of the coordinates would be redundant.
 fn check_independent(
     axes: &[Vec3<'_>],
     what: &str,
@@ -227,7 +227,7 @@ fn check_independent(
     Some(())
 }
 
-fn either<'g>(
+fn common_axis<'g>(
     about: &[Vec3<'g>],
     along: &[Vec3<'g>],
     what: &str,
@@ -244,7 +244,7 @@ fn either<'g>(
     }
 }
 
-/// A coordinate of its own.
+/// Returns the coordinate with these indices, with ratio one and offset zero.
 pub fn own_coordinate(q: InQ, v: InV) -> Coordinate {
     Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

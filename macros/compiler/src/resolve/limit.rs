@@ -1,4 +1,4 @@
-//! Limits → bounds of the entries of `q` and `v`. Several limits of one entry hold together.
+//! Limits as bounds of the entries of `q` and `v`. All limits of one entry apply simultaneously.
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;
@@ -17,16 +17,16 @@ impl<'g> Builder<'_, 'g> {
             }
             let Some((coordinate, angle)) = self.coordinate(&limit.on, cx) else { continue };
             let bounds =
-                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check(limit, bounds, cx));
+                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check_bounds(limit, bounds, cx));
             if let Some(bounds) = bounds {
                 let found = self.limit_of(&coordinate, bounds);
-                self.bound(limit, found, &known, cx);
+                self.add_bounds(limit, found, &known, cx);
                 known.push((limit, found));
             }
         }
     }
 
-    /// Reads the limit of an expression, which is a stop, for its mistakes alone.
+    /// Reads the limit of an expression, which is a stop, only to report its errors.
     fn check_stop(&self, limit: &syntax::Limit, cx: &mut Diagnostics) {
         let others = [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)];
         if let Some((key, e)) = others.into_iter().find_map(|(key, e)| Some((key, e.as_ref()?))) {
@@ -40,11 +40,11 @@ impl<'g> Builder<'_, 'g> {
                 "add `restitution = e`, from 0 to 1: the part of the speed that is left when the bound is struck",
             );
         } else if let Some(bounds) = self.bounds(limit, false, cx) {
-            check(limit, &bounds, cx);
+            check_bounds(limit, &bounds, cx);
         }
     }
 
-    /// The values of the four bounds; `None` after a mistake.
+    /// Returns the values of the four bounds; `None` after an error.
     fn bounds(
         &self,
         limit: &syntax::Limit,
@@ -54,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
         let mut good = true;
         let mut read = |e: &Option<Expr>, angle: bool| {
             let e = e.as_ref()?;
-            // A file's numbers are in radians, however many turns they are.
+            // Angles in a file are in radians, without a limit on revolutions.
             let value = match angle && e.place.file.is_none() {
                 true => self.scope.plane_angle(e, cx),
                 false => self.scope.scalar(e, cx),
@@ -71,11 +71,11 @@ impl<'g> Builder<'_, 'g> {
         good.then_some(bounds)
     }
 
-    /// The bounds of a coordinate that bounds of `ratio × q + offset` are.
+    /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
     fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
         let num = |x: f64| self.scope.graph.num(x);
-        let own = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
-        let (from, to) = (from.map(own), to.map(own));
+        let to_coordinate = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
+        let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
         let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
         let speed = speed.map(|speed| speed / num(c.ratio.abs()));
         let effort = effort.map(|effort| effort * num(c.ratio.abs()));
@@ -83,7 +83,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
-    fn bound(
+    fn add_bounds(
         &mut self,
         limit: &syntax::Limit,
         found: Limit<'g>,
@@ -94,15 +94,16 @@ impl<'g> Builder<'_, 'g> {
             self.model.limits.push(found);
             return;
         };
-        let both = tighter(known, &found);
-        let leaves_room = |limit: &Limit<'_>| room(limit).is_none_or(|room| room > 0.0);
-        if leaves_room(known) && leaves_room(&found) && !leaves_room(&both) {
+        let both = tighter_bounds(known, &found);
+        let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
+        if has_range(known) && has_range(&found) && !has_range(&both) {
             let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
             let contradicts = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
-                other.v == found.v && !leaves_room(&tighter(other, &found))
+                other.v == found.v && !has_range(&tighter_bounds(other, &found))
             };
             let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
-            // Of two limits of a file the one that is not the coordinate's own is in the way.
+            // If both limits are from a file, the one that does not belong to the coordinate itself is
+            // reported.
             let own = limit.name.text == name;
             let follower = if own { other.unwrap_or(limit) } else { limit };
             let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
@@ -119,28 +120,28 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The tighter ones of two bounds of one coordinate.
-fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
-    let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
+/// Returns the tighter bounds of two limits of one coordinate.
+fn tighter_bounds<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
+    let tighter_bounds = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
         (Some(a), Some(b)) => Some(a.extreme(which, b)),
         (a, b) => a.or(b),
     };
     Limit {
-        lower: tighter(Extreme::Max, known.lower, found.lower),
-        upper: tighter(Extreme::Min, known.upper, found.upper),
-        speed: tighter(Extreme::Min, known.speed, found.speed),
-        effort: tighter(Extreme::Min, known.effort, found.effort),
+        lower: tighter_bounds(Extreme::Max, known.lower, found.lower),
+        upper: tighter_bounds(Extreme::Min, known.upper, found.upper),
+        speed: tighter_bounds(Extreme::Min, known.speed, found.speed),
+        effort: tighter_bounds(Extreme::Min, known.effort, found.effort),
         ..*found
     }
 }
 
-/// The distance between the bounds of a coordinate, if both are numbers.
-fn room(limit: &Limit<'_>) -> Option<f64> {
+/// Returns the distance between the bounds of a coordinate, if both are constant.
+fn range_width(limit: &Limit<'_>) -> Option<f64> {
     Some(limit.upper?.value()? - limit.lower?.value()?)
 }
 
-/// Reports bounds that nothing can keep.
-fn check(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
+/// Reports bounds that no motion satisfies. Returns false then.
+fn check_bounds(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
     let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
     if let (Some(low), Some(high), Some(e)) = (from, to, &limit.to)
         && low > high

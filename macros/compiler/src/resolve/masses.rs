@@ -1,8 +1,8 @@
-//! Masses: those of bodies and particles go to the links that carry them.
+//! Masses of bodies and particles, which are added to the links that carry them.
 
 use super::builder::Builder;
-use super::figures::Range;
 use super::inertia::check_inertia;
+use super::range::ValueRange;
 use super::scope::{MassProperties, Placed};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
@@ -14,7 +14,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
     pub fn add_masses(&mut self, cx: &mut Diagnostics) {
         for (k, body) in self.description.bodies.iter().enumerate() {
-            // What a file fixes to the ground enters no equation, whatever figures it has.
+            // Inertial parameters of a body that a file fixes to the ground enter no equation.
             let is_fixed = matches!(self.places[k], Some((None, _)));
             let from_file = body.name.place.file.is_some();
             let mut silent = Diagnostics::new();
@@ -33,7 +33,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Mass, centre of mass and central inertia of a body.
+    /// Returns mass, centre of mass and central inertia of a body.
     fn body_inertia(&self, body: &Body, cx: &mut Diagnostics) -> Option<MassProperties<'g>> {
         let graph = self.scope.graph;
         let name = &body.name.text;
@@ -53,18 +53,18 @@ impl<'g> Builder<'_, 'g> {
             cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
                 .help("a mass is zero or more, kg; gravity has the sign");
         }
-        let range = Range::of(&self.description.scalar);
-        let mut sound = true;
+        let range = ValueRange::of_scalar(&self.description.scalar);
+        let mut is_valid = true;
         if let (Some(e), Some(m)) = (&body.mass, mass) {
-            sound &= range.check_mass(m, &e.place, cx);
+            is_valid &= range.check_mass(m, &e.place, cx);
         }
         if let (Some(e), Some(com)) = (&body.com, com) {
-            sound &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
+            is_valid &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
         }
         if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
-            sound = sound && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
+            is_valid = is_valid && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
         }
-        if !sound {
+        if !is_valid {
             return None;
         }
         if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
@@ -82,12 +82,11 @@ impl<'g> Builder<'_, 'g> {
             check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
         }
         let found = (mass?, com?, inertia?);
-        self.require_a_body(name, &found);
+        self.require_physical_inertia(name, &found);
         Some(found)
     }
 
-    /// An inertia that is given about another point, about the centre of mass: less by what the mass adds
-    /// there at the distance between them (the parallel-axis theorem).
+    /// Converts an inertia about another point to one about the centre of mass by the parallel-axis theorem.
     fn about_center(
         &self,
         body: &Body,
@@ -113,34 +112,35 @@ impl<'g> Builder<'_, 'g> {
         Some(inertia? - Sym3::point(mass?, com? - about?))
     }
 
-    /// What can be said of a body's figures only where its parameters are known.
-    fn require_a_body(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
+    /// Adds the requirements for inertial parameters that can be checked only at run time, when their
+    /// parameters have values.
+    fn require_physical_inertia(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
         for c in com.0 {
             self.scope.require(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
         }
         let entries: Vec<Expr<'g>> =
             inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
-        let figure = || format!("the inertia of `{name}`");
+        let quantity = || format!("the inertia of `{name}`");
         match self.description.inertias {
-            Inertias::Check => self.scope.require(Rule::Inertia, figure, &entries),
-            _ => entries.iter().for_each(|entry| self.scope.require(Rule::Finite, figure, &[*entry])),
+            Inertias::Check => self.scope.require(Rule::Inertia, quantity, &entries),
+            _ => entries.iter().for_each(|entry| self.scope.require(Rule::Finite, quantity, &[*entry])),
         }
     }
 
-    /// Adds the mass of what has this pose on a link to that of the link.
+    /// Adds the mass of an element with this pose on a link to that of the link.
     fn attach(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
         let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
         let sum = &mut self.model.links[link.0].inertia;
         *sum = sum.plus(&added);
     }
 
-    /// Figures may be finite and their products not.
+    /// Reports inertial parameters whose products are not finite.
     pub fn check_finite(&self, cx: &mut Diagnostics) {
         if !cx.is_empty() {
             return;
         }
-        let range = Range::of(&self.description.scalar);
-        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.most);
+        let range = ValueRange::of_scalar(&self.description.scalar);
+        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
         for (k, body) in self.description.bodies.iter().enumerate() {
             let Some((Some(link), _)) = &self.places[k] else { continue };
             let i = &self.model.links[link.0].inertia;
@@ -158,7 +158,7 @@ impl<'g> Builder<'_, 'g> {
         let graph = self.scope.graph;
         let mass = self.scope.scalar(&particle.mass, cx);
         if let Some(mass) = mass {
-            Range::of(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
+            ValueRange::of_scalar(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
             self.scope.require(Rule::Mass, || format!("the mass of `{}`", particle.name.text), &[mass]);
         }
         if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {

@@ -1,9 +1,9 @@
-//! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with
+//! Physical matrices, which map vectors to vectors: projectors, rotations, cross products and inertias, with
 //! their products, transposes and rates.
 
 use super::call::{Call, flatten};
 use super::quantities::{in_links, vector};
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
@@ -12,26 +12,26 @@ use crate::mechanism::LinkId;
 use crate::syntax::{self, BinaryOp, GROUND};
 
 impl<'g> Kinematics<'g> {
-    /// A matrix in the axes of another link.
-    pub fn matrix_in(&self, m: Resolved<'g>, link: Option<LinkId>) -> Resolved<'g> {
-        if m.link == link { m } else { m.turned(link, |v| change_axes(&self.joints, v, m.link, link)) }
+    /// Returns a matrix in the axes of another link.
+    pub fn matrix_in(&self, m: ResolvedMatrix<'g>, link: Option<LinkId>) -> ResolvedMatrix<'g> {
+        if m.link == link { m } else { m.in_axes(link, |v| change_axes(&self.joints, v, m.link, link)) }
     }
 
-    /// The entries of a matrix in the axes of a frame on a link, column by column.
+    /// Returns the entries of a matrix in the axes of a frame on a link, column by column.
     pub fn matrix_entries(
         &self,
-        m: Resolved<'g>,
+        m: ResolvedMatrix<'g>,
         link: Option<LinkId>,
         axes: &Rotation<'g>,
     ) -> Vec<Expr<'g>> {
-        let here = self.matrix_in(m, link).turned(link, |v| axes.to_child(v));
+        let here = self.matrix_in(m, link).in_axes(link, |v| axes.to_child(v));
         (0..3).flat_map(|k| here.entries.column(k).0).collect()
     }
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// A matrix.
-    pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Resolved<'g>> {
+    /// Returns the value of a matrix expression.
+    pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<ResolvedMatrix<'g>> {
         match self.value(e, cx)? {
             Value::Matrix(m) => Some(m),
             other => {
@@ -42,75 +42,79 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// A matrix by its rows, in the axes at hand.
+    /// Returns a matrix written by its rows, in the axes of the context.
     pub fn matrix_by_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let entries = self.matrix(e, cx)?;
         let Some((link, pose)) = self.context.borrow().axes.clone() else {
-            return self.no_matrix(&e.place, cx);
+            return self.report_no_matrix(&e.place, cx);
         };
-        let own = Resolved { link, entries };
-        Some(Value::Matrix(own.turned(link, |v| pose.rotation.to_parent(v))))
+        let own = ResolvedMatrix { link, entries };
+        Some(Value::Matrix(own.in_axes(link, |v| pose.rotation.to_parent(v))))
     }
 
-    /// Reports a matrix where none can stand.
-    fn no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
+    /// Reports a matrix in a context that does not allow matrices.
+    fn report_no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
         cx.error(place.clone(), "a matrix cannot stand here")
             .help("matrices stand in definitions, outputs and forces: `#[define(projector(n))]`");
         None
     }
 
-    /// Returns the arguments of a function of matrices, or reports that there are no matrices here.
+    /// Returns the arguments of a function of matrices, or reports that matrices are not allowed here.
     fn take_matrix<'e, const N: usize>(
         &self,
         call: &Call<'e>,
         cx: &mut Diagnostics,
     ) -> Option<&'e [syntax::Expr; N]> {
-        if self.context.borrow().axes.is_none() { self.no_matrix(call.place, cx) } else { call.take(cx) }
+        if self.context.borrow().axes.is_none() {
+            self.report_no_matrix(call.place, cx)
+        } else {
+            call.take(cx)
+        }
     }
 
-    /// `identity()`
+    /// Resolves `identity()`.
     pub fn identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [] = self.take_matrix(call, cx)?;
-        Some(Value::Matrix(Resolved { link: None, entries: Mat3::identity(self.graph) }))
+        Some(Value::Matrix(ResolvedMatrix { link: None, entries: Mat3::identity(self.graph) }))
     }
 
-    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line.
+    /// Resolves `projector(n)`: `n nᵀ / n·n`, the projection onto a line.
     pub fn projector(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a] = self.take_matrix(call, cx)?;
         let (link, [a]) = self.vectors([a], cx)?;
         let square = a.dot(a);
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
     }
 
-    /// `skew(a)`, with `skew(a) * b = cross(a, b)`.
+    /// Resolves `skew(a)`, with `skew(a) * b = cross(a, b)`.
     pub fn skew(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a] = self.take_matrix(call, cx)?;
         let (link, [a]) = self.vectors([a], cx)?;
-        Some(Value::Matrix(Resolved { link, entries: Mat3::skew(a) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::skew(a) }))
     }
 
-    /// `outer(a, b)`: `a bᵀ`.
+    /// Resolves `outer(a, b)`: `a bᵀ`.
     pub fn outer(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a, b] = self.take_matrix(call, cx)?;
         let (link, [a, b]) = self.vectors([a, b], cx)?;
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
     }
 
-    /// `transpose(M)`
+    /// Resolves `transpose(M)`.
     pub fn transpose(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?;
-        Some(Value::Matrix(Resolved { entries: m.entries.transpose(), ..m }))
+        Some(Value::Matrix(ResolvedMatrix { entries: m.entries.transpose(), ..m }))
     }
 
-    /// `trace(M)`
+    /// Resolves `trace(M)`.
     pub fn trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?.entries.0;
         Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
     }
 
-    /// Vectors in the axes of one link.
+    /// Returns the values of vectors in the axes of one link, with the link.
     fn vectors<const N: usize>(
         &self,
         vectors: [&syntax::Expr; N],
@@ -121,10 +125,10 @@ impl<'g> Scope<'_, 'g> {
         Some((link, v.try_into().ok()?))
     }
 
-    /// `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
+    /// Resolves `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
     pub fn physical_rotation(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of] = self.take_matrix(call, cx)?;
-        let Ok([b, a]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands] = self.take_matrix(call, cx)?;
+        let Ok([b, a]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`rotation(…)`", call.place, cx) {
             return None;
         }
@@ -135,10 +139,10 @@ impl<'g> Scope<'_, 'g> {
         let zero = Vec3::zero(self.graph);
         let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
         let entry = |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
-        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(entry) }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry) }))
     }
 
-    /// The axes of a body or a frame whose name is known.
+    /// Returns the axes of a placed body or frame.
     fn axes_of(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
         let axis = |k: usize| Vec3::axis(self.graph, k);
         match e.name()? {
@@ -151,15 +155,17 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// `inertia(body / point)`: the physical inertia matrix of bodies about a point.
+    /// Resolves `inertia(body / point)`: the physical inertia matrix of bodies about a point.
     pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [of] = self.take_matrix(call, cx)?;
-        let Ok([of, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        let [operands] = self.take_matrix(call, cx)?;
+        let Ok([bodies_written, about]) = <[_; 2]>::try_from(flatten(operands)) else {
+            return call.reject(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let about = self.place_now(about, cx)?;
+        let bodies = self.bodies_with_mass(bodies_written, cx)?;
+        let about = self.current_place(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
         let axis = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
         let entries = Mat3::from_fn(|i, j| {
@@ -168,10 +174,10 @@ impl<'g> Scope<'_, 'g> {
                 sum + self.inertia_about(body, &about, [&axis(i), &axis(j)])
             })
         });
-        Some(Value::Matrix(Resolved { link, entries }))
+        Some(Value::Matrix(ResolvedMatrix { link, entries }))
     }
 
-    /// Sums, differences and products with a matrix.
+    /// Returns sums, differences and products with a matrix.
     pub fn matrix_binary(
         &self,
         op: BinaryOp,
@@ -189,7 +195,7 @@ impl<'g> Scope<'_, 'g> {
                     BinaryOp::Sub => a.entries - b,
                     _ => a.entries * b,
                 };
-                Value::Matrix(Resolved { entries, ..a })
+                Value::Matrix(ResolvedMatrix { entries, ..a })
             }
             (BinaryOp::Mul, Value::Matrix(m), Value::Vector(v)) => {
                 let v = kinematics.resolve(&in_links(v), m.link, Vec3::zero(self.graph));

@@ -1,6 +1,6 @@
-//! What the user wrote → a checked mechanism: names resolved, the tree of links found, joints reduced to
-//! elementary motions, bodies lumped into the links that carry them. All mistakes of the user are found here
-//! or before; knows neither algorithms nor generated code.
+//! Resolution of the description written by the user into a checked mechanism: resolves names, finds the tree
+//! of links, reduces joints to elementary motions and lumps bodies into the links that carry them. All errors
+//! of the user are reported here or earlier. This module depends neither on algorithms nor on generated code.
 
 mod accelerations;
 mod axis;
@@ -15,13 +15,13 @@ mod closed_form;
 mod closure;
 mod constraint;
 mod contact;
+mod corrections;
 mod curves;
 mod drawing;
 mod drive;
 mod elementary;
 mod equilibria;
 mod expression;
-mod figures;
 mod flight;
 mod forces;
 mod free_body;
@@ -43,13 +43,13 @@ mod pieces;
 mod place;
 mod power;
 mod quantities;
+mod range;
 mod reaction;
 mod requirements;
 mod resolved;
 mod rotation;
 mod rows;
 mod scope;
-mod slips;
 mod speeds;
 mod target;
 mod terms;

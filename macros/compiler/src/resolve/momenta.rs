@@ -10,7 +10,7 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, words};
 
-/// A sum over bodies.
+/// A quantity that is summed over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// Sum of the momenta.
@@ -22,9 +22,9 @@ pub enum Sum {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The momentum, the angular momentum or the kinetic energy of bodies, by their motion relative to the
-    /// ground. With the velocity `v` of a centre of mass, the vector `r` there from a point, and the central
-    /// inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
+    /// Returns the momentum, the angular momentum or the kinetic energy of bodies, for their motion relative
+    /// to the ground. With the velocity `v` of the centre of mass, its position `r` relative to the point,
+    /// and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
     pub fn momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let (text, parts) = (call.name(), call.parts());
         let (count, point) = if sum == Sum::AngularMomentum { (2, " / point") } else { (1, "") };
@@ -41,9 +41,9 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(parts[0], cx)?;
+        let bodies = self.bodies_with_mass(parts[0], cx)?;
         let about = match parts.get(1) {
-            Some(e) => Some(self.place_now(e, cx)?),
+            Some(e) => Some(self.current_place(e, cx)?),
             None => None,
         };
         let kinematics = self.kinematics.borrow();
@@ -62,24 +62,25 @@ impl<'g> Scope<'_, 'g> {
                 continue;
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
-            let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
-            let r = kinematics.resolve(&between, link, zero);
+            let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+            let r = kinematics.resolve(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
         Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector(momenta) })
     }
 
-    /// `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of bodies.
+    /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
+    /// bodies.
     pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Ok([of, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
+        let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
         if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let from = self.place_now(from, cx)?;
+        let bodies = self.bodies_with_mass(bodies_written, cx)?;
+        let from = self.current_place(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
-            cx.error(of.place.clone(), "what has no mass has no centre of mass")
+            cx.error(bodies_written.place.clone(), "what has no mass has no centre of mass")
                 .help("name bodies with a `mass`");
             return None;
         }
@@ -87,16 +88,16 @@ impl<'g> Scope<'_, 'g> {
         let mut sum = Vec::new();
         for (placed, (mass, com, _)) in bodies {
             let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
-            let between = kinematics.between(&Placed { pose, ..placed }, &from);
+            let offset = kinematics.position_between(&Placed { pose, ..placed }, &from);
             let share = mass / total;
-            sum.extend(between.into_iter().map(|(link, r)| (link, r * share)));
+            sum.extend(offset.into_iter().map(|(link, r)| (link, r * share)));
         }
         Some(vector(sum))
     }
 
-    /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical
-    /// inertia matrix `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the
-    /// parallel-axis theorem); of several bodies the sum.
+    /// Returns the moment `a·J a` (for one direction) or the product `a·J b` of inertia of bodies about a
+    /// point. `J = I + m (r·r 1 − r rᵀ)` is the physical inertia matrix, with the position `r` of the centre
+    /// of mass relative to the point (the parallel-axis theorem). Several bodies are summed.
     pub fn moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let text = call.name();
         let (parts, directions) = match call.arguments {
@@ -114,8 +115,8 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
-        let bodies = self.heavy_ones(of, cx)?;
-        let about = self.place_now(about, cx)?;
+        let bodies = self.bodies_with_mass(of, cx)?;
+        let about = self.current_place(about, cx)?;
         let a = self.terms(a, cx)?;
         let b = others.first().map_or_else(|| Some(a.clone()), |b| self.terms(b, cx))?;
         let sum = bodies
@@ -124,7 +125,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(sum))
     }
 
-    /// `a·J b` of a body about a point.
+    /// Returns `a·J b` of a body about a point.
     pub fn inertia_about(
         &self,
         (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
@@ -134,40 +135,44 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
-        let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
-        let [a, b, r] = [a, b, &between].map(|parts| kinematics.resolve(parts, link, zero));
+        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+        let [a, b, r] = [a, b, &offset].map(|parts| kinematics.resolve(parts, link, zero));
         let central = placed.pose.rotation.sym_to_parent(*central);
-        let moved = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
-        a.dot(central * b) + moved
+        let shift = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
+        a.dot(central * b) + shift
     }
 
-    /// Bodies and particles, one by its name or several in parentheses.
-    pub fn heavy_ones(
+    /// Returns bodies and particles: one by its name, or several in parentheses.
+    pub fn bodies_with_mass(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Vec<(Placed<'g>, MassProperties<'g>)>> {
         let (ExprKind::Tuple(items) | ExprKind::Array(items)) = &e.kind else {
-            return Some(vec![self.heavy(e, cx)?]);
+            return Some(vec![self.body_with_mass(e, cx)?]);
         };
         if items.is_empty() {
             cx.error(e.place.clone(), "expected bodies, found none").help("write `(first, second)`");
             return None;
         }
-        let twice = |k: usize| {
+        let is_duplicate = |k: usize| {
             items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
         };
-        if let Some(k) = (0..items.len()).find(|k| twice(*k)) {
-            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].spelt()))
+        if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
+            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].to_source()))
                 .help("name each body once");
             return None;
         }
-        let all: Vec<_> = items.iter().map(|item| self.heavy(item, cx)).collect();
+        let all: Vec<_> = items.iter().map(|item| self.body_with_mass(item, cx)).collect();
         all.into_iter().collect()
     }
 
-    /// A body or particle with its mass, centre of mass and central inertia.
-    pub fn heavy(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<(Placed<'g>, MassProperties<'g>)> {
+    /// Returns a body or particle with its mass, centre of mass and central inertia.
+    pub fn body_with_mass(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<(Placed<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
             return None;
@@ -175,17 +180,17 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         match (kinematics.places.get(name), kinematics.masses.get(name)) {
             (Some(placed), Some(masses)) => Some((placed.clone(), *masses)),
-            // Its figures could not be read, and that was told.
+            // Its inertial parameters could not be read; the error has been reported.
             (Some(_), None) if !cx.is_empty() && self.bodies.contains(name) => None,
             (Some(_), None) => {
                 cx.error(e.place.clone(), format!("`{name}` has no mass")).help("name a body or a particle");
                 None
             }
             (None, _) => {
-                if self.is_news(name, cx) {
+                if self.is_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
                     let error = cx.error(e.place.clone(), format!("unknown body `{name}`"));
-                    words::point(error, words::BODIES, name, &known);
+                    words::suggest_meaning(error, words::BODIES, name, &known);
                     if error.is_bare() {
                         error.help("name a body or a particle");
                     }

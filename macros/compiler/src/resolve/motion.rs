@@ -1,18 +1,18 @@
-//! Velocities and accelerations of the links, once everything is placed.
+//! Velocities and accelerations of the links, computed after placement.
 
 use super::builder::Builder;
 use crate::kinematics::{accelerations, twists};
 use crate::mechanism::Quantity;
 
-/// That it is known how the links move, so that what names velocities can be read. Comes of
-/// [`Builder::know_motion`] alone.
+/// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
+/// by [`Builder::compute_motion`].
 #[derive(Clone, Copy)]
 pub struct Moving(());
 
 impl<'g> Builder<'_, 'g> {
-    /// Twists and accelerations of the links, for the expressions that name velocities. `None` while
-    /// something has no place.
-    pub fn know_motion(&mut self) -> Option<Moving> {
+    /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
+    /// element has not been placed.
+    pub fn compute_motion(&mut self) -> Option<Moving> {
         if !self.is_placed() {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Names in expressions: parameters, directions, coordinates, time, inputs, definitions.
+//! Names in expressions: parameters, directions, coordinates, time, inputs and definitions.
 
 use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -9,8 +9,8 @@ use crate::mechanism::{Pose, Quantity};
 use crate::syntax::{self, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// What a known name stands for, with its article.
-    pub fn what(&self, name: &str) -> Option<&'static str> {
+    /// Returns the kind of a known name, with its article.
+    pub fn kind_of_name(&self, name: &str) -> Option<&'static str> {
         let is = |list: &[String]| list.iter().any(|known| known == name);
         match name {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
@@ -29,20 +29,20 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// True where a name that is not known is met for the first time: later it is no news.
-    pub fn is_news(&self, name: &str, cx: &Diagnostics) -> bool {
-        !cx.is_read() || self.unknown.borrow_mut().insert(name.to_string())
+    /// Whether an unknown name has not been reported yet; records it as reported.
+    pub fn is_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
+        !cx.is_read() || self.reported_names.borrow_mut().insert(name.to_string())
     }
 
-    /// The value of a name.
+    /// Returns the value of a name.
     pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        // Expressions of a file name its joints, also if the language has another meaning for the name.
+        // Expressions of a file refer to its joints even if the language has another meaning for the name.
         if e.place.file.is_some()
             && let Some(value) = self.coordinate(name, e, cx)
         {
             return value;
         }
-        // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
+        // A parameter with the name of an axis has been reported; its meaning is ambiguous.
         let axis = axis_of_name(name);
         if axis.is_some() && self.parameters.iter().any(|p| p.text == name) {
             return None;
@@ -70,7 +70,7 @@ impl<'g> Scope<'_, 'g> {
                 format!("`{name}` is a table, which has a value for its variables alone"),
             )
             .help(format!("write `{name}({variables})`"));
-        } else if let Some(what) = self.what(name) {
+        } else if let Some(what) = self.kind_of_name(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
         } else if let Some(
@@ -92,19 +92,19 @@ impl<'g> Scope<'_, 'g> {
             if self.allowed() >= Allowed::Motion {
                 known.extend(self.inputs.iter().map(|i| i.text.as_str()));
             }
-            if !self.is_news(name, cx) {
+            if !self.is_first_report(name, cx) {
                 return None;
             }
             let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
             known.extend(names::AXES);
             known.push(names::PI);
             let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
-            words::point_name(error, name, &known, &rates);
+            words::suggest_name(error, name, &known, &rates);
         }
         None
     }
 
-    /// The value of a member.
+    /// Returns the value of a member.
     pub fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let ExprKind::Name(joint) = &inner.kind
             && let Some(value) = self.coordinate_member(joint, member, cx)
@@ -126,37 +126,39 @@ impl<'g> Scope<'_, 'g> {
             if self.report_joint_member(body, inner, member, cx) {
                 return None;
             }
-            if let Some(what) = self.what(body) {
+            if let Some(what) = self.kind_of_name(body) {
                 cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
                     .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
                 return None;
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
             let known: Vec<&str> = known.collect();
-            if !self.is_news(body, cx) {
+            if !self.is_first_report(body, cx) {
                 return None;
             }
             let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
-            if words::meant(words::OWN, body, &[]).is_some() {
+            if words::meaning(words::OWN, body, &[]).is_some() {
                 error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
                 return None;
             }
-            words::point(error, words::BODIES, body, &known);
+            words::suggest_meaning(error, words::BODIES, body, &known);
             return None;
         }
         let Some(k) = axis_of_name(&member.text) else {
-            let meant = words::meant(words::MEMBERS, &member.text, &[]);
+            let meaning = words::meaning(words::MEMBERS, &member.text, &[]);
             // The ground does not rotate.
-            let meant = meant.filter(|meant| body != GROUND || !meant.contains(FunctionId::Omega.name()));
-            let meant = meant.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
-            let help = meant.replace("NAME", body);
+            let meaning =
+                meaning.filter(|meaning| body != GROUND || !meaning.contains(FunctionId::Omega.name()));
+            let meaning =
+                meaning.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
+            let help = meaning.replace("NAME", body);
             cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
             return None;
         };
         self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
     }
 
-    /// A vector given in the axes `x`, `y`, `z` of the place where the expression stands.
+    /// Returns a vector given in the axes `x`, `y`, `z` of the context.
     pub fn own_axes(&self, v: Vec3<'g>) -> Value<'g> {
         Value::Vector(vec![match &self.context.borrow().axes {
             None => (Axes::Own, v),
@@ -164,8 +166,14 @@ impl<'g> Scope<'_, 'g> {
         }])
     }
 
-    /// A vector given in the axes of a body or a frame.
-    pub fn named_axes(&self, name: &str, v: Vec3<'g>, at: &Place, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    /// Returns a vector given in the axes of a body or a frame.
+    pub fn named_axes(
+        &self,
+        name: &str,
+        v: Vec3<'g>,
+        place: &Place,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         if self.context.borrow().axes.is_none() {
             return Some(Value::Vector(vec![(Axes::Of(name.to_string()), v)]));
         }
@@ -175,14 +183,14 @@ impl<'g> Scope<'_, 'g> {
         match self.kinematics.borrow().places.get(name) {
             Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
             None => {
-                cx.error(at.clone(), format!("`{name}` is not placed"));
+                cx.error(place.clone(), format!("`{name}` is not placed"));
                 None
             }
         }
     }
 
-    /// The value of a name that moves: a coordinate, time, an input, a definition. `None` if it is none of
-    /// these.
+    /// Returns the value of a coordinate, time, an input or a definition. The outer `None` means that the
+    /// name has another meaning, the inner one an error.
     pub fn moving_name(
         &self,
         name: &str,
@@ -207,7 +215,7 @@ impl<'g> Scope<'_, 'g> {
         Some(self.definition(definition, e, cx))
     }
 
-    /// Returns the value of a coordinate; nothing if no coordinate has the name.
+    /// Returns the value of a coordinate. The outer `None` means that no coordinate has the name.
     fn coordinate(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<Value<'g>>> {
         let found = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
         let c = found?;
@@ -222,7 +230,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
-        if cx.is_read() && self.failed.borrow().contains(name) {
+        if cx.is_read() && self.reported_definitions.borrow().contains(name) {
             return None;
         }
         let outermost = self.context.borrow().defining.is_empty();
@@ -231,16 +239,16 @@ impl<'g> Scope<'_, 'g> {
             (name.clone(), context.allowed, context.axes.is_some())
         };
         if outermost {
-            self.known.borrow_mut().clear();
-        } else if let Some(known) = self.known.borrow().get(&key) {
+            self.definition_values.borrow_mut().clear();
+        } else if let Some(known) = self.definition_values.borrow().get(&key) {
             return known.clone();
         }
         let before = cx.len();
         let value = self.define(d, e, cx);
         if value.is_none() && cx.is_read() && cx.len() > before {
-            self.failed.borrow_mut().insert(name.clone());
+            self.reported_definitions.borrow_mut().insert(name.clone());
         }
-        self.known.borrow_mut().insert(key, value.clone());
+        self.definition_values.borrow_mut().insert(key, value.clone());
         value
     }
 
@@ -256,11 +264,11 @@ impl<'g> Scope<'_, 'g> {
                 .help("write some of them out");
             return None;
         }
-        // Directions without a name are the ground's, wherever the definition is used.
+        // Unqualified directions in a definition are those of the ground in all its uses.
         let mut context = self.context.borrow().clone();
         context.defining.push(name.clone());
         context.locals.clear();
-        context.deciding.clear();
+        context.compared.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
         let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
         if value.rank() == d.rank {
@@ -277,7 +285,7 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// `joint.coordinate`; `None` if there is no such coordinate and no joint of that name.
+    /// Returns the value of `joint.coordinate`. The outer `None` means that the coordinate does not exist.
     pub fn coordinate_member(
         &self,
         joint: &str,
@@ -291,7 +299,7 @@ impl<'g> Scope<'_, 'g> {
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
     }
 
-    /// Reports what may not stand here.
+    /// Reports a quantity that the context does not allow. Returns false then.
     pub fn check_allowed(&self, needed: Allowed, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
         if self.allowed() >= needed {
             return true;
@@ -302,7 +310,7 @@ impl<'g> Scope<'_, 'g> {
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
-        if self.allowed() == Allowed::Placement && motion && self.constrains.get() {
+        if self.allowed() == Allowed::Placement && motion && self.in_holonomic_constraint.get() {
             cx.error(place.clone(), format!("{what} cannot stand here"))
                 .help("a constraint on velocities is a `Nonholonomic`");
             return false;

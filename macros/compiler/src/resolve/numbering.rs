@@ -1,4 +1,4 @@
-//! Numbers of coordinates and velocities, in the order of declaration.
+//! Numbering of coordinates and velocities, in the order of declaration.
 
 use super::builder::{Builder, JointCoordinates};
 use super::holders;
@@ -9,11 +9,11 @@ use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Coordinate};
 
 impl<'g> Builder<'_, 'g> {
-    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints
-    /// that follow another one come after, since their masters may be declared later.
+    /// Numbers `q` and `v` in the order of declaration. Joints that close loops have no coordinates. Joints
+    /// that follow another one (`mimic`) are processed last, because their masters may be declared later.
     pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
-        let closing = tree::closing(self.description);
-        self.solved_loops = closed_form::find(self.description, &closing, cx);
+        let closing = tree::loop_closing_joints(self.description);
+        self.solved_loops = closed_form::find_solved_loops(self.description, &closing, cx);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
             let (q, v) = self.model.next_coordinate();
@@ -62,7 +62,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Free coordinates that are declared after the given number of joints.
+    /// Numbers the free coordinates that are declared after the given number of joints.
     fn number_free_coordinates(&mut self, joints: usize) {
         for free in self.description.coordinates.iter().filter(|c| c.joints_before == joints) {
             let (q, v) = self.model.next_coordinate();

@@ -1,6 +1,6 @@
-//! What can be said of a mechanism that has a mistake: enough for the signatures of what would have been
-//! generated, so that one mistake is not reported again wherever the mechanism is used. Reads what the user
-//! wrote and checks nothing.
+//! Interface of a mechanism with an error. It suffices for the signatures of the functions that would have
+//! been generated, so that one error is not reported again at every use of the mechanism. The outline depends
+//! only on the description and checks nothing.
 
 use super::carriers::expressions;
 use super::joint::full_name;
@@ -14,7 +14,7 @@ use crate::syntax::{
 };
 use std::collections::BTreeSet;
 
-/// A guess at the interface of a mechanism.
+/// Estimated interface of a mechanism.
 pub struct Outline {
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
@@ -24,40 +24,40 @@ pub struct Outline {
     pub inputs: Vec<String>,
     /// Names of the frames.
     pub frames: Vec<String>,
-    /// Names of the bodies that move by themselves.
+    /// Names of the bodies that are not welded to others.
     pub bodies: Vec<String>,
-    /// Functions take time first.
+    /// Whether the first argument of functions is time.
     pub time: bool,
-    /// Inputs act by way of the velocity.
+    /// Whether input forces depend on the velocity.
     pub velocity_inputs: bool,
-    /// Joints close loops, or constraints are declared.
+    /// Whether joints close loops or constraints are declared.
     pub constrained: bool,
-    /// Some of those are contacts that slip.
+    /// Whether some of the constraints are slipping contacts.
     pub slipping: bool,
-    /// Free-body diagrams, whose actions are not known.
+    /// Names of free-body diagrams, with their bodies; their actions are unknown.
     pub diagrams: Vec<(String, Diagram)>,
-    /// The other outputs, in order.
+    /// All other outputs, in order.
     pub outputs: Vec<OutlinedOutput>,
 }
 
-/// A guess at an output.
+/// Estimated interface of an output.
 pub struct OutlinedOutput {
-    /// Its name.
+    /// Name of the output.
     pub name: String,
-    /// How many components it has.
+    /// Number of components.
     pub size: usize,
-    /// What it depends on.
+    /// Quantities on which the output depends.
     pub uses: Uses,
-    /// It names forces at contacts, which may contradict each other.
-    pub touched: bool,
+    /// Whether the output contains contact forces, which may be contradictory.
+    pub has_contact_forces: bool,
 }
 
-/// Outlines a description that may be wrong.
+/// Returns the outline of a description that may contain errors.
 pub fn outline(d: &Description) -> Outline {
     let (configuration, velocities, inputs) = entries(d);
     let names = |e| names_of(d, e);
     let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
-    // A definition that nothing uses adds nothing.
+    // Unused definitions are ignored.
     let used =
         expressions(d).into_iter().filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
@@ -68,7 +68,7 @@ pub fn outline(d: &Description) -> Outline {
                 uses.inputs && (uses.velocities || names(e).contains("speed"))
             })
         }),
-        constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
+        constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
         diagrams: d.outputs.iter().filter_map(diagram).collect(),
         outputs: d.outputs.iter().filter_map(|output| outlined(d, output)).collect(),
@@ -80,11 +80,11 @@ pub fn outline(d: &Description) -> Outline {
     }
 }
 
-/// Names of the entries of `q`, `v` and `u`.
+/// Returns the names of the entries of `q`, `v` and `u`.
 fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
-    let closing = super::tree::closing(d);
-    let solved = super::closed_form::find(d, &closing, &mut Diagnostics::new());
+    let closing = super::tree::loop_closing_joints(d);
+    let solved = super::closed_form::find_solved_loops(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();
@@ -103,14 +103,14 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     (q, v, u)
 }
 
-/// Names of everything that has a frame, in the order of the model.
+/// Returns the names of all elements with a frame, in the order of the model.
 fn frames(d: &Description) -> Vec<String> {
     let bodies = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
     let names = bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone());
     d.ground_frame.then(|| GROUND.to_string()).into_iter().chain(names).collect()
 }
 
-/// Names of the bodies and particles that are not welded to others.
+/// Returns the names of the bodies and particles that are not welded to others.
 fn bodies(d: &Description) -> Vec<String> {
     let particles = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
     let welded = |name: &str| {
@@ -127,19 +127,24 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
         Rank::Matrix => 9,
         Rank::FreeBody => return None,
     };
-    let names_force = |part: &&Expr| match &part.kind {
+    let is_contact_force = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, arguments) => {
             matches!(
                 function.id,
                 Some(Callable::Function(
                     FunctionId::ContactForce | FunctionId::ContactMoment | FunctionId::Power
                 ))
-            ) && arguments.iter().any(|argument| names_contact(d, argument))
+            ) && arguments.iter().any(|argument| is_contact_name(d, argument))
         }
         _ => false,
     };
-    let touched = with_definitions(d, &output.value).iter().any(names_force);
-    Some(OutlinedOutput { name: output.name.text.clone(), size, uses: uses(d, &output.value), touched })
+    let has_contact_forces = with_definitions(d, &output.value).iter().any(is_contact_force);
+    Some(OutlinedOutput {
+        name: output.name.text.clone(),
+        size,
+        uses: uses(d, &output.value),
+        has_contact_forces,
+    })
 }
 
 fn diagram(output: &Definition) -> Option<(String, Diagram)> {
@@ -153,7 +158,7 @@ fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
     action.law().map(|(_, e)| e).into_iter().chain(action.get(Key::Value))
 }
 
-/// Returns the quantities that an expression depends on, by the list of functions.
+/// Returns the quantities on which an expression depends, according to the table of functions.
 fn uses(d: &Description, e: &Expr) -> Uses {
     let inputs = || !entries(d).2.is_empty();
     let mut uses = Uses::default();
@@ -165,11 +170,11 @@ fn uses(d: &Description, e: &Expr) -> Uses {
                 Dependence::Acceleration => uses.accelerations = true,
                 Dependence::Rate => {
                     uses.velocities = true;
-                    uses.accelerations |= arguments.iter().any(|argument| names_motion(d, argument));
+                    uses.accelerations |= arguments.iter().any(|argument| contains_motion(d, argument));
                 }
                 Dependence::Power => {
                     uses.velocities = true;
-                    uses.inputs |= arguments.iter().any(|argument| names_contact(d, argument)) && inputs();
+                    uses.inputs |= arguments.iter().any(|argument| is_contact_name(d, argument)) && inputs();
                 }
                 Dependence::Reaction => {
                     uses.velocities = true;
@@ -183,7 +188,7 @@ fn uses(d: &Description, e: &Expr) -> Uses {
     uses
 }
 
-/// Returns the quantities that the value of a call depends on, beside those of its arguments.
+/// Returns the quantities on which the value of a call depends, in addition to those of its arguments.
 fn dependence(callee: &Callee) -> Dependence {
     match callee.id {
         Some(Callable::Function(function)) => function.row().depends_on,
@@ -192,12 +197,12 @@ fn dependence(callee: &Callee) -> Dependence {
 }
 
 /// Whether an expression is the name of a contact.
-fn names_contact(d: &Description, e: &Expr) -> bool {
+fn is_contact_name(d: &Description, e: &Expr) -> bool {
     d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
 }
 
 /// Whether an expression contains a function of the velocities.
-fn names_motion(d: &Description, e: &Expr) -> bool {
+fn contains_motion(d: &Description, e: &Expr) -> bool {
     let is_motion = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {
             matches!(dependence(function), Dependence::Motion | Dependence::Rate)
@@ -207,18 +212,18 @@ fn names_motion(d: &Description, e: &Expr) -> bool {
     with_definitions(d, e).iter().any(is_motion)
 }
 
-/// Every name in an expression.
+/// Returns all names in an expression, including those in its definitions.
 fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
     with_definitions(d, e).into_iter().filter_map(Expr::name).collect()
 }
 
-/// The parts of an expression and of the definitions that it names.
+/// Returns the subexpressions of an expression and of the definitions that it uses.
 fn with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
     let mut parts = e.parts();
     let mut open: Vec<&Definition> = d.definitions.iter().collect();
-    let mut at = 0;
-    while let Some(part) = parts.get(at) {
-        at += 1;
+    let mut next = 0;
+    while let Some(part) = parts.get(next) {
+        next += 1;
         let Some(name) = part.name() else { continue };
         if let Some(k) = open.iter().position(|definition| definition.name.text == name) {
             parts.extend(open.swap_remove(k).value.parts());

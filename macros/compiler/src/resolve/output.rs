@@ -1,4 +1,4 @@
-//! Outputs: expressions that become functions, in the axes that they say.
+//! Outputs: expressions that become functions, resolved in their declared axes.
 
 use super::builder::Builder;
 use super::contact;
@@ -18,7 +18,7 @@ impl<'g> Builder<'_, 'g> {
                 continue;
             }
             if let Some(values) = self.output(output, cx) {
-                if !contact::stands_alone(&values) {
+                if !contact::has_consistent_forces(&values) {
                     cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
                         .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
                     continue;
@@ -62,7 +62,7 @@ impl<'g> Builder<'_, 'g> {
         Some(pose.rotation.to_child(v).0.to_vec())
     }
 
-    /// The axes of the components of an output.
+    /// Returns the link and the pose of the axes in which the components of an output are resolved.
     pub fn output_axes(
         &self,
         output: &Definition,

@@ -1,9 +1,8 @@
-//! Laws in pieces that meet: `if x < border { below } else { above }`.
+//! Continuous piecewise laws: `if x < border { below } else { above }`.
 //!
-//! With `f` the one and `g` the other piece, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`: each piece is
-//! evaluated on its own side alone, so that it need not be defined beyond, and slopes are those of the
-//! pieces. Pieces that do not meet at the border are a mistake: methods of integration, derivatives and
-//! energies take forces to be continuous.
+//! With the pieces `f` and `g`, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`. Each piece is evaluated
+//! only on its own side and need not be defined beyond; slopes are those of the pieces. A discontinuity at
+//! the border is an error: integration methods, derivatives and energies assume continuous forces.
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -16,43 +15,48 @@ use crate::language::Callable;
 use crate::mechanism::Quantity;
 use crate::syntax::{self, ExprKind};
 
-/// How far pieces may be apart where they meet, beside their size.
+/// Maximum difference of the pieces at the border, relative to their magnitude.
 const ROUNDING: f64 = 1e-9;
-/// Sizes of the numbers with which it is tried whether pieces meet.
+/// Magnitudes of the samples with which continuity is tested.
 const SIZES: [f64; 12] = [1.0, 1.0, 1.0, 1.0, 1e-2, 1e2, 1e-1, 1e1, 1e-4, 1e4, 1e-3, 1e3];
 
-/// A law in two pieces, by a symbol for what decides.
-struct Pieces<'g> {
+/// A law in two pieces, as expressions of a symbol that replaces the compared expression.
+struct PiecewiseLaw<'g> {
     symbol: Symbol,
-    decides: Expr<'g>,
+    compared: Expr<'g>,
     border: Expr<'g>,
     pieces: [Expr<'g>; 2],
 }
 
-impl<'g> Pieces<'g> {
-    fn with(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
+impl<'g> PiecewiseLaw<'g> {
+    fn substitute(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
         replace(self.pieces[piece], &|s| (s == self.symbol).then_some(x))
     }
 
     fn value(&self) -> Expr<'g> {
-        let [below, above] = [Extreme::Min, Extreme::Max].map(|side| self.decides.extreme(side, self.border));
-        let (first, second) = (self.with(0, self.border), self.with(1, self.border));
-        // Both are what the pieces have in common.
+        let [below, above] =
+            [Extreme::Min, Extreme::Max].map(|side| self.compared.extreme(side, self.border));
+        let (first, second) = (self.substitute(0, self.border), self.substitute(1, self.border));
+        // Both equal the common value of the pieces.
         let common = if second.value().is_some() { second } else { first };
-        self.with(0, below) + self.with(1, above) - common
+        self.substitute(0, below) + self.substitute(1, above) - common
     }
 
-    /// The values of both pieces at the border for some numbers with which borders beside it are in order, if
-    /// they differ for any; `Err` if there are no such numbers.
-    fn gap(&self, beside: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
-        let at_border = [0, 1].map(|piece| self.with(piece, self.border));
+    /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise.
+    /// Samples are used only if the `nested_borders` are in order with this border. Returns `Err` if there
+    /// are no such samples.
+    fn gap(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
+        let at_border = [0, 1].map(|piece| self.substitute(piece, self.border));
         let mut tried = false;
         for (seed, size) in (0_u64..).zip(SIZES) {
             let number = |e: Expr<'g>| eval_one(e, &|s| size * sample(s, seed));
             let border = number(self.border);
             let in_order = |(is_above, other): &(bool, Expr<'g>)| (number(*other) >= border) == *is_above;
             let found = at_border.map(number);
-            if !beside.iter().all(in_order) || !border.is_finite() || found.iter().any(|x| !x.is_finite()) {
+            if !nested_borders.iter().all(in_order)
+                || !border.is_finite()
+                || found.iter().any(|x| !x.is_finite())
+            {
                 continue;
             }
             tried = true;
@@ -67,13 +71,14 @@ impl<'g> Pieces<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// The symbol for an expression that decides between pieces which are being read.
-    pub fn deciding(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
+    /// Returns the symbol of an expression that is compared in one of the surrounding piecewise laws.
+    pub fn compared_symbol(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
         let context = self.context.borrow();
-        context.deciding.iter().rev().find(|(written, _)| written.is_like(e)).map(|(_, symbol)| *symbol)
+        context.compared.iter().rev().find(|(written, _)| written.has_same_text(e)).map(|(_, symbol)| *symbol)
     }
 
-    /// A law in pieces: what decides, the border, the piece below and that above.
+    /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
+    /// the piece above.
     pub fn pieces(&self, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let [left, right, below, above] = arguments else { return None };
         let compared = (self.scalar(left, cx), self.scalar(right, cx));
@@ -81,36 +86,37 @@ impl<'g> Scope<'_, 'g> {
         let moves = |e: Expr<'g>| {
             symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::of(s), Quantity::Parameter(_)))
         };
-        // The border is what does not move.
-        let turned = !moves(x) && (moves(border) || x.value().is_some());
-        let (written, decides, border, pieces) = match turned {
+        // The border is the constant operand.
+        let is_swapped = !moves(x) && (moves(border) || x.value().is_some());
+        let (written, compared, border, pieces) = match is_swapped {
             true => (right, border, x, [above, below]),
             false => (left, x, border, [below, above]),
         };
-        if decides.value().is_some() {
+        if compared.value().is_some() {
             cx.error(left.place.to(&right.place), "this comparison of two numbers is always the same")
                 .help("keep the piece that holds alone");
             return None;
         }
-        let depth = self.context.borrow().deciding.len();
+        let depth = self.context.borrow().compared.len();
         let symbol = Quantity::Deciding(depth).symbol();
-        self.context.borrow_mut().deciding.push((written.clone(), self.graph.symbol(symbol)));
+        self.context.borrow_mut().compared.push((written.clone(), self.graph.symbol(symbol)));
         let read = pieces.map(|piece| self.scalar(piece, cx));
-        self.context.borrow_mut().deciding.pop();
-        // Definitions name what decides in their own words.
-        let by_symbol = |e: Expr<'g>| replace_part(e, decides, self.graph.symbol(symbol));
+        self.context.borrow_mut().compared.pop();
+        // Definitions contain the compared expression in resolved form.
+        let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
             cx.error(left.place.to(&right.place), "the border between the pieces moves with what decides")
                 .help("solve the comparison: what decides on one side, the border on the other");
             return None;
         }
-        let law = Pieces { symbol, decides, border, pieces: pieces_read };
-        let beside = self.borders(written, pieces, cx);
-        self.check_continuous(&law, &beside, left, right, cx).then(|| law.value())
+        let law = PiecewiseLaw { symbol, compared, border, pieces: pieces_read };
+        let nested_borders = self.borders(written, pieces, cx);
+        self.check_continuous(&law, &nested_borders, left, right, cx).then(|| law.value())
     }
 
-    /// The borders of pieces within the pieces, by the same expression: false for those below.
+    /// Returns the borders of nested piecewise laws with the same compared expression. The flag is false for
+    /// those in the piece below.
     fn borders(
         &self,
         written: &syntax::Expr,
@@ -124,8 +130,8 @@ impl<'g> Scope<'_, 'g> {
                     && let [a, b, ..] = arguments.as_slice()
                     && name.id == Some(Callable::If)
                 {
-                    let border = if a.is_like(written) { b } else { a };
-                    if a.is_like(written) != b.is_like(written) {
+                    let border = if a.has_same_text(written) { b } else { a };
+                    if a.has_same_text(written) != b.has_same_text(written) {
                         all.extend(self.scalar(border, cx).map(|border| (is_above, border)));
                     }
                 }
@@ -136,18 +142,18 @@ impl<'g> Scope<'_, 'g> {
 
     fn check_continuous(
         &self,
-        law: &Pieces<'g>,
-        beside: &[(bool, Expr<'g>)],
+        law: &PiecewiseLaw<'g>,
+        nested_borders: &[(bool, Expr<'g>)],
         left: &syntax::Expr,
         right: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> bool {
         let place = left.place.to(&right.place);
-        let (a, b) = (left.spelt(), right.spelt());
-        match law.gap(beside) {
+        let (a, b) = (left.to_source(), right.to_source());
+        match law.gap(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {
-                let plain = |piece: usize| law.with(piece, law.border).value().is_some();
+                let plain = |piece: usize| law.substitute(piece, law.border).value().is_some();
                 let values = match plain(0) && plain(1) {
                     true => format!(": they are {first} and {second} there"),
                     false => String::new(),

@@ -1,8 +1,9 @@
-//! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is
-//! already placed. What moves by coordinates or time other than a joint's becomes a link of its own.
+//! Placement of joints, bodies, particles, points and frames. The order is such that every element is placed
+//! relative to elements placed before. A placement that depends on time or on coordinates of its own becomes
+//! a link.
 
 use super::builder::Builder;
-use super::carriers::carries;
+use super::carriers::uses_axes;
 use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
@@ -12,10 +13,10 @@ use crate::language::{Callable, Method};
 use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
-/// Something to be placed: an index into its list.
+/// An element to be placed: an index into its list.
 #[derive(Clone, Copy)]
 enum Item {
-    /// By `Order`: joint, child.
+    /// Index into the joints of the [`Order`].
     Joint(usize),
     Frame(usize),
     Point(usize),
@@ -24,7 +25,7 @@ enum Item {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Names the frames of everything that is placed.
+    /// Adds the named frames of all placed elements.
     pub fn add_frames(&mut self) {
         let d = self.description;
         let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
@@ -42,8 +43,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are
-    /// circular.
+    /// Places all elements. Elements wait until those on which they depend are placed; if no progress is
+    /// possible, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
         for (j, child) in &order.joints {
@@ -72,22 +73,22 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             if rest.len() == before {
                 self.report_waiting(&rest, order, cx);
-                self.place_somehow(&rest, order);
+                self.place_substitutes(&rest, order);
                 return;
             }
             waiting = rest;
         }
     }
 
-    /// The names and expressions that an item stands on.
-    fn needs(&self, item: Item, order: &Order) -> Vec<String> {
+    /// Returns the names on which the placement of an element depends.
+    fn dependencies(&self, item: Item, order: &Order) -> Vec<String> {
         let d = self.description;
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
         match item {
             Item::Joint(k) => {
                 let j = order.joints[k].0;
-                // What is solved for needs the other side of its loop as well.
+                // A joint that is solved for needs the other side of its loop as well.
                 let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
@@ -111,7 +112,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn is_ready(&self, item: Item, order: &Order) -> bool {
         let kinematics = self.scope.kinematics.borrow();
-        self.needs(item, order)
+        self.dependencies(item, order)
             .iter()
             .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
     }
@@ -127,24 +128,24 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    fn report_waiting(&self, rest: &[Item], order: &Order, cx: &mut Diagnostics) {
-        // After another mistake things wait for what failed; that has been said. Joints are read all the
-        // same, so that their own mistakes are reported at once.
+    fn report_waiting(&self, waiting: &[Item], order: &Order, cx: &mut Diagnostics) {
+        // After another error, elements may wait for one that failed, which has been reported. Joints are
+        // still resolved, to report their own errors at once.
         if !cx.is_empty() {
-            for item in rest {
+            for item in waiting {
                 if let Item::Joint(k) = item {
                     self.check_joint(&self.description.joints[order.joints[*k].0], cx);
                 }
             }
             return;
         }
-        // From one to what it waits for, until it comes round again.
-        let next = |at: usize| {
-            let needs = self.needs(rest[at], order);
-            (0..rest.len()).find(|k| needs.contains(&self.provides(rest[*k], order)))
+        // From an element to one for which it waits, until the path is a cycle.
+        let next = |index: usize| {
+            let needs = self.dependencies(waiting[index], order);
+            (0..waiting.len()).find(|k| needs.contains(&self.placed_name(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
-        while let Some(k) = path.last().and_then(|at| next(*at)) {
+        while let Some(k) = path.last().and_then(|index| next(*index)) {
             if let Some(begin) = path.iter().position(|seen| *seen == k) {
                 path.drain(..begin);
                 break;
@@ -152,7 +153,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             path.push(k);
         }
         path.sort_unstable();
-        let names: Vec<&Name> = path.iter().map(|k| self.item_name(rest[*k], order)).collect();
+        let names: Vec<&Name> = path.iter().map(|k| self.item_name(waiting[*k], order)).collect();
         let Some((first, others)) = names.split_first() else { return };
         let error = cx.error(first.place.clone(), format!("`{}` is placed by way of itself", first.text));
         if !others.is_empty() {
@@ -163,26 +164,26 @@ impl<'a, 'g> Builder<'a, 'g> {
             .help("its definition is circular: start from the ground or from a body that is held by a joint");
     }
 
-    /// The name of the place that an item provides.
-    fn provides(&self, item: Item, order: &Order) -> String {
+    /// Returns the name of the element that an item places.
+    fn placed_name(&self, item: Item, order: &Order) -> String {
         match item {
             Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
             _ => self.item_name(item, order).text.clone(),
         }
     }
 
-    /// Places what waits in vain, so that what depends on it is read as well.
-    fn place_somehow(&mut self, rest: &[Item], order: &Order) {
-        for item in rest {
-            let name = self.provides(*item, order);
-            let (link, pose) = self.link_if_moving(None, self.somewhere(true));
-            let (kind, held) = match item {
+    /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
+    fn place_substitutes(&mut self, waiting: &[Item], order: &Order) {
+        for item in waiting {
+            let name = self.placed_name(*item, order);
+            let (link, pose) = self.link_if_moving(None, self.substitute_pose(true));
+            let (kind, body) = match item {
                 Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
                 Item::Body(k) => (PlacedKind::Body, Some(*k)),
                 Item::Frame(_) => (PlacedKind::Frame, None),
                 Item::Point(_) | Item::Particle(_) => (PlacedKind::Point, None),
             };
-            if let Some(k) = held {
+            if let Some(k) = body {
                 self.places[k] = Some((link, pose.clone()));
             }
             self.register(&name, link, pose, kind);
@@ -197,7 +198,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 self.place_joint(j, child, cx);
             }
             Item::Frame(k) => {
-                let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) =
+                    self.frame_place(k, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
                 self.register(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
@@ -212,7 +214,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                     Some(at) => self.offset(frame, at, false, cx),
                     None => Some((frame.link, frame.pose)),
                 });
-                let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
+                let (link, pose) = place.unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (link, pose) = self.link_if_moving(link, pose);
                 self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
@@ -220,10 +222,10 @@ impl<'a, 'g> Builder<'a, 'g> {
             Item::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
-                let free = !carries(d, &p.name.text);
+                let free = !uses_axes(d, &p.name.text);
                 let (link, pose) =
-                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.link_of_place(holders::of_particle(d, k), link, pose);
+                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
+                let (link, pose) = self.link_of_place(holders::particle_placement(d, k), link, pose);
                 self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
@@ -233,11 +235,11 @@ impl<'a, 'g> Builder<'a, 'g> {
         Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedKind::Body }
     }
 
-    /// Axes of a frame, at the origin of what it starts from.
+    /// Returns the axes of a frame, at the origin of its start frame.
     fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
-        // Axes that follow from a vector or a curve come before those that are turned from them.
+        // Axes defined by a vector or a curve precede further rotations.
         let natural = match frame.rotations.first().map(|first| &first.kind) {
             Some(ExprKind::Call(word, arguments)) => match word.id {
                 Some(Callable::Rotation(rotation)) if rotation.row().natural => {
@@ -247,7 +249,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             },
             _ => None,
         };
-        let turned = &frame.rotations[usize::from(natural.is_some())..];
+        let steps = &frame.rotations[usize::from(natural.is_some())..];
         let first = match (natural, &start) {
             (Some((rotation, arguments)), Some(start)) => {
                 self.scope.natural_axes(rotation, arguments, start, cx)
@@ -255,14 +257,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             _ => Some(Rotation::identity(self.scope.graph)),
         };
         let context = Context::new(Allowed::Placement, None);
-        let rotation = self.scope.in_context(context, |scope| scope.rotation(turned, cx));
+        let rotation = self.scope.in_context(context, |scope| scope.rotation(steps, cx));
         let (start, rotation) = (start?, first?.then(&rotation?));
         let pose =
             Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
         Some((start.link, pose))
     }
 
-    /// A body or a frame by name.
+    /// Returns the placement of a body or a frame by its name.
     fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body or a frame")
@@ -281,12 +283,12 @@ impl<'a, 'g> Builder<'a, 'g> {
                 None
             }
             None => {
-                if !self.scope.is_news(name, cx) {
+                if !self.scope.is_first_report(name, cx) {
                     return None;
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
-                words::point(error, words::BODIES, name, &known);
+                words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
                     error.help("a frame starts with the axes of a body or another frame: `#[frame(ground, z(angle))]`");
                 }
@@ -307,35 +309,36 @@ impl<'a, 'g> Builder<'a, 'g> {
         };
         let (link, pose) = match (axes, origin) {
             (Some(axes), Some((link, mut pose))) => {
-                // The axes in those of the link that the origin is given in.
+                // The axes are relative to the link in which the origin is given.
                 pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
                 (link, pose)
             }
-            _ => (None, self.somewhere(true)),
+            _ => (None, self.substitute_pose(true)),
         };
-        let (link, pose) = self.link_of_place(holders::of_body(self.description, k), link, pose);
+        let (link, pose) = self.link_of_place(holders::body_placement(self.description, k), link, pose);
         self.places[k] = Some((link, pose.clone()));
         self.register(&body.name.text, link, pose, PlacedKind::Body);
     }
 
-    /// Orientation of one link in another.
-    fn rotation_between(&self, of: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
+    /// Returns the orientation of link `link` in link `base`.
+    fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = self.scope.kinematics.borrow();
-        let to_ground = |mut at: Option<LinkId>| {
+        let to_ground = |mut current: Option<LinkId>| {
             let mut steps = Vec::new();
-            while let Some(l) = at {
+            while let Some(l) = current {
                 steps.push(kinematics.joints[l.0].rotation.clone());
-                at = kinematics.joints[l.0].parent;
+                current = kinematics.joints[l.0].parent;
             }
             steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.then(step))
         };
-        if of == link {
+        if base == link {
             return Rotation::identity(self.scope.graph);
         }
-        to_ground(of).inverse().then(&to_ground(link))
+        to_ground(base).inverse().then(&to_ground(link))
     }
 
-    /// A place by name, `place.at(vector)`, or a vector from the ground's origin; `free` as in `offset`.
+    /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
+    /// `offset` for `free`.
     fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
         let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
@@ -358,7 +361,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// A place at a vector from another one, with its axes. If they do not matter (`free`) it may get others.
+    /// Returns the placement at a vector from another one, with the same axes. If `free` is set, the axes are
+    /// irrelevant and may differ.
     fn offset(
         &self,
         frame: Placed<'g>,
@@ -370,7 +374,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
+        // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
         if let [(axes, v)] = terms.as_slice()
             && free
             && frame.pose.translation.is_zero()
@@ -383,22 +387,22 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some((frame.link, Pose { rotation: frame.pose.rotation, translation }))
     }
 
-    /// True if a link's origin stays at the origin of one of its ancestors.
+    /// Whether the origin of a link always coincides with that of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
         let kinematics = self.scope.kinematics.borrow();
-        let mut at = link;
-        while at != ancestor {
-            let Some(l) = at else { return false };
+        let mut current = link;
+        while current != ancestor {
+            let Some(l) = current else { return false };
             if !kinematics.joints[l.0].translation.is_zero() {
                 return false;
             }
-            at = kinematics.joints[l.0].parent;
+            current = kinematics.joints[l.0].parent;
         }
         true
     }
 }
 
-/// Every name in an expression, with the bases of members and methods.
+/// Collects all names in an expression, including the bases of members and methods.
 fn collect_names(e: &Expr, names: &mut Vec<String>) {
     names.extend(e.parts().into_iter().filter_map(Expr::name).map(str::to_string));
 }

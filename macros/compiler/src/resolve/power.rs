@@ -1,8 +1,8 @@
-//! The power of single force elements, for the outputs that name them: `power(spring)`.
+//! Power of single force elements, for outputs with `power(spring)`.
 
 use super::builder::Builder;
 use super::call::Call;
-use super::scope::{Allowed, Delivered, Scope, Value};
+use super::scope::{Allowed, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
@@ -10,9 +10,9 @@ use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 use crate::syntax::{self, Description, Name};
 
-/// How many forces of each kind there are.
+/// Number of forces of each kind in the model.
 #[derive(Clone, Copy, PartialEq)]
-pub struct Counts {
+pub struct ForceCounts {
     pub(super) springs: usize,
     pub(super) dashpots: usize,
     pub(super) frictions: usize,
@@ -20,13 +20,13 @@ pub struct Counts {
     pub(super) potentials: usize,
     pub(super) dissipations: usize,
     pub(super) inertances: usize,
-    pub(super) by_acceleration: usize,
+    pub(super) acceleration_forces: usize,
 }
 
-impl Counts {
-    /// Those of a model.
-    pub fn of(model: &Model<'_>) -> Counts {
-        Counts {
+impl ForceCounts {
+    /// Counts the forces of a model.
+    pub fn of_model(model: &Model<'_>) -> ForceCounts {
+        ForceCounts {
             springs: model.springs.len(),
             dashpots: model.dashpots.len(),
             frictions: model.frictions.len(),
@@ -34,13 +34,13 @@ impl Counts {
             potentials: model.potentials.len(),
             dissipations: model.dissipations.len(),
             inertances: model.inertances.len(),
-            by_acceleration: model.acceleration_forces.len(),
+            acceleration_forces: model.acceleration_forces.len(),
         }
     }
 }
 
-/// Whether an output, or what it is made of, names the power of an element.
-pub fn is_asked(d: &Description, element: &Name) -> bool {
+/// Whether an output or a definition contains the power of an element.
+pub fn is_power_used(d: &Description, element: &Name) -> bool {
     let names = |e: &syntax::Expr| {
         e.parts().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
@@ -54,11 +54,11 @@ pub fn is_asked(d: &Description, element: &Name) -> bool {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The power of what an element has added since then: of forces on rates their products, of energies what
-    /// they lose along the motion.
-    pub fn power_since(&self, before: &Counts, element: &str) -> Delivered<'g> {
-        let (m, now) = (&self.model, Counts::of(&self.model));
-        if now.inertances > before.inertances || now.by_acceleration > before.by_acceleration {
+    /// Returns the power of the forces that an element has added since `before`: products of forces and
+    /// rates, and the rate of decrease of energies along the motion.
+    pub fn power_since(&self, before: &ForceCounts, element: &str) -> ElementPower<'g> {
+        let (m, now) = (&self.model, ForceCounts::of_model(&self.model));
+        if now.inertances > before.inertances || now.acceleration_forces > before.acceleration_forces {
             return Err("its force depends on accelerations");
         }
         let mut power = m.graph.zero();
@@ -91,9 +91,9 @@ impl<'g> Builder<'_, 'g> {
         Ok(power + self.power_of_input(element))
     }
 
-    /// The power of contacts that slip, for the outputs that name them: of friction, which follows from the
+    /// Records the power of slipping contacts for outputs: that of their friction, which follows from the
     /// normal force.
-    pub fn know_slipping(&mut self) {
+    pub fn record_slipping_power(&mut self) {
         let g = self.model.graph;
         for (k, constraint) in self.model.constraints.iter().enumerate() {
             if constraint.friction.is_empty() {
@@ -108,7 +108,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The power of an input that acts on a coordinate or a body.
+    /// Returns the power of an input that acts on a coordinate or a body; zero for other names.
     pub fn power_of_input(&self, element: &str) -> Expr<'g> {
         let m = &self.model;
         let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
@@ -125,7 +125,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Velocity of a link's origin, and its angular velocity, in its axes.
+    /// Returns the velocity of a link's origin and its angular velocity, in the axes of the link.
     fn twist(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
         let kinematics = self.scope.kinematics.borrow();
         let twist = &kinematics.twists[link.0];
@@ -139,13 +139,13 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `power(element)`: what a force element, an input or a contact that slips delivers to the bodies, W;
-    /// negative where it takes energy out.
+    /// Resolves `power(element)`: the power, in W, that a force element, an input or a contact supplies to
+    /// the bodies. Negative power is dissipated or stored.
     pub fn power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let known = || self.actions.iter().map(String::as_str);
+        let element_names = || self.actions.iter().map(String::as_str);
         let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a force element").suggest("", known());
+            cx.error(e.place.clone(), "expected a force element").suggest("", element_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
@@ -159,10 +159,10 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             None => {
-                // An element with a mistake has none, and that was told.
-                if !self.actions.iter().any(|action| action == name) && self.is_news(name, cx) {
+                // An element with an error has no power; the error has been reported.
+                if !self.actions.iter().any(|action| action == name) && self.is_first_report(name, cx) {
                     let error = cx.error(e.place.clone(), format!("unknown force element `{name}`"));
-                    error.suggest(name, known());
+                    error.suggest(name, element_names());
                     if error.is_bare() {
                         error.help("name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`");
                     }

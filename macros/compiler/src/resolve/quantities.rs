@@ -1,5 +1,5 @@
-//! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and
-//! the kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
+//! Kinematic quantities of placed elements: vectors in axes of bodies and frames, points, and slash notation
+//! such as `r(y / x)`, `v(y / x / A)` and `omega(B / A)`.
 
 use super::call::Call;
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
@@ -11,25 +11,25 @@ use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// A vector as a sum over the axes of links. Only where the links are known.
+    /// Returns a vector as a sum over the axes of links. All links must be resolved.
     pub fn terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
         self.vector(e, cx).map(in_links)
     }
 
-    /// Several vectors in common axes.
+    /// Resolves several vectors and expresses them in common axes.
     pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
         let all: Vec<_> = e.iter().map(|e| Some((*e, self.vector(e, cx)?))).collect();
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
-    /// Several vectors that were read, in common axes.
+    /// Expresses several resolved vectors in common axes.
     pub fn in_common_axes(
         &self,
         read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,
         cx: &mut Diagnostics,
     ) -> Option<(Axes, Vec<Vec3<'g>>)> {
         if self.context.borrow().axes.is_none() {
-            let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_sum(terms, e, cx)).collect();
+            let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_axes_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
         let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| in_links(terms)).collect();
@@ -39,10 +39,10 @@ impl<'g> Scope<'_, 'g> {
         Some((Axes::Link(link), all.iter().map(|t| kinematics.resolve(t, link, zero)).collect()))
     }
 
-    /// `rate(coordinate)`, or the rate of what depends on coordinates, velocities and time.
+    /// Resolves `rate(coordinate)`, or the rate of an expression of coordinates, velocities and time.
     pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
-            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
+            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::to_source);
             cx.error(call.place.clone(), "`rate` takes one coordinate")
                 .help(format!("write `rate({first})`"));
             return None;
@@ -55,11 +55,11 @@ impl<'g> Scope<'_, 'g> {
             },
             _ => String::new(),
         };
-        if let ExprKind::Binary(BinaryOp::Div, of, frame, _) = &argument.kind
+        if let ExprKind::Binary(BinaryOp::Div, vector, frame, _) = &argument.kind
             && let Some(name) = frame.name()
             && (name == GROUND || self.bodies.iter().any(|body| body == name))
         {
-            return self.rate_in(call.place, of, frame, cx);
+            return self.rate_in(call.place, vector, frame, cx);
         }
         let kinematics = self.kinematics.borrow();
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
@@ -67,7 +67,7 @@ impl<'g> Scope<'_, 'g> {
                 drop(kinematics);
                 return self.rate_of_value(call.place, argument, cx).map(Value::Scalar);
             }
-            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_news(&name, cx) {
+            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
                 return None;
             }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
@@ -85,7 +85,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(c.v.expr(self.graph) * self.graph.num(c.ratio)))
     }
 
-    /// `angle(a, b)` in 0…π, or `angle(a, b, n)` directed about `n` in −π…π.
+    /// Resolves `angle(a, b)` in 0…π, or `angle(a, b, n)`, signed about `n`, in −π…π.
     pub fn angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let all: Vec<&syntax::Expr> = call.arguments.iter().collect();
         if !(2..=3).contains(&all.len()) {
@@ -100,7 +100,8 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(sine.atan2(v[0].dot(v[1]))))
     }
 
-    /// Something with a place: a body, a point, a particle, `body.at(vector)`, the ground.
+    /// Returns the placement of an element with a position: a body, a point, a particle, `body.at(vector)` or
+    /// the ground.
     pub fn place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Name(name) if name == GROUND => {
@@ -123,8 +124,8 @@ impl<'g> Scope<'_, 'g> {
             {
                 let base = self.place(base, cx)?;
                 let context = Context::new(Allowed::Constant, None);
-                let at = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
-                let pose = Pose { translation: base.pose.point(at), rotation: base.pose.rotation };
+                let offset = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
+                let pose = Pose { translation: base.pose.point(offset), rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
             _ => {
@@ -136,43 +137,44 @@ impl<'g> Scope<'_, 'g> {
     }
 
     fn unknown_place(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
-        if let Some(what) = self.what(name).filter(|w| *w != "a body") {
+        if let Some(what) = self.kind_of_name(name).filter(|w| *w != "a body") {
             cx.error(place.clone(), format!("`{name}` is {what}, which has no place"))
                 .help("name a body, a particle or a point");
             return;
         }
-        if !self.is_news(name, cx) {
+        if !self.is_first_report(name, cx) {
             return;
         }
         let kinematics = self.kinematics.borrow();
         let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
         let error = cx.error(place.clone(), format!("unknown point `{name}`"));
-        words::point(error, words::BODIES, name, &known);
+        words::suggest_meaning(error, words::BODIES, name, &known);
         if error.is_bare() {
             error.help("name a body, a particle or a point, or write `body.at(length * x)`");
         }
     }
 
-    /// Something with a place, or the point of a body that is somewhere at the moment: `body.at(vector)` with
-    /// a vector of any axes and coordinates. Its velocity and acceleration are those of the body there.
-    pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    /// Returns the placement of an element with a position, or of a point that may move on its body:
+    /// `body.at(vector)` with a vector of any axes and coordinates. Velocity and acceleration of such a point
+    /// are those of the body at that position.
+    pub fn current_place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
-                let base = self.place_now(base, cx)?;
+                let base = self.current_place(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);
-                let at = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
-                let at = self.kinematics.borrow().resolve(&at, base.link, Vec3::zero(self.graph));
-                let pose = Pose { translation: base.pose.translation + at, rotation: base.pose.rotation };
+                let offset = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
+                let offset = self.kinematics.borrow().resolve(&offset, base.link, Vec3::zero(self.graph));
+                let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
             _ => self.place(e, cx),
         }
     }
 
-    /// Something with axes: a body or a frame.
+    /// Returns the link of an element with axes: a body or a frame.
     pub fn frame(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a frame").help("name a body or a frame");
@@ -189,13 +191,13 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             None => {
-                if !self.is_news(name, cx) {
+                if !self.is_first_report(name, cx) {
                     return None;
                 }
                 let kinematics = self.kinematics.borrow();
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown frame `{name}`"));
-                words::point(error, words::BODIES, name, &known);
+                words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
                     error.help("name a body or a frame");
                 }
@@ -204,8 +206,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the names between the slashes of a kinematic quantity, or reports an error.
-    fn slashes<'e, const N: usize>(
+    /// Returns the operands between the slashes of a kinematic quantity, or reports an error.
+    fn slash_operands<'e, const N: usize>(
         &self,
         call: &Call<'e>,
         allowed: Allowed,
@@ -224,48 +226,48 @@ impl<'g> Scope<'_, 'g> {
         self.check_allowed(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
     }
 
-    /// `r(y / x)`
+    /// Resolves `r(y / x)`, the position of `y` relative to `x`.
     pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x] = self.slashes(call, Allowed::Placement, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
-        Some(vector(self.kinematics.borrow().between(&y?, &x?)))
+        let [y, x] = self.slash_operands(call, Allowed::Placement, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
+        Some(vector(self.kinematics.borrow().position_between(&y?, &x?)))
     }
 
-    /// `v(y / x / A)`: the velocity of `y` relative to `x`, seen from a frame A that rotates with `ω`:
+    /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
     /// `v − ω × r`.
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slashes(call, Allowed::Motion, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let [y, x, frame] = self.slash_operands(call, Allowed::Motion, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
         Some(vector(self.kinematics.borrow().velocity_in(&y?, &x?, frame?, self.graph)))
     }
 
-    /// `a(y / x / A)`: the acceleration of `y` relative to `x`, seen from a frame A that rotates with `ω` and
-    /// `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
+    /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
+    /// and `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
     pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slashes(call, Allowed::Acceleration, cx)?;
-        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let [y, x, frame] = self.slash_operands(call, Allowed::Acceleration, cx)?;
+        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
         Some(vector(self.kinematics.borrow().acceleration_in(&y?, &x?, frame?, self.graph)))
     }
 
-    /// `omega(B / A)`
+    /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 2] = self.slashes(call, Allowed::Motion, cx)?;
+        let frames: [_; 2] = self.slash_operands(call, Allowed::Motion, cx)?;
         let [b, a] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().turning_in(b?, a?, self.graph)))
+        Some(vector(self.kinematics.borrow().angular_velocity_in(b?, a?, self.graph)))
     }
 
-    /// `alpha(B / A / C)`
+    /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 3] = self.slashes(call, Allowed::Acceleration, cx)?;
+        let frames: [_; 3] = self.slash_operands(call, Allowed::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().turning_rate(b?, a?, c?, self.graph)))
+        Some(vector(self.kinematics.borrow().angular_acceleration_in(b?, a?, c?, self.graph)))
     }
 }
 
 impl<'g> Kinematics<'g> {
-    /// `v(y / x / frame)`.
+    /// Returns `v(y / x / frame)`.
     pub fn velocity_in(
         &self,
         y: &Placed<'g>,
@@ -274,15 +276,15 @@ impl<'g> Kinematics<'g> {
         graph: &'g Graph,
     ) -> Terms<'g> {
         let mut v = self.velocity(y);
-        v.extend(minus(self.velocity(x)));
+        v.extend(negated(self.velocity(x)));
         if let Some(l) = frame {
-            let r = self.resolve(&self.between(y, x), frame, Vec3::zero(graph));
+            let r = self.resolve(&self.position_between(y, x), frame, Vec3::zero(graph));
             v.push((frame, -self.twists[l.0].angular.cross(r)));
         }
         v
     }
 
-    /// `a(y / x / frame)`.
+    /// Returns `a(y / x / frame)`.
     pub fn acceleration_in(
         &self,
         y: &Placed<'g>,
@@ -291,11 +293,11 @@ impl<'g> Kinematics<'g> {
         graph: &'g Graph,
     ) -> Terms<'g> {
         let mut a = self.acceleration(y);
-        a.extend(minus(self.acceleration(x)));
+        a.extend(negated(self.acceleration(x)));
         if let Some(l) = frame {
             let zero = Vec3::zero(graph);
             let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
-            let r = self.resolve(&self.between(y, x), frame, zero);
+            let r = self.resolve(&self.position_between(y, x), frame, zero);
             let v = self.resolve(&self.velocity_in(y, x, frame, graph), frame, zero);
             let coriolis = w.cross(v);
             a.push((frame, -(dw.cross(r) + w.cross(w.cross(r)) + coriolis + coriolis)));
@@ -303,14 +305,20 @@ impl<'g> Kinematics<'g> {
         a
     }
 
-    /// `omega(of / frame)`.
-    pub fn turning_in(&self, of: Option<LinkId>, frame: Option<LinkId>, graph: &'g Graph) -> Terms<'g> {
+    /// Returns `omega(body / frame)`.
+    pub fn angular_velocity_in(
+        &self,
+        body: Option<LinkId>,
+        frame: Option<LinkId>,
+        graph: &'g Graph,
+    ) -> Terms<'g> {
         let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
-        vec![(of, w(of)), (frame, -w(frame))]
+        vec![(body, w(body)), (frame, -w(frame))]
     }
 
-    /// `alpha(b / a / c)`, with `α` of each frame taken in the ground: `α_b − α_a − ω_c × (ω_b − ω_a)`.
-    pub fn turning_rate(
+    /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is
+    /// `α_b − α_a − ω_c × (ω_b − ω_a)`.
+    pub fn angular_acceleration_in(
         &self,
         b: Option<LinkId>,
         a: Option<LinkId>,
@@ -319,13 +327,13 @@ impl<'g> Kinematics<'g> {
     ) -> Terms<'g> {
         let zero = Vec3::zero(graph);
         let rate = |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
-        let w = self.resolve(&self.turning_in(b, a, graph), c, zero);
+        let w = self.resolve(&self.angular_velocity_in(b, a, graph), c, zero);
         let turns = c.map_or(zero, |l| self.twists[l.0].angular);
         vec![(b, rate(b)), (a, -rate(a)), (c, -turns.cross(w))]
     }
 }
 
-fn minus<'g>(terms: Terms<'g>) -> Terms<'g> {
+fn negated<'g>(terms: Terms<'g>) -> Terms<'g> {
     terms.into_iter().map(|(l, v)| (l, -v)).collect()
 }
 
@@ -333,12 +341,12 @@ pub(super) fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
 }
 
-/// A vector as a sum over the axes of links.
+/// Converts a vector to a sum over the axes of links.
 pub(super) fn in_links<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
     terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
 }
 
-/// The link of axes; what is not resolved to one belongs to the ground.
+/// Returns the link of axes; unresolved axes belong to the ground.
 fn link_of(axes: &Axes) -> Option<LinkId> {
     match axes {
         Axes::Link(link) => *link,

@@ -1,8 +1,8 @@
-//! Forces and torques that joints transmit, for the outputs that name them: `reaction_force(joint)`,
-//! `reaction_torque(joint)`. A joint of the tree is released: six motions of the child in the joint's frame
-//! on the parent are added, and what holds them at zero is the reaction (Lanczos, *The Variational Principles
-//! of Mechanics*, 1970, § III.7). A joint that closes a loop transmits what the multipliers of its
-//! constraints do.
+//! Reaction forces and torques of joints in outputs: `reaction_force(joint)`, `reaction_torque(joint)`. A
+//! joint of the tree is released: six degrees of freedom of the child in the joint's frame on the parent are
+//! added, and the reaction is the load that holds them at zero (Lanczos, *The Variational Principles of
+//! Mechanics*, 1970, § III.7). The reaction of a loop-closing joint follows from the multipliers of its
+//! constraints.
 
 use super::builder::Builder;
 use super::call::Call;
@@ -14,13 +14,13 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::{InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::ExprKind;
 
-/// Coordinates of an released joint: three along axes, three about them.
+/// Number of coordinates of a released joint: three translations and three rotations.
 pub const RELEASED: usize = 6;
 
-/// The joints to be released: those whose reactions the outputs name, and with them those that loops are
-/// solved for in closed form, whose forces tell what closes the loops; of a body whose free-body diagram is
-/// an output, all joints and places.
-pub fn to_release(model: &Model<'_>) -> Vec<usize> {
+/// Returns the joints to release: those whose reactions are outputs, and all releasable connections of bodies
+/// with free-body diagrams. If there are any, joints solved for in closed form are added, because their
+/// reactions determine those of the loop-closing joints.
+pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
@@ -39,23 +39,24 @@ pub fn to_release(model: &Model<'_>) -> Vec<usize> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Makes the reactions of a joint known, which are resolved in the axes of a frame of a link.
-    pub fn transmit(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
+    /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
+    pub fn record_transmission(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
         let name = self.description.joints[j].name.text.clone();
         self.scope.kinematics.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
     }
 
-    /// The joint's frame on the parent, moved by the coordinates of the released joint with the number `at`.
+    /// Returns the joint's frame on the parent, moved by the coordinates of the released joint number `index`
+    /// of `count`.
     pub fn release(
         &mut self,
-        at: usize,
+        index: usize,
         count: usize,
         mut link: Option<LinkId>,
         mut pose: Pose<'g>,
     ) -> (Option<LinkId>, Pose<'g>) {
         let g = self.scope.graph;
-        let after = RELEASED * (count - at);
-        let (q, v) = (InQ(self.model.nq() - after), InV(self.model.nv() - after));
+        let following = RELEASED * (count - index);
+        let (q, v) = (InQ(self.model.nq() - following), InV(self.model.nv() - following));
         for k in 0..RELEASED {
             let (axis, coordinate) = (Vec3::axis(g, k % 3), own_coordinate(q + k, v + k));
             let motion = match k {
@@ -71,16 +72,16 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `reaction_force(joint)` or `reaction_torque(joint)`, whose components follow at `offset`: the load of
-    /// the parent on the child at the origin of the joint's frame.
+    /// Resolves `reaction_force(joint)` or `reaction_torque(joint)`, whose components begin at `offset`: the
+    /// load of the parent on the child at the origin of the joint's frame.
     pub fn reaction(&self, call: &Call<'_>, offset: usize, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let kinematics = self.kinematics.borrow();
-        let known = || kinematics.transmissions.keys().map(String::as_str);
+        let joint_names = || kinematics.transmissions.keys().map(String::as_str);
         let name = match call.arguments {
             [e] => match &e.kind {
                 ExprKind::Name(name) => name,
                 _ => {
-                    cx.error(e.place.clone(), "expected a joint").suggest("", known());
+                    cx.error(e.place.clone(), "expected a joint").suggest("", joint_names());
                     return None;
                 }
             },
@@ -90,9 +91,9 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
-            if self.is_news(name, cx) {
+            if self.is_first_report(name, cx) {
                 let error = cx.error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
-                error.suggest(name, known());
+                error.suggest(name, joint_names());
                 if error.is_bare() {
                     error.help(format!("name the joint, as in `{}(hinge)`", call.name()));
                 }

@@ -1,5 +1,5 @@
-//! Conditions on figures that follow from parameters: what is a mistake in a number is told at run time of a
-//! parameter.
+//! Conditions on values computed from parameters. A violation by a constant is a compile-time error; a
+//! violation by a parameter is reported at run time.
 
 use super::builder::Builder;
 use super::scope::Scope;
@@ -8,7 +8,7 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::{Quantity, Requirement, Rule};
 
 impl<'g> Scope<'_, 'g> {
-    /// Notes a condition on figures, if they follow from parameters, and from nothing that moves.
+    /// Records a condition on values, if they depend on parameters and on nothing else.
     pub fn require(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
         let parameter = |symbol| match Quantity::of(symbol) {
             Quantity::Parameter(k) => Some(k),
@@ -17,7 +17,7 @@ impl<'g> Scope<'_, 'g> {
         let parameters: Option<Vec<usize>> = symbols_in(values).into_iter().map(parameter).collect();
         let Some(parameters) = parameters.filter(|all| !all.is_empty()) else { return };
         let mut all = self.requirements.borrow_mut();
-        // A definition may stand at many places.
+        // A definition may be used several times.
         if !all.iter().any(|known| known.rule.includes(rule) && known.values == values) {
             all.push(Requirement { rule, figure: figure(), parameters, values: values.to_vec() });
         }
@@ -25,8 +25,8 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl Builder<'_, '_> {
-    /// Puts all conditions into the model: those of figures, those of bounds, and that parameters are finite
-    /// of which there is no other. One that is kept for the user's own use may be what it likes.
+    /// Adds all conditions to the model: those recorded, those of bounds, and finiteness of parameters
+    /// without other conditions. Parameters with a leading underscore are exempt.
     pub fn gather_requirements(&mut self) {
         for limit in &self.model.limits {
             let name = self.model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());

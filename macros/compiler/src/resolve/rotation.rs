@@ -1,7 +1,7 @@
-//! Rotations and matrices as written.
+//! Written rotations and matrices.
 
+use super::corrections::{MATRIX_SYNTAX, check_angle, is_rotation, report_matrix, report_rotation};
 use super::scope::Scope;
-use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always;
 use crate::expr::{Expr, Mat3, Rotation};
@@ -10,7 +10,7 @@ use crate::mechanism::Rule;
 use crate::syntax::{self, Callee, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
-    /// Successive rotations about carried axes.
+    /// Returns the product of successive rotations about rotated axes.
     pub fn rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         let mut whole = Some(Rotation::identity(self.graph));
         for step in steps {
@@ -73,12 +73,13 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// An angle, rad. A plain number beyond a full turn is most likely meant in degrees.
+    /// Returns an angle, rad. A plain number beyond a full revolution is most likely in degrees and is
+    /// reported.
     pub fn plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         if check_angle(e, cx) { self.scalar(e, cx) } else { None }
     }
 
-    /// A 3×3 matrix written as an array of rows.
+    /// Returns a 3×3 matrix written as an array of rows.
     pub fn matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
         let mut m = Mat3::zero(self.graph);
         let rows = match &e.kind {
@@ -100,7 +101,7 @@ impl<'g> Scope<'_, 'g> {
                     }
                 }
                 _ => {
-                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX);
+                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX_SYNTAX);
                     return None;
                 }
             }
@@ -109,7 +110,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// True if numbers form a rotation matrix; matrices of parameters are sampled.
+/// Whether a matrix is a rotation matrix; reports it otherwise. Matrices of parameters are sampled.
 fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
     let product = m.transpose() * *m;
     let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));

@@ -1,4 +1,4 @@
-//! Rows of constraints that were declared, and the motions that they are made of.
+//! Rows of declared constraints, and the motions used to form them.
 
 use super::builder::Builder;
 use crate::diag::Place;
@@ -8,7 +8,7 @@ use crate::kinematics::time_derivative;
 use crate::mechanism::{Constraint, LinkId, Measure};
 
 impl<'g> Builder<'_, 'g> {
-    /// A row of a constraint that was declared, whose rate is known.
+    /// Adds a row of a declared constraint with this rate.
     pub fn push_rate(
         &mut self,
         (name, place): (String, &Place),
@@ -31,22 +31,22 @@ impl<'g> Builder<'_, 'g> {
         });
     }
 
-    /// Motion of a link relative to the nearest link that carries it and another.
+    /// Returns the motion of a link relative to the nearest common ancestor of it and another link.
     pub fn relative(&self, link: Option<LinkId>, other: Option<LinkId>) -> Relative<'g> {
         jet::relative(&self.model, &self.scope.kinematics.borrow().joints, link, other)
     }
 
-    /// A point of a link.
+    /// Returns a point of a link, with its rates.
     pub fn point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
         jet::point(&self.scope.kinematics.borrow().joints, on, p)
     }
 
-    /// A direction fixed in a link.
+    /// Returns a direction fixed in a link, with its rates.
     pub fn direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
         jet::direction(&self.scope.kinematics.borrow().joints, on, e)
     }
 
-    /// A vector of a link, in the axes of the ancestor.
+    /// Returns a vector of a link in the axes of the ancestor.
     pub fn direction_out(&self, on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
         jet::direction_out(&self.scope.kinematics.borrow().joints, on, v)
     }

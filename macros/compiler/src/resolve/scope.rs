@@ -1,7 +1,7 @@
-//! What names mean where an expression stands: what is declared, what is placed so far and how it moves, what
-//! an expression may depend on.
+//! Scopes for the resolution of expressions: declared names, elements placed so far with their motion, and
+//! the quantities on which an expression may depend.
 
-use super::resolved::Resolved;
+use super::resolved::ResolvedMatrix;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes};
 use crate::mechanism::{Chart, Coordinate, LinkId, Pose, Requirement};
@@ -9,17 +9,17 @@ use crate::syntax::{self, Name, Rank};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What names mean where an expression stands.
+/// Scope in which the names of an expression are resolved.
 pub struct Scope<'a, 'g> {
-    /// Owner of the expressions.
+    /// Graph that owns the expressions.
     pub graph: &'g Graph,
     /// Parameters of the struct.
     pub parameters: &'a [Name],
     /// Whether each parameter was used.
     pub used: std::cell::RefCell<Vec<bool>>,
-    /// Functions that are parameters.
+    /// Tables, which are parameters that are functions.
     pub tables: &'a [syntax::Table],
-    /// Whether each of them was used.
+    /// Whether each table was used.
     pub used_tables: RefCell<Vec<bool>>,
     /// Names of bodies and particles.
     pub bodies: Vec<String>,
@@ -29,63 +29,64 @@ pub struct Scope<'a, 'g> {
     pub joints: Vec<String>,
     /// Names of force elements.
     pub actions: Vec<String>,
-    /// Names of inputs, in order, after those of driven joints and of drives.
+    /// Names of declared inputs, in order. In `u` they follow those of driven joints and drives.
     pub inputs: &'a [Name],
-    /// How many joints and drives have inputs of their own.
+    /// Number of joints and drives with inputs of their own.
     pub driven: usize,
-    /// States of first order, each with its number among the parameters.
+    /// States of first order, each with its index among the parameters.
     pub states: &'a [(Name, usize)],
-    /// Names for expressions.
+    /// Named expressions.
     pub definitions: &'a [syntax::Definition],
-    /// Those of them that are generalized speeds.
+    /// Definitions that are generalized speeds.
     pub speeds: &'a [Name],
-    /// What expressions may depend on, and what `x`, `y` and `z` alone mean.
+    /// Quantities on which expressions may depend, and the meaning of the unqualified axes `x`, `y` and `z`.
     pub context: RefCell<Context<'g>>,
-    /// What is placed so far, and how it moves.
+    /// Elements placed so far, with their motion.
     pub kinematics: RefCell<Kinematics<'g>>,
-    /// Names without a value that were told: each once, most likely a declaration is missing.
-    pub unknown: RefCell<BTreeSet<String>>,
-    /// Numbers are `f32`.
-    pub single: bool,
-    /// Definitions whose mistakes were told.
-    pub failed: RefCell<BTreeSet<String>>,
-    /// A constraint on configurations is being read.
-    pub constrains: std::cell::Cell<bool>,
-    /// Definitions that were looked up for the one whose value is asked for: each once, however often the
-    /// others name it.
-    pub known: RefCell<Known<'g>>,
-    /// What figures that follow from parameters must fulfil, as far as it was met.
+    /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
+    /// missing.
+    pub reported_names: RefCell<BTreeSet<String>>,
+    /// Whether numbers are `f32`.
+    pub is_f32: bool,
+    /// Definitions whose errors have been reported.
+    pub reported_definitions: RefCell<BTreeSet<String>>,
+    /// Whether a constraint on configurations is being resolved.
+    pub in_holonomic_constraint: std::cell::Cell<bool>,
+    /// Values of definitions used by the definition that is being evaluated. Each is evaluated once, even if
+    /// several others use it.
+    pub definition_values: RefCell<DefinitionValues<'g>>,
+    /// Conditions on values that depend on parameters, recorded so far.
     pub requirements: RefCell<Vec<Requirement<'g>>>,
 }
 
-/// Values of definitions, by name, by what they may depend on, and by whether `x`, `y` and `z` alone are the
-/// ground's; `None` for those with mistakes.
-pub type Known<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
+/// Values of definitions, by name, allowed quantities, and whether unqualified axes are those of the ground;
+/// `None` for definitions with errors.
+pub type DefinitionValues<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
 
-/// The axes that a vector is given in.
+/// Axes in which a vector is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of the frame that the attribute belongs to.
+    /// Axes of the frame to which the attribute belongs.
     Own,
-    /// Those of a named body (or `ground`), where the links are not yet known.
+    /// Axes of a named body (or `ground`) whose link is not yet resolved.
     Of(String),
-    /// Those of a link, or of the ground.
+    /// Axes of a link, or of the ground.
     Link(Option<LinkId>),
 }
 
-/// A value: a scalar, a vector as a sum over axes, or a matrix.
+/// Value of an expression: a scalar, a vector as a sum over axes, or a matrix.
 #[derive(Clone, Debug)]
 pub enum Value<'g> {
-    /// A number.
+    /// Scalar.
     Scalar(Expr<'g>),
-    /// A physical vector.
+    /// Physical vector.
     Vector(Vec<(Axes, Vec3<'g>)>),
-    /// A physical matrix.
-    Matrix(Resolved<'g>),
+    /// Physical matrix.
+    Matrix(ResolvedMatrix<'g>),
 }
 
 impl Value<'_> {
-    /// What it is declared as.
+    /// Returns the rank as which the value can be declared.
     pub fn rank(&self) -> Rank {
         match self {
             Value::Scalar(_) => Rank::Scalar,
@@ -94,7 +95,7 @@ impl Value<'_> {
         }
     }
 
-    /// It in a word, with its article.
+    /// Returns the kind of value, with its article, for messages.
     pub fn word(&self) -> &'static str {
         match self {
             Value::Scalar(_) => "a scalar",
@@ -104,144 +105,144 @@ impl Value<'_> {
     }
 }
 
-/// What an expression may depend on.
+/// Quantities on which an expression may depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Allowed {
-    /// Parameters alone.
+    /// Parameters only.
     Constant,
-    /// Coordinates and time too.
+    /// Also coordinates and time.
     Placement,
-    /// Rates, velocities and inputs too.
+    /// Also rates, velocities and inputs.
     Motion,
-    /// Accelerations too.
+    /// Also accelerations.
     Acceleration,
-    /// Reactions of joints too.
+    /// Also reactions of joints and contact forces.
     Reaction,
 }
 
-/// Where an expression stands.
+/// Context of an expression.
 #[derive(Clone, Debug)]
 pub struct Context<'g> {
-    /// What it may depend on.
+    /// Quantities on which the expression may depend.
     pub allowed: Allowed,
-    /// The link and placement whose axes `x`, `y` and `z` are; none where they are the attribute's own.
+    /// Link and pose whose axes `x`, `y` and `z` denote; `None` for the attribute's own axes.
     pub axes: Option<(Option<LinkId>, Pose<'g>)>,
-    /// Names of the place, such as `stretch`.
+    /// Local names, such as `stretch`.
     pub locals: Vec<(&'static str, Expr<'g>)>,
-    /// What decides between pieces of a law that are being read, as written, and the symbols that stand for
-    /// it in them.
-    pub deciding: Vec<(syntax::Expr, Expr<'g>)>,
-    /// Definitions that are being looked up.
+    /// Compared expressions of the piecewise laws that are being resolved, as written, with the symbols that
+    /// replace them.
+    pub compared: Vec<(syntax::Expr, Expr<'g>)>,
+    /// Definitions that are being evaluated.
     pub defining: Vec<String>,
 }
 
 impl<'g> Context<'g> {
-    /// A context without names of its own.
+    /// Returns a context without local names.
     pub fn new(allowed: Allowed, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
-        Context { allowed, axes, locals: Vec::new(), deciding: Vec::new(), defining: Vec::new() }
+        Context { allowed, axes, locals: Vec::new(), compared: Vec::new(), defining: Vec::new() }
     }
 
-    /// The context with these names of its own.
+    /// Returns the context with these local names.
     pub fn with_locals(mut self, locals: Vec<(&'static str, Expr<'g>)>) -> Context<'g> {
         self.locals = locals;
         self
     }
 }
 
-/// What can be placed.
+/// Kind of a placed element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlacedKind {
-    /// A body: axes and origin.
+    /// Body: axes and origin.
     Body,
-    /// A particle or a point: an origin, with the axes of what carries it.
+    /// Particle or point: an origin, with the axes of its carrier.
     Point,
-    /// A frame: axes.
+    /// Frame: axes.
     Frame,
 }
 
-/// A placed thing: the link it is fixed in (the ground if none) and where.
+/// A placed element: the link in which it is fixed, and its pose.
 #[derive(Clone, Debug)]
 pub struct Placed<'g> {
-    /// The link.
+    /// Link in which the element is fixed; `None` for the ground.
     pub link: Option<LinkId>,
-    /// Its placement in the link.
+    /// Pose in the link.
     pub pose: Pose<'g>,
-    /// What it is.
+    /// Kind of the element.
     pub kind: PlacedKind,
 }
 
-/// Mass, centre of mass in body axes, inertia about it.
+/// Mass, centre of mass in body axes, and central inertia.
 pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 
-/// What is placed so far, and how it moves.
+/// Elements placed so far, with their motion.
 #[derive(Debug, Default)]
 pub struct Kinematics<'g> {
-    /// By name.
+    /// Placements by name.
     pub places: BTreeMap<String, Placed<'g>>,
     /// Plain coordinates by full name; true for an angle.
     pub coordinates: Vec<(String, Coordinate, bool)>,
     /// Kinematics of the links.
     pub joints: Vec<Joint<'g>>,
-    /// The configuration space, once all links are there.
+    /// Charts of the configuration space; set after all links are placed.
     pub charts: Vec<Chart>,
-    /// Twists of the links, once all are there.
+    /// Twists of the links; set after all links are placed.
     pub twists: Vec<Spatial<'g>>,
-    /// By joint: its number, and the axes of its frame on the parent, in which its reactions are resolved.
+    /// Index of each joint, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
-    /// By contact: what its surfaces exert on each other.
-    pub touches: BTreeMap<String, Exerted<'g>>,
-    /// By force element that an output asks for: what it delivers.
-    pub powers: BTreeMap<String, Delivered<'g>>,
-    /// Accelerations of the links, once all are there.
+    /// Forces and moments between the surfaces of each contact.
+    pub contact_loads: BTreeMap<String, ContactLoads<'g>>,
+    /// Power of each force element that an output uses.
+    pub powers: BTreeMap<String, ElementPower<'g>>,
+    /// Accelerations of the links; set after all links are placed.
     pub accelerations: Vec<Spatial<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
     pub masses: BTreeMap<String, MassProperties<'g>>,
 }
 
-/// What the second surface of a contact exerts on the first, by axes of links.
+/// Forces and moments of the second surface of a contact on the first, each in the axes of a link.
 #[derive(Debug, Default)]
-pub struct Exerted<'g> {
+pub struct ContactLoads<'g> {
     /// Forces at all points.
     pub forces: Vec<(Option<LinkId>, Vec3<'g>)>,
     /// Moments of friction against spin and rolling.
     pub moments: Vec<(Option<LinkId>, Vec3<'g>)>,
-    /// What all of them deliver.
+    /// Power of all forces and moments.
     pub power: Option<Expr<'g>>,
 }
 
-impl<'g> Exerted<'g> {
+impl<'g> ContactLoads<'g> {
     /// Adds power.
-    pub fn deliver(&mut self, power: Expr<'g>) {
+    pub fn add_power(&mut self, power: Expr<'g>) {
         self.power = Some(self.power.map_or(power, |sum| sum + power));
     }
 }
 
-/// What a force element delivers, or why that is not known.
-pub type Delivered<'g> = Result<Expr<'g>, &'static str>;
+/// Power of a force element, or the reason why it is unavailable.
+pub type ElementPower<'g> = Result<Expr<'g>, &'static str>;
 
 /// A vector as a sum over the axes of links.
 pub type Terms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
 impl<'g> Kinematics<'g> {
-    /// The components of a sum in the axes of one link.
+    /// Returns the components of a sum in the axes of one link.
     pub fn resolve(&self, terms: &Terms<'g>, link: Option<LinkId>, zero: Vec3<'g>) -> Vec3<'g> {
         terms.iter().fold(zero, |sum, (from, v)| sum + change_axes(&self.joints, *v, *from, link))
     }
 
-    /// The position of a point from the ground's origin.
+    /// Returns the position of a point relative to the ground's origin.
     pub fn position(&self, link: Option<LinkId>, p: Vec3<'g>) -> Terms<'g> {
         let mut terms = vec![(link, p)];
-        let mut at = link;
-        while let Some(l) = at {
+        let mut current = link;
+        while let Some(l) = current {
             let joint = &self.joints[l.0];
             terms.push((joint.parent, joint.translation));
-            at = joint.parent;
+            current = joint.parent;
         }
         terms
     }
 
-    /// `r(y / x)`, with what both share left out.
-    pub fn between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
+    /// Returns `r(y / x)`; links that carry both points cancel.
+    pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
         let mut sum = self.position(y.link, y.pose.translation);
         for (axes, v) in self.position(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {
@@ -253,7 +254,7 @@ impl<'g> Kinematics<'g> {
         sum
     }
 
-    /// Velocity of a point relative to the ground.
+    /// Returns the velocity of a point relative to the ground.
     pub fn velocity(&self, p: &Placed<'g>) -> Terms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let t = &self.twists[l.0];
@@ -261,7 +262,7 @@ impl<'g> Kinematics<'g> {
         })
     }
 
-    /// Acceleration of a point relative to the ground.
+    /// Returns the acceleration of a point relative to the ground.
     pub fn acceleration(&self, p: &Placed<'g>) -> Terms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let (t, a, r) = (&self.twists[l.0], &self.accelerations[l.0], p.pose.translation);
@@ -271,7 +272,7 @@ impl<'g> Kinematics<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// Evaluates with another context.
+    /// Evaluates a function in another context.
     pub fn in_context<T>(&self, context: Context<'g>, f: impl FnOnce(&Self) -> T) -> T {
         let before = self.context.replace(context);
         let result = f(self);
@@ -279,7 +280,7 @@ impl<'g> Scope<'_, 'g> {
         result
     }
 
-    /// What expressions may depend on here.
+    /// Returns the quantities on which expressions may depend here.
     pub fn allowed(&self) -> Allowed {
         self.context.borrow().allowed
     }

@@ -1,5 +1,4 @@
-//! Generalized speeds of the user's choice: invertible linear combinations of the velocities that joints
-//! have.
+//! Generalized speeds declared by the user: invertible linear combinations of the joint velocities.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
@@ -12,27 +11,27 @@ use crate::mechanism::{InV, Pose, Quantity, Speeds};
 use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
 
-/// A speed as it is declared, with its coefficients of all velocities.
-struct Declared<'a, 'g> {
+/// A declared speed, with its coefficients of all velocities.
+struct DeclaredSpeed<'a, 'g> {
     name: &'a Name,
     value: &'a syntax::Expr,
     row: Vec<Expr<'g>>,
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Reads the speeds, and puts them in the place of the velocities that they name.
+    /// Resolves the speeds, and replaces the velocities that they contain.
     pub fn add_speeds(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         if d.speeds.is_empty() || self.releasing.is_some() || !cx.is_empty() {
             return;
         }
-        let declared: Vec<Declared<'a, 'g>> = d
+        let declared: Vec<DeclaredSpeed<'a, 'g>> = d
             .speeds
             .iter()
             .filter_map(|name| {
                 let definition = d.definitions.iter().find(|definition| definition.name.text == name.text)?;
                 let row = self.coefficients(name, &definition.value, cx)?;
-                Some(Declared { name, value: &definition.value, row })
+                Some(DeclaredSpeed { name, value: &definition.value, row })
             })
             .collect();
         if cx.is_empty() {
@@ -40,12 +39,13 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// The coefficients of a speed; `None` if it is no combination of rates.
+    /// Returns the coefficients of a speed; `None` if it is not a linear combination of rates.
     fn coefficients(&self, name: &Name, value: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let g = self.scope.graph;
         let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
-        let named = syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
-        let e = self.scope.in_context(context, |scope| scope.scalar(&named, cx))?;
+        let name_expression =
+            syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
+        let e = self.scope.in_context(context, |scope| scope.scalar(&name_expression, cx))?;
         let place = || value.place.clone();
         let mut row = vec![g.zero(); self.model.nv()];
         velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
@@ -54,7 +54,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 .help("a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), body.x)`");
             return None;
         }
-        let state = |k: usize| d_states(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
+        let state =
+            |k: usize| state_indices(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
         for symbol in symbols_in(&row) {
             let (what, help) = match Quantity::of(symbol) {
                 Quantity::Velocity(_) => (
@@ -82,8 +83,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             return None;
         }
         let at_rest = replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()));
-        let rest = [vec![at_rest]];
-        if !at_rest.is_zero() && !speeds::named_columns(&self.model, &rest.to_vec()).is_empty() {
+        let remainder = [vec![at_rest]];
+        if !at_rest.is_zero() && !speeds::named_columns(&self.model, &remainder.to_vec()).is_empty() {
             cx.error(place(), "a speed has no part that is there at rest")
                 .help("speeds are velocities: zero at rest, and multiplied by a time they are displacements. Take the rates relative to what moves, or make it an `#[output(…)]`");
             return None;
@@ -91,57 +92,58 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some(row)
     }
 
-    fn replace_velocities(&mut self, declared: &[Declared<'_, 'g>], cx: &mut Diagnostics) {
+    fn replace_velocities(&mut self, declared: &[DeclaredSpeed<'_, 'g>], cx: &mut Diagnostics) {
         let rows: Vec<Vec<Expr<'g>>> = declared.iter().map(|speed| speed.row.clone()).collect();
-        let named = speeds::named_columns(&self.model, &rows);
-        if !self.check_speeds(declared, &rows, &named, cx) {
+        let columns = speeds::named_columns(&self.model, &rows);
+        if !self.check_speeds(declared, &rows, &columns, cx) {
             return;
         }
         let nv = self.model.nv();
         let block: Vec<Vec<Expr<'g>>> =
-            rows.iter().map(|row| named.iter().map(|k| row[*k]).collect()).collect();
+            rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
         let Some(inverse) = speeds::inverse(&self.model, &block) else {
-            let most = speeds::MOST_COUPLED;
+            let limit = speeds::MOST_COUPLED;
             cx.error(
                 declared[0].value.place.clone(),
-                format!("more than {most} of these speeds depend on each other"),
+                format!("more than {limit} of these speeds depend on each other"),
             )
             .help("choose speeds each of which names few rates");
             return;
         };
         let g = self.scope.graph;
         let identity = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
-        let whole = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
-            let at = |k: usize| named.iter().position(|n| *n == k);
-            let entry = |i: usize, j: usize| match (at(i), at(j)) {
+        let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
+            let named_index = |k: usize| columns.iter().position(|n| *n == k);
+            let entry = |i: usize, j: usize| match (named_index(i), named_index(j)) {
                 (Some(i), Some(j)) => block[i][j],
                 _ => identity(i, j),
             };
             (0..nv).map(|i| (0..nv).map(|j| entry(i, j)).collect()).collect()
         };
         let velocities = self.model.velocities.clone();
-        for (k, speed) in named.iter().zip(declared) {
+        for (k, speed) in columns.iter().zip(declared) {
             self.model.velocities[*k] = (speed.name.text.clone(), speed.name.place.clone());
         }
-        let (of_rates, rates) = (whole(&block), whole(&inverse));
-        let replaced = named.into_iter().map(InV).collect();
+        let (of_rates, rates) = (full_matrix(&block), full_matrix(&inverse));
+        let replaced = columns.into_iter().map(InV).collect();
         self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
 
-    /// Whether so many speeds can replace the velocities that they name.
+    /// Whether the number of speeds is that of the velocities that they replace, and they are independent;
+    /// reports an error otherwise.
     fn check_speeds(
         &self,
-        declared: &[Declared<'_, 'g>],
+        declared: &[DeclaredSpeed<'_, 'g>],
         rows: &Vec<Vec<Expr<'g>>>,
-        named: &[usize],
+        columns: &[usize],
         cx: &mut Diagnostics,
     ) -> bool {
-        let list = |of: &[usize]| {
+        let list = |indices: &[usize]| {
             let names: Vec<String> =
-                of.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
+                indices.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
             all_of(&names)
         };
-        let (count, all) = (declared.len(), named.len());
+        let (count, all) = (declared.len(), columns.len());
         let last = &declared[count - 1];
         if let Some(k) = speeds::dependent_row(&self.model, rows) {
             let speed = &declared[k];
@@ -156,10 +158,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         if count < all {
             let verb = if count == 1 { "names" } else { "name" };
             let subject = if count == 1 { "one speed" } else { &format!("{count} speeds") };
-            let rate = &self.model.velocities[named[all - 1]].0;
+            let rate = &self.model.velocities[columns[all - 1]].0;
             cx.error(
                 last.name.place.clone(),
-                format!("{subject} {verb} {all} velocities: {}", list(named)),
+                format!("{subject} {verb} {all} velocities: {}", list(columns)),
             )
             .help(format!("every velocity that speeds name is replaced: declare as many speeds, such as one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`", rate.replace('.', "_")));
             return false;
@@ -167,7 +169,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let bounded = self.model.limits.iter().find_map(|limit| {
             let key = if limit.speed.is_some() { "max_speed" } else { "max_effort" };
             let bounds = limit.speed.or(limit.effort).is_some();
-            (bounds && named.contains(&limit.v.0)).then_some((limit.v.0, key))
+            (bounds && columns.contains(&limit.v.0)).then_some((limit.v.0, key))
         });
         if let Some((k, key)) = bounded {
             let (rate, what) =
@@ -183,7 +185,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// States with their numbers among the parameters.
-fn d_states<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
+/// Returns the states with their indices among the parameters.
+fn state_indices<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
     builder.description.states.iter().map(|(name, parameter)| (name.text.as_str(), *parameter))
 }

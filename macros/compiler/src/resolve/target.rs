@@ -1,4 +1,4 @@
-//! What force elements and limits act on: coordinates, places, lengths given by expressions.
+//! Targets of force elements and limits: coordinates, points, and lengths given by expressions.
 
 use super::builder::Builder;
 use super::scope::Placed;
@@ -8,22 +8,22 @@ use crate::language::Method;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
-/// What an element acts on.
+/// Target of a force element.
 pub enum Target<'g> {
-    /// A coordinate; true if it is an angle, nothing if it may be either.
+    /// Coordinate. The flag is true for an angle, `None` if it may be an angle or a length.
     Coordinate(Coordinate, Option<bool>),
-    /// A point of a body, a particle, a named point.
+    /// Point of a body, a particle, or a named point.
     Point(Placed<'g>),
-    /// A length or an angle by an expression.
+    /// Length or angle given by an expression.
     Expression(Stretch<'g>),
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The coordinate that a limit is on, and whether it is an angle, if that is known.
+    /// Returns the coordinate of a limit, and whether it is an angle, if that is known.
     pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
         let joint = on.name().and_then(|name| self.joint_coordinates(name));
         if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.spelt()))
+            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source()))
                 .help("limits are on joints with plain coordinates: not on a Ball, Free or Weld, and not on what closes a loop");
             return None;
         }
@@ -37,7 +37,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`.
+    /// Resolves `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
     pub fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
             ExprKind::Name(name) => self.named_target(on, name, cx),
@@ -53,7 +53,7 @@ impl<'g> Builder<'_, 'g> {
                     self.report_target(name, &inner.place, cx);
                     return None;
                 }
-                self.scope.place_now(on, cx).map(Target::Point)
+                self.scope.current_place(on, cx).map(Target::Point)
             }
             ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
                 self.expression_stretch(on, cx).map(Target::Expression)
@@ -66,7 +66,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A coordinate of its own, a joint with one coordinate, a definition, or a place.
+    /// Resolves a declared coordinate, a joint with one coordinate, a definition, or a placed element.
     fn named_target(&self, on: &Expr, name: &str, cx: &mut Diagnostics) -> Option<Target<'g>> {
         if self.description.coordinates.iter().any(|c| c.name.text == name) {
             let kinematics = self.scope.kinematics.borrow();
@@ -100,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.place(on, cx).map(Target::Point)
     }
 
-    /// `joint.coordinate`.
+    /// Resolves `joint.coordinate`.
     fn coordinate_of_joint(
         &self,
         on: &Expr,
@@ -118,7 +118,7 @@ impl<'g> Builder<'_, 'g> {
                     .help(format!("write `on = {joint}` and give a direction, or name a joint"));
                 return None;
             }
-            if self.scope.is_news(joint, cx) {
+            if self.scope.is_first_report(joint, cx) {
                 let known = self.joint_names();
                 let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
                 error.suggest(joint, known.iter().map(String::as_str));
@@ -138,7 +138,7 @@ impl<'g> Builder<'_, 'g> {
         None
     }
 
-    /// A coordinate of its own, by name.
+    /// Returns a declared coordinate by its name.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
         let kinematics = self.scope.kinematics.borrow();
@@ -146,22 +146,22 @@ impl<'g> Builder<'_, 'g> {
         known.map(|(_, c, _)| *c)
     }
 
-    /// Says why nothing can act on a name.
+    /// Reports a name that cannot be a target, with the reason.
     fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
             cx.error(place.clone(), "nothing that acts on the ground has an effect")
                 .help("name a body that moves, or one of its points: `on = body.at(length * x)`");
-        } else if self.scope.what(name) == Some("a joint") {
+        } else if self.scope.kind_of_name(name) == Some("a joint") {
             cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
                 .help(format!("write `on = {name}`, or name a point of a body"));
-        } else if let Some(what) = self.scope.what(name) {
+        } else if let Some(what) = self.scope.kind_of_name(name) {
             cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
                 .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
         } else {
             let mut known = self.joint_names();
             known.extend(self.placeable.iter().cloned());
             known.extend(self.description.coordinates.iter().map(|c| c.name.text.clone()));
-            if !self.scope.is_news(name, cx) {
+            if !self.scope.is_first_report(name, cx) {
                 return;
             }
             let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));

@@ -1,9 +1,9 @@
-//! The lengths and angles that force elements act on, and energies and dissipation functions given as
+//! Lengths and angles on which force elements act, and energies and dissipation functions given as
 //! expressions.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
-use super::power::Counts;
+use super::power::ForceCounts;
 use super::scope::{Allowed, Context};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -13,27 +13,27 @@ use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradi
 use crate::mechanism::{Coordinate, Pose, Quantity};
 use crate::syntax::{self, ExprKind};
 
-/// A length or angle that an element works on.
+/// A length or angle on which an element acts.
 pub struct Stretch<'g> {
-    /// Its value.
+    /// Value, m or rad.
     pub value: Expr<'g>,
-    /// Its rate, linear in the velocities.
+    /// Rate, linear in the velocities.
     pub rate: Expr<'g>,
-    /// Its square.
+    /// Square of the value.
     pub square: Expr<'g>,
-    /// The value has the sign of a direction that stays the same, and the length is its magnitude.
+    /// Whether the value is the signed coordinate along a fixed line; the length is then its magnitude.
     pub signed: bool,
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The stretch of a coordinate.
+    /// Returns the stretch of a coordinate.
     pub fn coordinate_stretch(&self, c: &Coordinate) -> Stretch<'g> {
         let g = self.scope.graph;
         let value = position_in(g, c);
         Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
     }
 
-    /// A length or an angle given by an expression of the coordinates, such as that of a cable.
+    /// Returns a length or an angle given by an expression of the coordinates, such as the length of a cable.
     pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let stretch = self.stretch_of(e, cx)?;
         if velocity_gradient(stretch.rate).is_empty() {
@@ -44,7 +44,7 @@ impl<'g> Builder<'_, 'g> {
         Some(stretch)
     }
 
-    /// The value and the rate of an expression of places, which may be one that nothing changes.
+    /// Returns the value and the rate of an expression of positions, which may be constant.
     pub fn stretch_of(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let context = Context::new(Allowed::Placement, Some((None, Pose::identity(self.scope.graph))));
         let value = self.scope.in_context(context, |scope| scope.scalar(e, cx))?;
@@ -52,8 +52,9 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value, rate, square: value.square(), signed: false })
     }
 
-    /// The distance between two points. Where they move along one line, it is the coordinate along that line,
-    /// so that nothing happens when they meet; elsewhere the direction of a zero distance is the zero vector.
+    /// Returns the distance between two points. If they move along one line, the distance is the signed
+    /// coordinate along it, which is smooth where they coincide. Otherwise the direction of a zero distance
+    /// is the zero vector.
     pub fn distance(&self, a: &syntax::Expr, b: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let (first, second) = (self.scope.place(a, cx), self.scope.place(b, cx));
         let (first, second) = (first?, second?);
@@ -64,19 +65,19 @@ impl<'g> Builder<'_, 'g> {
         }
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
-        let terms = kinematics.between(&second, &first);
+        let terms = kinematics.position_between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = kinematics.resolve(&terms, axes, zero);
-        // What moves along a line does so whichever joints are released.
-        let held = Vec3(self.with_released_at_rest(&r.0).try_into().unwrap_or(r.0));
-        if always_zero(held) {
+        // The test for a common line ignores released joints.
+        let with_closed_joints = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
+        if always_zero(with_closed_joints) {
             cx.error(b.place.clone(), "these two points are always at the same place")
                 .help("let the element act between points that move apart");
             return None;
         }
         let mut v = kinematics.velocity(&second);
         v.extend(kinematics.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
-        if let Some(line) = constant_direction(held) {
+        if let Some(line) = constant_direction(with_closed_joints) {
             let e = Vec3::numbers(self.scope.graph, line);
             let rate = e.dot(kinematics.resolve(&v, axes, zero));
             let value = r.dot(e);
@@ -88,31 +89,31 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
-    /// Potential energies and dissipation functions given as expressions; then the outputs.
+    /// Adds potential energies and dissipation functions given as expressions, followed by the outputs.
     pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         let ground = || Some((None, Pose::identity(self.scope.graph)));
         for (name, e) in &d.energies {
             let context = Context::new(Allowed::Placement, ground());
             let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.model.potentials.extend(energy);
-            self.know_applied(&before, &name.text);
+            self.record_applied(&before, &name.text);
         }
         for (name, e) in &d.dissipations {
             let context = Context::new(Allowed::Motion, ground());
             let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
-            // Between bodies that are welded together it is zero, which is no mistake.
+            // Zero is not an error: the bodies may be welded together.
             if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
                 cx.error(e.place.clone(), "this contains no velocity, and has no effect")
                     .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
             }
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.model.dissipations.extend(function);
-            self.know_applied(&before, &name.text);
+            self.record_applied(&before, &name.text);
         }
         self.add_outputs(cx);
-        // Definitions that nothing uses are checked all the same.
+        // Unused definitions are checked as well.
         for definition in &d.definitions {
             let context = Context::new(Allowed::Reaction, ground());
             let name = ExprKind::Name(definition.name.text.clone());
@@ -121,7 +122,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Sets what the signatures of the generated functions depend on.
+    /// Sets the quantities on which the signatures of the generated functions depend.
     pub fn find_dependencies(&mut self, _: Constrained) {
         let m = &self.model;
         let mut all: Vec<Expr<'g>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
@@ -146,25 +147,25 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// True for a vector that is zero for all coordinates and parameters.
+/// Whether a vector is zero for all coordinates and parameters.
 fn always_zero(r: Vec3<'_>) -> bool {
     r.is_zero()
         || (0..4).all(|seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14))
 }
 
-/// The direction of a vector, if it is the same for all coordinates and parameters.
+/// Returns the direction of a vector, if it is the same for all coordinates and parameters.
 fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
-    let at = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
-    let first = at(0);
+    let evaluate = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
+    let first = evaluate(0);
     let norm = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let e = [first[0] / norm, first[1] / norm, first[2] / norm];
     let parallel = (1..5).all(|seed| {
-        let v = at(seed);
+        let v = evaluate(seed);
         let along: f64 = (0..3).map(|k| v[k] * e[k]).sum();
         let size = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         (0..3).all(|k| (v[k] - along * e[k]).abs() <= 1e-12 * size)
     });
-    // The sign of a coordinate direction is positive.
+    // The first nonzero component of the direction is positive.
     let flip = e.iter().find(|c| c.abs() > 1e-9).is_some_and(|c| *c < 0.0);
     let snap = |c: f64| {
         if c.abs() < 1e-12 {

@@ -1,4 +1,5 @@
-//! Topology: which joint holds which body, which joints close loops, and the order in which links are built.
+//! Topology: the joint of each body in the spanning tree, the joints that close loops, and the order in which
+//! links are built.
 
 use super::builder::{BodyIndex, JointedBody};
 use super::scope::Scope;
@@ -7,18 +8,18 @@ pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
-/// The joints in an order in which every parent is placed before its children, with the bodies that they
-/// hold, and the joints that close loops.
+/// Tree joints in an order in which every parent is placed before its children, with the bodies that they
+/// place, and the joints that close loops.
 pub struct Order {
-    /// Joint, child.
+    /// Indices of the joint and of its child.
     pub joints: Vec<(usize, BodyIndex)>,
-    /// Joints whose child has its place already.
+    /// Joints whose child has already been placed.
     pub closing: Vec<usize>,
 }
 
-/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and
-/// those that would let it hang from itself. All others hold their child: they are the spanning tree.
-pub fn closing(description: &Description) -> Vec<bool> {
+/// Returns for each joint whether it closes a loop: its child is placed by an earlier joint or has a position
+/// of its own, or is an ancestor of the parent. All other joints form the spanning tree.
+pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
         if let Some(base) = point.on.as_ref().and_then(base_name) {
@@ -36,7 +37,7 @@ pub fn closing(description: &Description) -> Vec<bool> {
         let known = child == GROUND
             || parents.contains_key(child)
             || description.points.iter().any(|p| p.name.text == child);
-        let closes = known || (parent != child && carries(&parents, child, parent));
+        let closes = known || (parent != child && is_descendant(&parents, child, parent));
         if !closes {
             parents.insert(child, parent);
         }
@@ -45,17 +46,17 @@ pub fn closing(description: &Description) -> Vec<bool> {
     closing
 }
 
-/// True if one thing hangs from another.
-fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
-    let mut at = Some(carried);
+/// Whether one element is a descendant of another (or the same).
+fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
+    let mut current = Some(carried);
     (0..=parents.len()).any(|_| {
-        let here = at;
-        at = here.and_then(|name| parents.get(name).copied());
+        let here = current;
+        current = here.and_then(|name| parents.get(name).copied());
         here == Some(carrier)
     })
 }
 
-/// The name that `body.at(vector)` starts with.
+/// Returns the name at the beginning of `body.at(vector)`.
 pub fn base_name(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),
@@ -64,7 +65,7 @@ pub fn base_name(e: &Expr) -> Option<&str> {
     }
 }
 
-/// Finds the tree of the joints.
+/// Finds the spanning tree of the joints.
 pub fn find_tree(
     description: &Description,
     jointed: &[JointedBody<'_>],
@@ -85,20 +86,20 @@ pub fn find_tree(
             }
         }
     };
-    let mut is_held = vec![false; jointed.len()];
+    let mut is_attached = vec![false; jointed.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
-    let mut sound = true;
-    let closing = closing(description);
+    let mut is_valid = true;
+    let closing = loop_closing_joints(description);
     for (j, joint) in description.joints.iter().enumerate() {
         let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {
-            sound = false;
+            is_valid = false;
             continue;
         };
         let name = &joint.child.body;
         if joint.parent.body.text == name.text {
-            sound = false;
-            // A body called ground was reported.
+            is_valid = false;
+            // A body called `ground` has already been reported.
             if jointed.iter().any(|h| h.name.text == GROUND) {
                 continue;
             }
@@ -108,32 +109,32 @@ pub fn find_tree(
         }
         match child {
             Some(child) if !closing[j] => {
-                is_held[child] = true;
+                is_attached[child] = true;
                 ends.push((j, parent, child));
             }
             _ => loops.push(j),
         }
     }
-    if !sound {
+    if !is_valid {
         return None;
     }
     let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in jointed.iter().enumerate() {
-        if !is_held[k] && !is_placed(k) {
+        if !is_attached[k] && !is_placed(k) {
             if !description.partial {
-                report_unheld(description, body.name, &loops, cx);
+                report_unattached(description, body.name, &loops, cx);
             }
-            sound = false;
+            is_valid = false;
         }
     }
     let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
     let order = sort(&ends, jointed.len(), &roots);
-    sound.then_some(Order { joints: order, closing: loops })
+    is_valid.then_some(Order { joints: order, closing: loops })
 }
 
-/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from
-/// itself.
-fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
+/// Reports a body that is not the child of a tree joint: the joint may have the wrong direction, or the body
+/// may be its own ancestor.
+fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
     let joints = || loops.iter().map(|j| &description.joints[*j]);
     if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
@@ -152,8 +153,8 @@ fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &m
     }
 }
 
-/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration
-/// order; what is not reached is left out.
+/// Sorts joints with their parents (`None` for the ground) and children, depth first from the ground,
+/// siblings in declaration order. Unreachable joints are omitted.
 fn sort(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,
@@ -176,7 +177,7 @@ fn sort(
 
 fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
-    if let Some(what) = scope.what(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
+    if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
             .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
         return;
@@ -192,13 +193,13 @@ fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>,
         return;
     }
     let known: Vec<&str> = jointed.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
-    if !scope.is_news(&name.text, cx) {
+    if !scope.is_first_report(&name.text, cx) {
         return;
     }
     let error = cx.error(place, format!("unknown body `{}`", name.text));
     match crate::diag::nearest(&name.text, &known) {
         Some(_) => drop(error.suggest(&name.text, known)),
-        None => words::point(error, words::BODIES, &name.text, &known),
+        None => words::suggest_meaning(error, words::BODIES, &name.text, &known),
     }
     if error.is_bare() {
         error.help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));

@@ -1,11 +1,11 @@
-//! Force elements: what they act on, and by which law.
+//! Force elements with their targets and laws.
 
 use super::arguments::Arguments;
 use super::{Action, Expr, ExprKind, Name, Target};
 use crate::diag::Diagnostics;
 use crate::language::{ForceKind, Key};
 
-/// Reads a force element by its row.
+/// Reads a force element according to its row in the table.
 pub fn read_action(
     name: &Name,
     kind: ForceKind,
@@ -45,29 +45,29 @@ pub fn read_action(
     Some(Action { name: name.clone(), kind, on: on?, arguments: given })
 }
 
-/// Reports ends that are written as those of a joint or without their keys. True if there are any.
+/// Reports ends with the syntax of a joint, or without keys. Returns true if there are any.
 fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
     let (on, spans) = (kind.row().on, kind.row().between);
-    let between = |a: &Expr, b: &Expr| match spans {
-        true => format!("write `between = ({}, {})`", a.spelt(), b.spelt()),
+    let between_help = |a: &Expr, b: &Expr| match spans {
+        true => format!("write `between = ({}, {})`", a.to_source(), b.to_source()),
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow() {
-        cx.error(a.place.to(&b.place), format!("{} is no joint", kind.phrase())).help(between(&a, &b));
+        cx.error(a.place.to(&b.place), format!("{} is no joint", kind.phrase())).help(between_help(&a, &b));
         return true;
     }
     if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
         return false;
     }
     if let Some((place, a, b)) = arguments.take_ends() {
-        cx.error(place, format!("{} has no such ends", kind.phrase())).help(between(&a, &b));
+        cx.error(place, format!("{} has no such ends", kind.phrase())).help(between_help(&a, &b));
         return true;
     }
     let plain = arguments.plain();
     let (Some(first), Some(last)) = (plain.first(), plain.last()) else { return false };
     let help = match plain {
-        [one] if on => format!("write `on = {}`", one.spelt()),
-        [a, b, ..] => between(a, b),
+        [one] if on => format!("write `on = {}`", one.to_source()),
+        [a, b, ..] => between_help(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
     cx.error(first.place.to(&last.place), "expected `name = value`").help(help);
@@ -75,7 +75,7 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
     true
 }
 
-/// `on = …`, or `between = (…, …)` where the element can span two points.
+/// Reads `on = …`, or `between = (…, …)` if the element can act between two points.
 fn read_target(
     kind: ForceKind,
     arguments: &mut Arguments,
@@ -96,7 +96,7 @@ fn read_target(
         };
         let help = match ends.as_slice() {
             [a, b] if row.between => {
-                format!("write `between = ({}, {})`", a.spelt(), b.spelt())
+                format!("write `between = ({}, {})`", a.to_source(), b.to_source())
             }
             _ => "declare a field for each thing that it acts on".to_string(),
         };
@@ -106,13 +106,13 @@ fn read_target(
     if !row.between {
         cx.error(place, format!("{} does not act between two points", kind.phrase()))
             .help("say what it acts on: `on = …`");
-        arguments.forget_all();
+        arguments.remove_all();
         return None;
     }
     if let Some(on) = arguments.place_of("on") {
         cx.error(on, "an element has one of `on` and `between`")
             .help("`on` names a joint, `between` two points");
-        arguments.forget("on");
+        arguments.remove_key("on");
     }
     match arguments.take_expr("between", cx)? {
         Expr { kind: ExprKind::Tuple(mut ends), .. } if ends.len() == 2 => {
@@ -123,11 +123,11 @@ fn read_target(
             let second = arguments.take_second(&other);
             let help = match &other.kind {
                 _ if second.is_some() => {
-                    let second = second.map_or_else(String::new, |second| second.spelt());
-                    format!("write `between = ({}, {second})`", other.spelt())
+                    let second = second.map_or_else(String::new, |second| second.to_source());
+                    format!("write `between = ({}, {second})`", other.to_source())
                 }
                 ExprKind::Array(ends) if ends.len() == 2 => {
-                    format!("write `between = ({}, {})`", ends[0].spelt(), ends[1].spelt())
+                    format!("write `between = ({}, {})`", ends[0].to_source(), ends[1].to_source())
                 }
                 ExprKind::Name(name) if row.on => {
                     format!("write `on = {name}`, or `between = (first, second)`")
@@ -140,7 +140,7 @@ fn read_target(
     }
 }
 
-/// Reports a second law of one element; the first of the keys counts.
+/// Reports a second law of an element; the first key is kept.
 fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnostics) {
     let given: Vec<&str> =
         keys.iter().map(|key| key.name()).filter(|key| arguments.place_of(key).is_some()).collect();
@@ -149,7 +149,7 @@ fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnosti
             let list: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name())).collect();
             cx.error(place, format!("a second law: `{}` is given already", given[0]))
                 .help(format!("give one of {}", crate::diag::one_of(&list)));
-            arguments.forget(key);
+            arguments.remove_key(key);
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The arguments of an attribute: parsed whatever they are, then taken one by one by what expects them.
+//! Arguments of an attribute: parsed without knowledge of the attribute, then taken one by one by its reader.
 
-use super::figures::FileFigures;
+use super::file_parameters::FileParameters;
 use super::{Expr, ExprKind, Name, words};
 use crate::diag::{Diagnostics, Place, nearest};
 
@@ -8,59 +8,59 @@ use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Ident, LitStr, Meta};
 
+mod corrections;
 mod ends;
 mod parse;
-mod slips;
 
+use corrections::{decimal_comma_error, quoted_names, report_unnamed};
 use parse::parse_arguments;
-use slips::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 
-/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
-/// (of an equilibrium any number), and `key = value` in any order.
+/// Arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
+/// (any number for an equilibrium), and `key = value` in any order.
 pub struct Arguments {
     relation: Option<(Expr, Expr)>,
     equations: Vec<(Expr, Expr)>,
     plain: Vec<Expr>,
-    named: Vec<(Name, Value)>,
+    named: Vec<(Name, ArgumentValue)>,
     seen: Vec<Name>,
     place: Place,
-    /// The element that they belong to.
+    /// Name of the element to which the arguments belong.
     owner: String,
-    /// What its word asks for.
-    form: Form,
+    /// Grammar of the attribute.
+    grammar: Grammar,
 }
 
-/// What the arguments of an attribute may be.
+/// Grammar of an attribute's arguments.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
-    /// Two bodies are joined by an arrow.
+enum Grammar {
+    /// Joint: two bodies with an arrow between them.
     Joint,
-    /// Any number of places have values.
+    /// Equilibrium: any number of equations.
     Equilibrium,
-    /// Nothing of this.
+    /// All other attributes.
     Other,
 }
 
-enum Value {
-    Figures(Vec<FileFigures>),
+enum ArgumentValue {
+    FileParameters(Vec<FileParameters>),
     Expr(Expr),
     Text(LitStr),
     Texts(Vec<LitStr>),
 }
 
 impl Arguments {
-    /// The arguments of `#[word(…)]`.
-    pub fn of(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
+    /// Parses the arguments of an attribute.
+    pub fn of_attribute(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         let is = |word: &str| attribute.path().is_ident(word);
-        let form = match (is("joint"), is("equilibrium")) {
-            (true, _) => Form::Joint,
-            (_, true) => Form::Equilibrium,
-            _ => Form::Other,
+        let grammar = match (is("joint"), is("equilibrium")) {
+            (true, _) => Grammar::Joint,
+            (_, true) => Grammar::Equilibrium,
+            _ => Grammar::Other,
         };
         match &attribute.meta {
-            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, form, cx),
-            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, form, cx),
+            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, grammar, cx),
+            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, grammar, cx),
             Meta::NameValue(_) => {
                 let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
                 cx.error(span, "expected arguments in parentheses").help(format!("write `#[{word}(…)]`"));
@@ -71,18 +71,23 @@ impl Arguments {
 
     /// Parses the tokens between the parentheses.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
-        Arguments::parse_with(tokens, span, Form::Other, cx)
+        Arguments::parse_with(tokens, span, Grammar::Other, cx)
     }
 
-    fn parse_with(tokens: TokenStream, span: Span, form: Form, cx: &mut Diagnostics) -> Option<Arguments> {
-        if let Some(error) = decimal_comma(&tokens) {
+    fn parse_with(
+        tokens: TokenStream,
+        span: Span,
+        grammar: Grammar,
+        cx: &mut Diagnostics,
+    ) -> Option<Arguments> {
+        if let Some(error) = decimal_comma_error(&tokens) {
             cx.syn(error);
             return None;
         }
-        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, form)).parse2(tokens);
+        let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, grammar)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
-            // The end of the input has no place of its own.
+            // The end of the input has no span.
             Err(error) if error.to_string().starts_with("unexpected end") => {
                 cx.error(span, "unexpected end of the arguments")
                     .help("something is missing behind the last word");
@@ -93,7 +98,7 @@ impl Arguments {
                 return None;
             }
         };
-        let mut first: Vec<(Name, Value)> = Vec::new();
+        let mut first: Vec<(Name, ArgumentValue)> = Vec::new();
         for (key, value) in std::mem::take(&mut arguments.named) {
             if first.iter().any(|(other, _)| other.text == key.text) {
                 cx.error(key.place, format!("`{}` is given twice", key.text)).help("remove one of the two");
@@ -105,50 +110,50 @@ impl Arguments {
         Some(arguments)
     }
 
-    fn take(&mut self, key: &str) -> Option<(Name, Value)> {
-        let at = self.named.iter().position(|(name, _)| name.text == key)?;
-        let (name, value) = self.named.remove(at);
+    fn take(&mut self, key: &str) -> Option<(Name, ArgumentValue)> {
+        let index = self.named.iter().position(|(name, _)| name.text == key)?;
+        let (name, value) = self.named.remove(index);
         self.seen.push(name.clone());
         Some((name, value))
     }
 
-    /// Where a key that was not yet taken stands.
+    /// Returns the span of a key that has not been taken.
     pub fn place_of(&self, key: &str) -> Option<Place> {
         self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
-    /// Drops a key.
-    pub fn forget(&mut self, key: &str) {
+    /// Removes a key.
+    pub fn remove_key(&mut self, key: &str) {
         self.named.retain(|(name, _)| name.text != key);
     }
 
-    /// Drops all keys.
-    pub fn forget_all(&mut self) {
+    /// Removes all keys.
+    pub fn remove_all(&mut self) {
         self.named.clear();
     }
 
-    /// Where a key that was taken stood.
-    pub fn seen(&self, key: &str) -> Option<Place> {
+    /// Returns the span of a key that has been taken.
+    pub fn taken_place(&self, key: &str) -> Option<Place> {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
-    /// The expressions without a key, which stay.
+    /// Returns the expressions without a key.
     pub fn plain(&self) -> &[Expr] {
         &self.plain
     }
 
-    /// True if nothing is left.
+    /// Whether no argument remains.
     pub fn is_empty(&self) -> bool {
         self.named.is_empty() && self.plain.is_empty() && self.equations.is_empty() && self.relation.is_none()
     }
 
-    /// The expressions without a key.
+    /// Removes and returns the expressions without a key.
     pub fn take_plain(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
     }
 
-    /// The one place that stands alone where a place has a key: most likely the second of a pair without
-    /// parentheses.
+    /// Removes and returns the only expression without a key if both it and `first` are positions. It is most
+    /// likely the second element of a pair without parentheses.
     pub fn take_second(&mut self, first: &Expr) -> Option<Expr> {
         let is_place =
             |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
@@ -158,22 +163,24 @@ impl Arguments {
         }
     }
 
-    /// Where a word stands alone, without a value.
-    pub fn word_given(&mut self, word: &str) -> Option<Place> {
+    /// Removes an option without a value, and returns its span.
+    pub fn take_option(&mut self, word: &str) -> Option<Place> {
         let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
-        let at = self.plain.iter().position(is_word)?;
-        Some(self.plain.remove(at).place)
+        let index = self.plain.iter().position(is_word)?;
+        Some(self.plain.remove(index).place)
     }
 
-    /// Reports a value or parentheses behind a word that stands alone; the word counts as given. True if
-    /// there are any.
-    pub fn check_word(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
+    /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
+    /// true if there are any.
+    pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
-        let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
-        let named = self.take(word);
-        let Some(place) = call.or(named.as_ref().map(|(name, _)| name.place.clone())) else { return false };
-        let off = match &named {
-            Some((_, Value::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
+        let call = self.plain.iter().position(is_call).map(|index| self.plain.remove(index).place);
+        let argument = self.take(word);
+        let Some(place) = call.or(argument.as_ref().map(|(name, _)| name.place.clone())) else {
+            return false;
+        };
+        let off = match &argument {
+            Some((_, ArgumentValue::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
             _ => false,
         };
         let help = if off { "leave it out".to_string() } else { format!("write `{word}` alone") };
@@ -182,16 +189,16 @@ impl Arguments {
         true
     }
 
-    /// The expression of a key, if given.
+    /// Returns the expression of a key, if the key is present.
     pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
         match self.take(key)? {
-            (_, Value::Expr(e)) => Some(e),
-            (_, Value::Text(text)) => {
+            (_, ArgumentValue::Expr(e)) => Some(e),
+            (_, ArgumentValue::Text(text)) => {
                 cx.error(text.span(), format!("expected an expression for `{key}`, found a text"))
                     .help("write it without quotes");
                 None
             }
-            (name, Value::Texts(_) | Value::Figures(_)) => {
+            (name, ArgumentValue::Texts(_) | ArgumentValue::FileParameters(_)) => {
                 cx.error(name.place, format!("expected an expression for `{key}`, found texts"))
                     .help("write it without quotes");
                 None
@@ -199,7 +206,7 @@ impl Arguments {
         }
     }
 
-    /// The expression of a key that must be there; `example` is what may stand for it.
+    /// Returns the expression of a required key; `example` is a possible value.
     pub fn need_expr(
         &mut self,
         key: &str,
@@ -208,8 +215,8 @@ impl Arguments {
         known: &[&str],
         cx: &mut Diagnostics,
     ) -> Option<Expr> {
-        // A key that is not known is reported as such: most likely it is the missing one. So is a value
-        // without a key.
+        // An unknown key or a value without a key is reported instead, because it is most likely the missing
+        // one.
         if self.place_of(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
@@ -218,7 +225,7 @@ impl Arguments {
                 && !value.name().is_some_and(|word| known.contains(&word))
             {
                 let error = cx.error(value.place.clone(), "expected `name = value`");
-                error.help(format!("write `{key} = {}`", value.spelt()));
+                error.help(format!("write `{key} = {}`", value.to_source()));
                 if !others.is_empty() {
                     error.suggest("", known.iter().copied());
                 }
@@ -231,7 +238,7 @@ impl Arguments {
         self.take_expr(key, cx)
     }
 
-    /// The expressions of a key: one, or several in parentheses.
+    /// Returns the expressions of a key: one, or several in parentheses.
     pub fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
         match self.take_expr(key, cx) {
             Some(Expr { kind: ExprKind::Tuple(items), .. }) => items,
@@ -240,8 +247,8 @@ impl Arguments {
         }
     }
 
-    /// The word of a key, one of a few.
-    pub fn take_word(
+    /// Returns the value of a key that is one of a few words.
+    pub fn take_choice(
         &mut self,
         key: &str,
         choices: &[&str],
@@ -249,20 +256,22 @@ impl Arguments {
     ) -> Option<(String, Place)> {
         let (name, value) = self.take(key)?;
         match value {
-            Value::Expr(Expr { kind: ExprKind::Name(word), place }) if choices.contains(&word.as_str()) => {
+            ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place })
+                if choices.contains(&word.as_str()) =>
+            {
                 Some((word, place))
             }
-            Value::Expr(Expr { kind: ExprKind::Name(word), place }) => {
-                let said = if key == "formulation" { words::FORMULATIONS } else { &[] };
-                words::point(
+            ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
+                let synonyms = if key == "formulation" { words::FORMULATIONS } else { &[] };
+                words::suggest_meaning(
                     cx.error(place, format!("unknown choice `{word}` for `{key}`")),
-                    said,
+                    synonyms,
                     &word,
                     choices,
                 );
                 None
             }
-            Value::Text(text) if choices.contains(&text.value().as_str()) => {
+            ArgumentValue::Text(text) if choices.contains(&text.value().as_str()) => {
                 cx.error(text.span(), format!("expected a word for `{key}`"))
                     .help(format!("write it without quotes: `{key} = {}`", text.value()));
                 None
@@ -275,10 +284,10 @@ impl Arguments {
         }
     }
 
-    /// The string of a key.
+    /// Returns the string of a key.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take(key)? {
-            (_, Value::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
+            (_, ArgumentValue::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
             (name, _) => {
                 cx.error(name.place, format!("expected a string for `{key}`"))
                     .help(format!("write `{key} = \"…\"`"));
@@ -287,18 +296,17 @@ impl Arguments {
         }
     }
 
-    /// The strings of a key, in brackets.
+    /// Returns the strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
-        let named = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
+        let to_name = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take(key) {
             None => Vec::new(),
-            Some((_, Value::Texts(texts))) => texts.iter().map(named).collect(),
-            Some((_, Value::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
+            Some((_, ArgumentValue::Texts(texts))) => texts.iter().map(to_name).collect(),
+            Some((_, ArgumentValue::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
                 Vec::new()
             }
             Some((name, value)) => {
-                let list =
-                    names_without_brackets_or_quotes(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
+                let list = quoted_names(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
                 cx.error(name.place, format!("expected a list of strings for `{key}`"))
                     .help(format!("write `{key} = [{list}]`"));
                 Vec::new()
@@ -306,29 +314,29 @@ impl Arguments {
         }
     }
 
-    /// The figures of a file that are parameters.
-    pub fn take_figures(&mut self, key: &str) -> Vec<FileFigures> {
+    /// Returns the parameters that replace values of a file.
+    pub fn take_file_parameters(&mut self, key: &str) -> Vec<FileParameters> {
         match self.take(key) {
-            Some((_, Value::Figures(figures))) => figures,
+            Some((_, ArgumentValue::FileParameters(figures))) => figures,
             _ => Vec::new(),
         }
     }
 
-    /// The relation `a -> b` of what is no joint.
+    /// Returns the relation `a -> b` of an element that is not a joint.
     pub fn take_arrow(&mut self) -> Option<(Expr, Expr)> {
         self.relation.take()
     }
 
-    /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands
-    /// alone.
+    /// Returns the only equation `a = b`. The left side may be a single name; `b` is `None` for an expression
+    /// without an equals sign.
     pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
         }
-        let is_expr = |(_, value): &(Name, Value)| matches!(value, Value::Expr(_));
-        if let Some(at) = self.named.iter().position(is_expr)
+        let is_expr = |(_, value): &(Name, ArgumentValue)| matches!(value, ArgumentValue::Expr(_));
+        if let Some(index) = self.named.iter().position(is_expr)
             && self.plain.is_empty()
-            && let (name, Value::Expr(right)) = self.named.remove(at)
+            && let (name, ArgumentValue::Expr(right)) = self.named.remove(index)
         {
             return Some((Expr { kind: ExprKind::Name(name.text), place: name.place }, Some(right)));
         }
@@ -336,13 +344,13 @@ impl Arguments {
         first.map(|e| (e, None))
     }
 
-    /// All places with their values, those of one word first.
+    /// Returns all equations; those with a single name on the left side are first.
     pub fn take_values(&mut self) -> Vec<(Expr, Expr)> {
         let mut values = Vec::new();
         let mut rest = Vec::new();
         for (name, value) in self.named.drain(..) {
             match value {
-                Value::Expr(e) => {
+                ArgumentValue::Expr(e) => {
                     values.push((Expr { kind: ExprKind::Name(name.text), place: name.place }, e))
                 }
                 other => rest.push((name, other)),
@@ -353,21 +361,21 @@ impl Arguments {
         values
     }
 
-    /// Says which element they belong to.
-    pub fn owned_by(mut self, name: &Name) -> Arguments {
+    /// Sets the element to which the arguments belong.
+    pub fn with_owner(mut self, name: &Name) -> Arguments {
         self.owner.clone_from(&name.text);
         self
     }
 
-    /// Reports what was not taken; `whose` is the element with its article. Arguments with one answer are one
-    /// mistake.
+    /// Reports the remaining arguments; `whose` is the element with its article. Arguments with the same help
+    /// are reported once.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         let (owner, example) = (&self.owner, words::example(whose));
         let mut answers: Vec<String> = Vec::new();
         for (name, value) in self.named.drain(..) {
             let word = name.text.as_str();
             let near = nearest(word, known).is_some();
-            let help = match elsewhere(whose, word) {
+            let help = match argument_advice(whose, word) {
                 Some(help) => Some(help.to_string()),
                 None => words::argument_help(whose, owner, word, known),
             };
@@ -385,18 +393,18 @@ impl Arguments {
             };
             if whose == "`#[mechanism]`" && error.is_bare() {
                 error.help(match value {
-                    Value::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
+                    ArgumentValue::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
                     _ => "the documentation of `mechanism` lists its arguments",
                 });
             }
         }
         if let Some(e) = self.plain.drain(..).next() {
-            unnamed(&e, known, example, cx);
+            report_unnamed(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
             let error = cx.error(left.place.to(&right.place), "expected `name = value`");
             match left.name().filter(|name| known.contains(name)) {
-                Some(name) => error.help(format!("write `{name} = {}`", right.spelt())),
+                Some(name) => error.help(format!("write `{name} = {}`", right.to_source())),
                 None if known.is_empty() => error.help(format!("write `{example}`")),
                 None => error.suggest("", known.iter().copied()),
             };
@@ -408,8 +416,8 @@ impl Arguments {
     }
 }
 
-/// What to do where an argument is not known that says something all the same.
-fn elsewhere(whose: &str, name: &str) -> Option<&'static str> {
+/// Returns the help for an unknown argument with a known meaning.
+fn argument_advice(whose: &str, name: &str) -> Option<&'static str> {
     match (whose, name) {
         ("a Body", "rotation" | "axes" | "rpy" | "orientation") => Some(
             "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",

@@ -1,5 +1,5 @@
-//! The struct and its attributes: which fields are parameters, which are elements, and what their attributes
-//! say.
+//! The struct and its attributes: classification of fields as parameters and elements, and parsing of their
+//! attributes.
 
 use super::expression::name;
 use super::field::{check_duplicates, is_known, read_field};
@@ -7,9 +7,9 @@ use super::lists::Lists;
 use super::mechanism::{Mechanism, Shell};
 use super::options::read_options;
 use super::parameter::type_name;
+use super::readable::Reading;
 use super::request::Requests;
 use super::separate::separate;
-use super::sound::Reading;
 use super::state::give_type;
 use super::table::table_variables;
 use super::{Description, ScalarType, crate_path, declaration, guard};
@@ -18,7 +18,8 @@ use proc_macro2::{Span, TokenStream};
 use syn::spanned::Spanned;
 use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 
-/// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
+/// Parses `#[mechanism(arguments)] item`. Returns `None` if the item is not a valid struct; all errors are in
+/// `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
     if !guard::check_arguments(&arguments, cx) || !guard::check_item(&item, cx) {
         return None;
@@ -26,11 +27,11 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let fields = declaration::fields(&item);
     let mut item = parse_struct(item, cx)?;
     let before = cx.len();
-    let mut lists = Lists::write_out(&mut item.fields, cx);
+    let mut lists = Lists::expand(&mut item.fields, cx);
     let arguments = lists.rewrite(arguments, None, cx);
     let mut reading = Reading::default();
     if cx.len() > before {
-        reading.lose();
+        reading.mark_unreadable();
     }
     let (arguments, runtime) = crate_path::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
@@ -49,31 +50,31 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         runtime,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
-    // A type that is not known is told once.
-    let mut strangers: Vec<Ident> = Vec::new();
+    // An unknown type is reported once.
+    let mut unknown_types: Vec<Ident> = Vec::new();
     for field in item.fields {
-        reading.field(&field);
+        reading.record_field(&field);
         let kind = type_name(&field.ty).filter(|_| table_variables(&field.ty).is_none());
-        if kind.as_ref().is_some_and(|kind| refused.contains(kind) || strangers.contains(kind)) {
-            reading.blame_last();
+        if kind.as_ref().is_some_and(|kind| refused.contains(kind) || unknown_types.contains(kind)) {
+            reading.mark_last_field();
             continue;
         }
-        strangers.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
+        unknown_types.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
         let before = cx.len();
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
         if cx.len() > before {
-            reading.blame_last();
+            reading.mark_last_field();
         }
     }
     let (mut requests, before) = (Requests::default(), cx.len());
     let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
-        reading.blame_arguments(arguments);
+        reading.mark_arguments(arguments);
     }
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
     }
-    // The fields that hold figures of a file have its type.
+    // Fields for parameters of a file have the generic scalar type.
     if let (Some(generic), true, true) =
         (&generic, requests.file_parameters, description.parameters.is_empty())
     {
@@ -84,17 +85,17 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     {
         let unused = std::mem::take(&mut shell.generics);
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
-        // It is most likely meant by a type that is not known.
-        if strangers.is_empty() {
+        // The type parameter is most likely meant by an unknown type.
+        if unknown_types.is_empty() {
             cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
                 "remove the type parameter, or give it to a parameter: then all generated functions use it",
             );
         }
     }
     give_type(&description, &mut shell);
-    // Linear systems have the derivatives by states, which are parameters.
+    // Linear systems include the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
-    check_duplicates(&description, cx).iter().for_each(|name| reading.blame(name));
+    check_duplicates(&description, cx).iter().for_each(|name| reading.mark_name(name));
     Some(Mechanism { description, shell, file, requests, reading })
 }
 
@@ -104,7 +105,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
         Err(error) => {
             match separate(&tokens) {
                 Some((_, slip)) => cx.syn(slip),
-                None => _ = cx.error(error.span(), error.to_string()).help(how_fields_are_written(&error)),
+                None => _ = cx.error(error.span(), error.to_string()).help(field_syntax_help(&error)),
             }
             return None;
         }
@@ -129,8 +130,8 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
     None
 }
 
-/// What to do about an item that is none of Rust's.
-fn how_fields_are_written(error: &syn::Error) -> &'static str {
+/// Returns the help for an item that is not valid Rust.
+fn field_syntax_help(error: &syn::Error) -> &'static str {
     match error.to_string().contains("keyword") {
         true => "this is a word of Rust's: name the field otherwise, and write it as `name: Type`",
         false => {
@@ -139,9 +140,9 @@ fn how_fields_are_written(error: &syn::Error) -> &'static str {
     }
 }
 
-/// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken
-/// away, so that Rust does not complain of them once more, and the names of the types among them are
-/// returned.
+/// Returns the struct's type parameter, if one can be the scalar type, and the names of the other type
+/// parameters. Parameters that cannot be the scalar type are removed, so that the Rust compiler does not
+/// report them again.
 fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
     let (mut found, mut refused) = (None, Vec::new());
     let parameters = std::mem::take(&mut item.generics.params);

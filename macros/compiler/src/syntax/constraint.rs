@@ -1,10 +1,10 @@
-//! Constraints: equations that stay fulfilled, surfaces that touch.
+//! Constraints: equations, and surfaces in contact.
 
 use super::arguments::Arguments;
 use super::{Constraint, ConstraintKind, Description, Name, SlipFriction};
 use crate::diag::Diagnostics;
 
-/// An equation or an expression that stays zero, or a pair of surfaces.
+/// Reads an equation, an expression that remains zero, or a pair of surfaces.
 pub fn read_constraint(
     name: Name,
     kind: ConstraintKind,
@@ -25,7 +25,7 @@ pub fn read_constraint(
         let (message, help) = match kind.pair() {
             Some(pair) => (format!("expected a pair that {}", pair.verb()), format!("write `{example}`")),
             None => {
-                let help = format!("write `{} = {}`", value.spelt(), second.spelt());
+                let help = format!("write `{} = {}`", value.to_source(), second.to_source());
                 ("expected one equation".to_string(), help)
             }
         };

@@ -1,7 +1,7 @@
-//! Contacts: two surfaces that may part, strike, slide and stick.
+//! Unilateral contacts: two surfaces that may separate, collide, slide and stick.
 
 use super::arguments::Arguments;
-use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
+use super::{Compliance, Contact, Description, Expr, ExprKind, Name, Restitution};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
 
@@ -17,8 +17,8 @@ const KEYS: [&str; 9] = [
     "speed",
 ];
 
-/// What a contact of a file's links is written as.
-pub const TOUCHES: &str =
+/// Syntax of a contact of a file's links.
+pub const CONTACT_HELP: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
 
 /// Reads a contact.
@@ -31,7 +31,7 @@ pub fn read_contact(
     let [friction, stiction, torsional, rolling] =
         ["friction", "stiction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
     let restitution = take_restitution(arguments, cx);
-    let soft = read_softness(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
+    let soft = read_compliance_options(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
     if let Some(e) = &stiction {
         if soft.is_some() {
             cx.error(
@@ -98,13 +98,13 @@ pub fn take_restitution(arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
     }
 }
 
-/// How the surfaces yield, if they do.
-fn read_softness(
+/// Returns stiffness and dissipation of compliant surfaces; `None` for rigid ones.
+fn read_compliance_options(
     name: &Name,
     restitution: Option<&Expr>,
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
-) -> Option<Softness> {
+) -> Option<Compliance> {
     let [linear, hertz, dissipation, speed] =
         ["stiffness", "hertz", "dissipation", "speed"].map(|key| arguments.take_expr(key, cx));
     let (stiffness, hertz) = match (linear, hertz) {
@@ -127,11 +127,11 @@ fn read_softness(
         cx.error(e.place.clone(), "surfaces that yield have no coefficient of restitution")
             .help("`dissipation`, s/m, takes energy from their impacts");
     }
-    Some(Softness { stiffness, hertz, dissipation, speed })
+    Some(Compliance { stiffness, hertz, dissipation, speed })
 }
 
-/// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is
-/// the third shape of one.
+/// Returns the link of `link.collision()`, or `Some(None)` for `collision()`, which denotes all links of the
+/// file. `link.collision(2)` is the third shape of a link.
 pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
         ExprKind::Method(link, word, arguments)
@@ -147,7 +147,7 @@ pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
 }
 
 impl Contact {
-    /// True if collision geometry of a file is to be read.
+    /// Whether the contact uses collision geometry of a file.
     pub fn names_collisions(&self) -> bool {
         [&self.first, &self.second].into_iter().any(|surface| collision(surface).is_some())
     }

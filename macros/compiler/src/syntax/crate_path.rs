@@ -1,12 +1,12 @@
-//! `crate = path::to::linkwork` among the arguments of the attribute: where generated code finds the runtime,
-//! if its crate has another name or is re-exported by one.
+//! The option `crate = path::to::linkwork` of the attribute: the path of the runtime in generated code, for a
+//! renamed or re-exported crate.
 
 use crate::diag::Diagnostics;
 use proc_macro2::{TokenStream, TokenTree};
 use syn::Path;
 use syn::parse::Parser;
 
-/// The path that the arguments name, if they name one, and the arguments without it.
+/// Returns the arguments without the option `crate`, and its path if it is present.
 pub fn take_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, Option<Path>) {
     let mut rest: Vec<TokenTree> = Vec::new();
     let mut found = None;

@@ -1,12 +1,12 @@
-//! The struct as the user wrote it, for its documentation: the source text, and what doc comments say of its
+//! The struct as written by the user, for generated documentation: source text, and doc comments of its
 //! fields.
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{Attribute, Expr, ExprLit, ItemStruct, Lit, Meta};
 
-/// The source text of a struct's fields with their braces. None outside of a compilation, and of what a macro
-/// has put together.
+/// Returns the source text of a struct's fields with their braces. `None` outside of a compilation, and for
+/// tokens assembled by a macro.
 pub fn fields(item: &TokenStream) -> Option<String> {
     let braces = item.clone().into_iter().find_map(|token| match token {
         TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => Some(group.span()),
@@ -15,12 +15,12 @@ pub fn fields(item: &TokenStream) -> Option<String> {
     braces.map(source).unwrap_or_else(|| Some(";".to_string()))
 }
 
-/// The source text of a token, unless it stands in the definition of a macro.
+/// Returns the source text of a token, unless it is part of a macro definition.
 fn source(span: Span) -> Option<String> {
     span.source_text().filter(|text| !text.contains('$'))
 }
 
-/// The attribute and the struct with the source text of its fields.
+/// Returns the source text of the attribute and of the struct with its fields.
 pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
     let attribute = source(Span::call_site()).filter(|text| text.starts_with("#["))?;
     let fields = fields?;
@@ -31,11 +31,11 @@ pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
     let head = [visibility, format!("struct {name}{generics}"), bounds];
     let head = head.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
     let space = if fields == ";" { "" } else { " " };
-    Some(format!("{}\n{head}{space}{}", dedented(&attribute), dedented(&fields)))
+    Some(format!("{}\n{head}{space}{}", dedent(&attribute), dedent(&fields)))
 }
 
-/// The lines without the indentation of the last, which closes what the first opens.
-fn dedented(text: &str) -> String {
+/// Removes the indentation of the last line, the closing brace, from all lines.
+fn dedent(text: &str) -> String {
     let depth = text.lines().last().map_or(0, |last| last.len() - last.trim_start().len());
     let line = |line: &str| {
         let blank = line.len() - line.trim_start().len();
@@ -46,12 +46,12 @@ fn dedented(text: &str) -> String {
     [first].into_iter().chain(lines.map(line)).collect::<Vec<_>>().join("\n")
 }
 
-/// The first paragraph of the doc comment of every field that has one.
+/// Returns the first paragraph of the doc comment of every field that has one.
 pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
     let note = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
-        let said = first_paragraph(&field.attrs);
-        (!said.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), said))
+        let paragraph = first_paragraph(&field.attrs);
+        (!paragraph.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), paragraph))
     };
     item.fields.iter().filter_map(note).collect()
 }
@@ -75,8 +75,8 @@ mod tests {
 
     #[test]
     fn lines_start_where_the_last_does() {
-        assert_eq!(dedented("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
-        assert_eq!(dedented("{ a: f64 }"), "{ a: f64 }");
+        assert_eq!(dedent("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
+        assert_eq!(dedent("{ a: f64 }"), "{ a: f64 }");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The elements: which attribute goes with which type, and the arguments of each.
+//! Elements: the attributes of each type, and the arguments of each attribute.
 
 use super::action::read_action;
 use super::arguments::Arguments;
@@ -19,7 +19,7 @@ use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
-/// The attributes of the language.
+/// Attributes of the language.
 pub const ATTRIBUTES: [&str; 17] = [
     "body",
     "particle",
@@ -40,19 +40,19 @@ pub const ATTRIBUTES: [&str; 17] = [
     "unit",
 ];
 
-/// The attribute of outputs.
+/// Attribute of outputs.
 const OUTPUT: &str = "output";
 
-/// The argument of the axes of an output's components.
+/// Argument of the axes of an output's components.
 const AXES: &str = "resolved_in";
 
-/// Types of Rust that are no parameter.
-const NUMBERS: [&str; 12] =
+/// Numeric types of Rust that parameters cannot have.
+const RUST_NUMBERS: [&str; 12] =
     ["i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
 /// Reports a field whose type is neither a parameter's nor an element's.
 pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
-    if NUMBERS.contains(&kind) {
+    if RUST_NUMBERS.contains(&kind) {
         cx.error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
             .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
     } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
@@ -78,12 +78,12 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
     }
 }
 
-/// True for an element type of the language.
+/// Whether a type is an element of the language or that of parameters.
 pub fn is_element(kind: &str) -> bool {
     kind == "f64" || ElementKind::of_name(kind).is_some()
 }
 
-/// Every element type of the language, and that of parameters.
+/// Returns all element types of the language, and that of parameters.
 fn element_types() -> Vec<&'static str> {
     ["f64"].into_iter().chain(ElementKind::names()).collect()
 }
@@ -103,13 +103,13 @@ pub fn read_element(
     };
     let expected = element.attributes();
     let given = attributes.iter().find(|a| is_one_of(a, expected));
-    let word = given.map(spelt).or(expected.first().map(ToString::to_string));
+    let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
-        Some(word) => own_arguments(name, (&kind_name, element), word, attributes, cx),
+        Some(word) => attribute_arguments(name, (&kind_name, element), word, attributes, cx),
         None => no_arguments(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
-    let mut arguments = arguments.owned_by(name);
+    let mut arguments = arguments.with_owner(name);
     match element {
         ElementKind::Body => {
             let body = read_body(name, &mut arguments, cx);
@@ -128,27 +128,27 @@ pub fn read_element(
     }
 }
 
-/// The rate of a state.
+/// Reads the rate of a state.
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
-    let arguments = own_arguments(name, kind, "state", attributes, cx)?;
-    let mut arguments = arguments.owned_by(name);
+    let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
+    let mut arguments = arguments.with_owner(name);
     let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
     arguments.finish("a State", &["rate"], cx);
     rate
 }
 
-/// True for an attribute of one of these names.
+/// Whether an attribute has one of these names.
 pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
 
-/// What to do where a field is meant to be there under conditions only, which the attribute is not told.
-pub const CONDITIONS: &str =
+/// Help for conditional fields; their conditions are not visible to the attribute.
+pub const CONDITION_HELP: &str =
     "put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
 
-/// True for an attribute that takes a parameter away under a condition, or says under one what the language
-/// does.
+/// Whether an attribute removes a parameter conditionally, or conditionally adds an attribute of the
+/// language.
 pub fn is_conditional(attribute: &Attribute) -> bool {
     let conditional = |list: &syn::MetaList| {
         let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
@@ -165,7 +165,7 @@ pub fn is_conditional(attribute: &Attribute) -> bool {
     }
 }
 
-/// The unit in `#[unit(…)]`, as an expression.
+/// Reads the unit in `#[unit(…)]`, as an expression.
 pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     let tokens = match &attribute.meta {
         Meta::List(list) if !list.tokens.is_empty() => list.tokens.clone(),
@@ -194,8 +194,8 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     whole.parse2(tokens).map_err(|error| cx.syn(error)).ok()
 }
 
-/// The arguments of the one attribute that an element of this kind has.
-fn own_arguments(
+/// Returns the arguments of the only attribute of an element of this kind.
+fn attribute_arguments(
     name: &Name,
     (kind, element): (&str, ElementKind),
     expected: &str,
@@ -213,7 +213,7 @@ fn own_arguments(
                 cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text))
                     .help("write all arguments into one");
             } else {
-                found = Some(Arguments::of(attribute, cx));
+                found = Some(Arguments::of_attribute(attribute, cx));
             }
         } else if ATTRIBUTES.contains(&word.as_str()) {
             cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
@@ -230,13 +230,13 @@ fn own_arguments(
     found.flatten()
 }
 
-/// Reports an attribute that is none of the language's, unless it is one of Rust's own that may stand. False
-/// after an unknown one: most likely it is the one that the element needs.
+/// Reports an attribute of neither the language nor Rust. Returns false after an unknown one, because it is
+/// most likely the required one misspelt.
 fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut Diagnostics) -> bool {
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
         "cfg" | "cfg_attr" => {
-            cx.error(span, "an element cannot be conditional").help(CONDITIONS);
+            cx.error(span, "an element cannot be conditional").help(CONDITION_HELP);
             return true;
         }
         _ => {}
@@ -257,7 +257,7 @@ fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut 
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
-    let massive = arguments.word_given("massive");
+    let massive = arguments.take_option("massive");
     let body = Body {
         name: name.clone(),
         mass: arguments.take_expr("mass", cx),
@@ -296,12 +296,12 @@ fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -
     Some(Particle { name: name.clone(), mass: mass?, at })
 }
 
-/// The first word of an attribute.
-fn spelt(attribute: &Attribute) -> String {
+/// Returns the name of an attribute.
+fn attribute_name(attribute: &Attribute) -> String {
     attribute.path().get_ident().map_or_else(String::new, Ident::to_string)
 }
 
-/// For elements without an attribute: none of the language's may stand there.
+/// Returns empty arguments for an element without an attribute, and reports attributes of the language.
 fn no_arguments(
     name: &Name,
     kind: &str,
@@ -310,20 +310,20 @@ fn no_arguments(
 ) -> Option<Arguments> {
     if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), spelt(attribute)))
+        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)))
             .help("it is the field alone: remove the attribute");
         return None;
     }
     for attribute in attributes {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        if !check_foreign(&spelt(attribute), span, (kind, &[]), cx) {
+        if !check_foreign(&attribute_name(attribute), span, (kind, &[]), cx) {
             return None;
         }
     }
     Arguments::parse(TokenStream::new(), name.place.span, cx)
 }
 
-/// Frames, points, coordinates, inputs, definitions, energies.
+/// Reads frames, points, coordinates, inputs, definitions, energies, limits, constraints and contacts.
 fn read_other(
     name: &Name,
     kind: OtherKind,
@@ -356,7 +356,7 @@ fn read_other(
         OtherKind::Point => {
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
             if let [body, place] = arguments.plain() {
-                let help = format!("write `#[point(on = {}, at = {})]`", body.spelt(), place.spelt());
+                let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
                 cx.error(body.place.to(&place.place), "expected `name = value`").help(help);
                 return;
             }
@@ -380,7 +380,7 @@ fn read_other(
         OtherKind::Rolling => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
         OtherKind::Contact => read_contact(name, arguments, description, cx),
         OtherKind::Slipping => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
-        // `read_state` reads these fields: they are parameters, too.
+        // `read_state` reads these fields, because they are also parameters.
         OtherKind::State => {}
         OtherKind::Potential => {
             let value = read_expression(&name, kind, attribute, arguments, &[], cx);
@@ -410,7 +410,7 @@ fn read_other(
     }
 }
 
-/// Reads a name for an expression, or an output.
+/// Reads a named expression or an output.
 fn read_definition(
     name: Name,
     (kind, rank): (OtherKind, Rank),
@@ -430,7 +430,7 @@ fn read_definition(
     list.push(Definition { name, rank, value, resolved_in });
 }
 
-/// Reads the expression of an element that is one; `keys` are its other arguments.
+/// Reads the expression of an element that consists of one; `keys` are its other arguments.
 fn read_expression(
     name: &Name,
     kind: OtherKind,

@@ -1,5 +1,5 @@
-//! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser
-//! whose depth is bounded.
+//! Parser of expressions: Rust's grammar of numbers, names, calls, fields and the four operations, with
+//! bounded depth.
 
 use super::{BinaryOp, Callee, Expr, ExprKind, Member, Name, guard};
 use crate::diag::{Place, syn_error};
@@ -12,15 +12,16 @@ use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 /// Maximum length of a chain of operators or members.
 const MAX_LENGTH: usize = 400;
 
-const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
+const PIECEWISE_HELP: &str =
+    "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
 /// A parsed expression with its size.
 struct Parsed(Expr, Size);
 
-/// Bounds of an expression's size, which every walk over it relies on.
+/// Size of an expression, whose bounds limit the recursion of every traversal.
 #[derive(Clone, Copy, Default)]
 struct Size {
-    /// Nesting of operands, arguments and pieces; left operands of operators are not nested in them.
+    /// Nesting of operands, arguments and pieces; left operands of operators are not nested.
     depth: usize,
     /// Longest path of operators, members and calls.
     length: usize,
@@ -33,13 +34,13 @@ impl Size {
         Self { depth: self.depth.max(other.depth), length: self.length.max(other.length) }
     }
 
-    /// Returns the size of an expression that these operands are nested in.
-    fn around(self) -> Self {
+    /// Returns the size of an expression in which these operands are nested.
+    fn nested(self) -> Self {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
-    /// Returns the size of a longer chain of the same depth.
-    fn longer(self) -> Self {
+    /// Returns the size of a chain that is longer by one, at the same depth.
+    fn extended(self) -> Self {
         Self { length: self.length + 1, ..self }
     }
 }
@@ -49,12 +50,12 @@ pub fn parse_expr(input: ParseStream<'_>) -> syn::Result<Expr> {
     parse_sum(input).map(|p| p.0)
 }
 
-/// Parses a name as written, keywords included.
+/// Parses a name, including keywords.
 pub fn parse_name(input: ParseStream<'_>) -> syn::Result<Name> {
     Ident::parse_any(input).map(|ident| name(&ident))
 }
 
-/// The name of an identifier.
+/// Converts an identifier to a name.
 pub fn name(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
@@ -81,7 +82,7 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = behind(span, input, parse_product)?;
+        let right = parse_operand(span, input, parse_product)?;
         left = binary(op, span, left, right)?;
     }
 }
@@ -99,13 +100,14 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else {
             return Ok(left);
         };
-        let right = behind(span, input, parse_unary)?;
+        let right = parse_operand(span, input, parse_unary)?;
         left = binary(op, span, left, right)?;
     }
 }
 
-/// The operand behind an operator: at the end of the input there is no token to show but the operator.
-fn behind(
+/// Parses the operand after an operator. An error at the end of the input is reported at the operator,
+/// because no other token is left.
+fn parse_operand(
     operator: Span,
     input: ParseStream<'_>,
     parse: fn(ParseStream<'_>) -> syn::Result<Parsed>,
@@ -120,18 +122,18 @@ fn behind(
     parse(input)
 }
 
-fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
-    let size = left.1.longer().max(right.1.around());
+fn binary(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
+    let size = left.1.extended().max(right.1.nested());
     let place = left.0.place.to(&right.0.place);
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, size)
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()), place, size)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
-        let inner = behind(span, input, parse_unary)?;
+        let inner = parse_operand(span, input, parse_unary)?;
         let place = Place::from(span).to(&inner.0.place);
-        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.around());
+        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.nested());
     }
     parse_postfix(input)
 }
@@ -145,14 +147,14 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Err(syn_error(dot, "expected a name behind this dot", help));
         }
         let member = parse_name(input)?;
-        let size = inner.1.longer();
+        let size = inner.1.extended();
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = parse_arguments(input)?;
             let place = inner.0.place.to(&close.into());
             node(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
-                size.max(arguments_size.around()),
+                size.max(arguments_size.nested()),
             )?
         } else {
             let place = inner.0.place.to(&member.place);
@@ -176,16 +178,16 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
-            return Ok(Parsed(Expr { place, ..item }, size.around()));
+            return Ok(Parsed(Expr { place, ..item }, size.nested()));
         }
-        return node(ExprKind::Tuple(items), place, size.around());
+        return node(ExprKind::Tuple(items), place, size.nested());
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
         let place = Place::from(span.open()).to(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
-        return node(ExprKind::Array(items), place, size.around());
+        return node(ExprKind::Array(items), place, size.nested());
     }
     if input.peek(Token![if]) {
         return parse_pieces(input);
@@ -199,15 +201,15 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return node(
                 ExprKind::Call(Callee::new(name), arguments),
                 place.to(&close.into()),
-                size.around(),
+                size.nested(),
             );
         }
         return node(ExprKind::Name(name.text), place, Size::ONE);
     }
-    Err(no_expression(input))
+    Err(missing_expression_error(input))
 }
 
-/// One branch `if left < right { piece }` of a law in pieces.
+/// One branch `if left < right { piece }` of a piecewise law.
 struct Branch {
     keyword: Span,
     left: Parsed,
@@ -216,16 +218,16 @@ struct Branch {
     piece: Parsed,
 }
 
-/// Parses `if a < b { below } else { above }` into a call of `IF` with the operands of the comparison, the
-/// piece below and the piece above the border; `a > b` swaps the pieces. Further branches `else if` are
-/// nested in the last argument.
+/// Parses `if a < b { below } else { above }` into a call of `IF`. Its arguments are the operands of the
+/// comparison, the piece below and the piece above the border; `a > b` swaps the pieces. Further branches
+/// `else if` are nested in the last argument.
 fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
         if !input.peek(Token![else]) {
             let message = "an `if` needs an `else`: it has a value on both sides";
             let keyword = branches.last().map_or(input.span(), |branch| branch.keyword);
-            return Err(syn_error(keyword, message, PIECES));
+            return Err(syn_error(keyword, message, PIECEWISE_HELP));
         }
         input.parse::<Token![else]>()?;
         if input.peek(Token![if]) {
@@ -233,11 +235,11 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else if input.peek(token::Brace) {
             break parse_piece(input)?;
         } else {
-            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECES));
+            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECEWISE_HELP));
         }
     };
     for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
-        let size = left.1.max(right.1).max(piece.1).max(last.1).around();
+        let size = left.1.max(right.1).max(piece.1).max(last.1).nested();
         let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
@@ -250,7 +252,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
 /// Parses `if a < b { piece }`.
 fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     let keyword = input.parse::<Token![if]>()?.span;
-    let left = behind(keyword, input, parse_sum)?;
+    let left = parse_operand(keyword, input, parse_sum)?;
     let is_less = input.peek(Token![<]) || input.peek(Token![<=]);
     if input.peek(Token![<=]) {
         input.parse::<Token![<=]>()?;
@@ -262,39 +264,43 @@ fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
         input.parse::<Token![>]>()?;
     } else {
         let message = "expected `<` or `>`: a condition compares two quantities";
-        return Err(syn_error(input.span(), message, PIECES));
+        return Err(syn_error(input.span(), message, PIECEWISE_HELP));
     }
     let right = parse_sum(input)?;
     if !input.peek(token::Brace) {
-        return Err(syn_error(input.span(), "expected `{` and what holds where the comparison does", PIECES));
+        return Err(syn_error(
+            input.span(),
+            "expected `{` and what holds where the comparison does",
+            PIECEWISE_HELP,
+        ));
     }
     let piece = parse_piece(input)?.0;
     Ok(Branch { keyword, left, right, is_less, piece })
 }
 
-/// An expression in braces, and where they close.
+/// Parses an expression in braces; returns it with the position of the closing brace.
 fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
     let content;
     let close = braced!(content in input).span.close();
     if content.is_empty() {
-        return Err(syn_error(close, "expected an expression in these braces", PIECES));
+        return Err(syn_error(close, "expected an expression in these braces", PIECEWISE_HELP));
     }
     let piece = parse_sum(&content)?;
-    if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected(&content)) }
+    if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected_token_error(&content)) }
 }
 
-/// An expression that a macro of the user's hands on: it stays together without parentheses.
+/// Parses an expression passed on by a macro of the user: it is one operand without parentheses.
 fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
-    let TokenTree::Group(group) = input.parse()? else { return Err(no_expression(input)) };
+    let TokenTree::Group(group) = input.parse()? else { return Err(missing_expression_error(input)) };
     let whole = |inner: ParseStream<'_>| {
         let parsed = parse_sum(inner)?;
-        if inner.is_empty() { Ok(parsed) } else { Err(unexpected(inner)) }
+        if inner.is_empty() { Ok(parsed) } else { Err(unexpected_token_error(inner)) }
     };
     whole.parse2(group.stream())
 }
 
-/// The error where an expression should begin.
-fn no_expression(input: ParseStream<'_>) -> syn::Error {
+/// Error for a missing expression.
+fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {
         "`*` stands between two factors; write `pow(a, n)` for a power"
@@ -318,8 +324,8 @@ fn no_expression(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
-/// The error where an expression should end or go on.
-pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
+/// Error for an unexpected token after an expression.
+pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected `,` or an operator";
     let help = if input.peek(Token![->]) {
         "a joint has two ends; write a joint for each `parent -> child`"
@@ -349,7 +355,7 @@ pub fn unexpected(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
-/// A text in quotes.
+/// Returns a text in quotes.
 pub fn quoted(text: &str) -> String {
     format!("\"{text}\"")
 }
@@ -359,7 +365,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let (digits, suffix) = match &literal {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
-        // Words like others: what is expected in their place says so.
+        // Words; the error at their use is more helpful.
         Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE),
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a text";
@@ -381,7 +387,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
 }
 
-/// Parses expressions in parentheses; returns their common size and the closing parenthesis with them.
+/// Parses expressions in parentheses; returns them with their common size and the closing parenthesis.
 fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
     let content;
     let close = parenthesized!(content in input).span.close();
@@ -389,8 +395,8 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span
     Ok((items, size, close))
 }
 
-/// Parses comma-separated expressions to the end; returns their common size, and whether a comma follows the
-/// last one.
+/// Parses comma-separated expressions to the end; returns their common size, and whether the last one is
+/// followed by a comma.
 fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> {
     let (mut items, mut size, mut trailing) = (Vec::new(), Size::default(), false);
     while !content.is_empty() {
@@ -401,7 +407,7 @@ fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> 
         if trailing {
             content.parse::<Token![,]>()?;
         } else if !content.is_empty() {
-            return Err(unexpected(content));
+            return Err(unexpected_token_error(content));
         }
     }
     Ok((items, size, trailing))

@@ -1,4 +1,4 @@
-//! The fields of a mechanism: parameters, tables, states and elements.
+//! Fields of a mechanism: parameters, tables, states and elements.
 
 use super::expression::name;
 use super::mechanism::Shell;
@@ -51,20 +51,21 @@ pub fn read_field(
     read_units(&field.attrs, description, cx);
     field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     unify_scalar(scalar, found, field.ty.span().into(), cx);
-    // Rust would complain of a second field with the same name as well.
+    // The Rust compiler would also report a second field with the same name.
     if !shell.parameters.iter().any(|known| known.ident == field.ident) {
         shell.parameters.push(field);
     }
     description.parameters.push(field_name);
 }
 
-/// True for the types of parameters and elements.
+/// Whether a type is that of a parameter or an element.
 pub fn is_known(kind: &Ident, generic: Option<&str>) -> bool {
     let kind = kind.to_string();
     matches!(kind.as_str(), "f64" | "f32") || Some(kind.as_str()) == generic || element::is_element(&kind)
 }
 
-/// Fields of a struct have distinct names by Rust's own rules, but Rust says so later and less clearly.
+/// Reports fields with equal names and returns these names. The Rust compiler also reports them, but later
+/// and less clearly.
 pub fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
     let mut names: Vec<&Name> = Vec::new();
     names.extend(&description.parameters);
@@ -84,7 +85,7 @@ pub fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<
     check_distinct(&names, cx)
 }
 
-/// Reports every name that stands twice, at its second place, and returns it.
+/// Reports every duplicate name at its second occurrence, and returns the duplicates.
 pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
     let mut sorted: Vec<(usize, &&Name)> = names.iter().enumerate().collect();
     sorted.sort_by(|a, b| a.1.text.cmp(&b.1.text).then(a.0.cmp(&b.0)));

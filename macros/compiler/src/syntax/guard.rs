@@ -1,34 +1,34 @@
 //! A first pass over the tokens, without recursion, that rejects input on which the recursive parsers could
-//! exhaust their stack. A level of recursion is a bracket, a prefix operator, or any token of a type, whose
-//! grammar is Rust's own and nests without brackets, as in `&mut &mut f64`.
+//! exhaust their stack. A level of recursion is a bracket, a prefix operator, or any token of a type, because
+//! Rust's grammar of types nests without brackets, as in `&mut &mut f64`.
 
 use crate::diag::Diagnostics;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Maximum nesting of brackets, prefix operators and pieces of a law together.
+/// Maximum total nesting of brackets, prefix operators and pieces of a law.
 pub const MAX_DEPTH: usize = 48;
-/// Maximum number of tokens from the last separators of all open brackets, outside attributes.
+/// Maximum number of tokens since the last separators of all open brackets, outside attributes.
 const MAX_TYPE_TOKENS: usize = 100;
 /// Maximum number of digits of a number.
 const MAX_DIGITS: usize = 1000;
 /// Maximum number of tokens in one struct.
 const MAX_TOKENS: usize = 400_000;
-/// Stack that an expansion may use, in bytes: a quarter of what rustc gives its threads. A nesting level of
+/// Stack that an expansion may use, in bytes: a quarter of the stack of rustc's threads. A nesting level of
 /// the unoptimised compiler takes at most 32 KiB of it; a test expands the deepest input of every kind within
 /// this stack.
 pub const MAX_STACK: usize = MAX_DEPTH * (32 << 10) + (512 << 10);
 
-/// An open bracket while the tokens are visited.
+/// An open bracket during the traversal of tokens.
 struct OpenBracket {
-    /// Tokens that are not yet visited.
+    /// Tokens not yet visited.
     tokens: proc_macro2::token_stream::IntoIter,
-    /// Brackets and prefix operators that its contents are nested in.
+    /// Number of brackets and prefix operators around its contents.
     depth: usize,
-    /// Type tokens before the bracket that its contents are nested in.
+    /// Number of type tokens around its contents.
     outer: usize,
-    /// False within attributes, whose expressions have a parser of their own.
+    /// Whether types are possible; false within attributes, whose expressions have a separate parser.
     has_types: bool,
-    /// True if the token before is `#`.
+    /// Whether the previous token is `#`.
     after_hash: bool,
 }
 
@@ -38,13 +38,13 @@ impl OpenBracket {
     }
 }
 
-/// Reports an attribute's arguments that are nested too deeply or are too many. Returns true if parsing may
-/// go on.
+/// Reports an attribute's arguments that are nested too deeply or have too many tokens. Returns whether
+/// parsing may continue.
 pub fn check_arguments(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
     check_tokens(OpenBracket::outermost(tokens, false), cx)
 }
 
-/// Reports an item whose tokens are nested too deeply or are too many. Returns true if parsing may go on.
+/// Reports an item whose tokens are nested too deeply or are too many. Returns whether parsing may continue.
 pub fn check_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
     check_tokens(OpenBracket::outermost(tokens, true), cx)
 }
@@ -81,7 +81,7 @@ fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
                 }
             }
             TokenTree::Group(g) => {
-                // The first sign of a run may stand between two operands.
+                // The first sign of a run may be a binary operator.
                 let depth = level.depth + run.saturating_sub(1) + 1;
                 run = 0;
                 let is_attribute = after_hash && g.delimiter() == Delimiter::Bracket;
@@ -98,7 +98,7 @@ fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
             TokenTree::Literal(literal) => {
                 run = 0;
                 let text = literal.to_string();
-                // Reading a number takes time that grows as the square of its length.
+                // The time to parse a number grows with the square of its length.
                 if text.len() > MAX_DIGITS && text.starts_with(|c: char| c.is_ascii_digit()) {
                     cx.error(place, format!("this number has more than {MAX_DIGITS} digits"));
                     return false;

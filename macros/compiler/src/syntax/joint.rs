@@ -1,4 +1,4 @@
-//! Joints: their ends, axes and figures.
+//! Joints: their ends, axes and pitch.
 
 use super::arguments::Arguments;
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
@@ -20,7 +20,7 @@ pub fn read_joint(
     let branch = arguments.take_expr("branch", cx);
     let allowed = kind.row().arguments;
     for key in ["about", "along", "pitch", "lead"] {
-        if let Some(place) = arguments.seen(key)
+        if let Some(place) = arguments.taken_place(key)
             && !allowed.contains(&key)
         {
             let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();
@@ -53,7 +53,7 @@ pub fn read_joint(
     })
 }
 
-/// One axis or several. Three numbers in parentheses are a vector, which is written otherwise.
+/// Reads one or several axes. Three numbers in parentheses are an error: a vector has brackets.
 fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Vec<Expr>> {
     let axes = arguments.take_list(key, cx);
     let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal).collect();
@@ -72,7 +72,7 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
     None
 }
 
-/// `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
+/// Reads an end of a joint: `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
 fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
     match e.kind {
         ExprKind::Name(text) => {
@@ -92,7 +92,9 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                 }
                 Some(Method::At) => {
                     let help = match arguments.as_slice() {
-                        [a, b, c] => format!("write `.at([{}, {}, {}])`", a.spelt(), b.spelt(), c.spelt()),
+                        [a, b, c] => {
+                            format!("write `.at([{}, {}, {}])`", a.to_source(), b.to_source(), c.to_source())
+                        }
                         _ => "write `body.at(length * x)`".to_string(),
                     };
                     cx.error(method.place, "expected one vector in `.at(…)`").help(help);
@@ -110,7 +112,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                 Some(Method::Collision | Method::Surface(_)) | None => {
                     let other = method.text.as_str();
                     let error = cx.error(method.place, format!("unknown method `.{other}(…)` of a body"));
-                    words::point(error, words::METHODS, other, &["at", "rotated"]);
+                    words::suggest_meaning(error, words::METHODS, other, &["at", "rotated"]);
                     None
                 }
             }
@@ -118,7 +120,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
         kind => {
             let help = match kind {
                 ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.name().is_some() => {
-                    format!("a point of a body is written `{}.at(vector)`", base.spelt())
+                    format!("a point of a body is written `{}.at(vector)`", base.to_source())
                 }
                 _ => "write `ground -> cart`, `arm.at(length * x) -> hand`".to_string(),
             };

@@ -1,4 +1,4 @@
-//! Limits: what a coordinate, its velocity and the force on it stay within.
+//! Limits: bounds of a coordinate, its velocity and its force.
 
 use super::arguments::Arguments;
 use super::contact::take_restitution;

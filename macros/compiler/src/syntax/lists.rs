@@ -1,6 +1,6 @@
-//! Lists of elements: `leg: [Body; 2]` stands for two fields, `leg_0` and `leg_1`. In the attributes of a
-//! list `i` counts its elements, and everywhere `leg[1]` and `leg[i + 1]` name one of them. What comes after
-//! sees plain fields only.
+//! Lists of elements: `leg: [Body; 2]` is expanded into two fields, `leg_0` and `leg_1`. In the attributes of
+//! a list, `i` is the index of the element. Everywhere, `leg[1]` and `leg[i + 1]` denote one element. Later
+//! stages see plain fields only.
 
 use super::element::{ATTRIBUTES, is_one_of};
 use crate::diag::Diagnostics;
@@ -9,47 +9,48 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
 
-/// What counts the elements of a list.
+/// Index of a list's element in its attributes.
 const INDEX: &str = "i";
-/// Most elements of all lists together.
+/// Maximum number of elements of all lists together.
 const MAX_LIST_ELEMENTS: usize = 4096;
-/// Most tokens that lists may be written out to.
-const MOST_TOKENS: usize = 1_000_000;
-/// Most tokens in brackets behind the name of a list.
-const LONGEST: usize = 64;
+/// Maximum number of tokens after expansion.
+const MAX_EXPANDED_TOKENS: usize = 1_000_000;
+/// Maximum number of tokens in brackets after the name of a list.
+const MAX_INDEX_TOKENS: usize = 64;
 
-/// The lists of a struct: name and number of elements.
+/// Lists of a struct, with their numbers of elements.
 pub struct Lists {
     lists: Vec<(String, usize)>,
     tokens: usize,
 }
 
 impl Lists {
-    /// Writes the lists among the fields out, and says which there were.
-    pub fn write_out(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
+    /// Expands the lists among the fields, and returns them.
+    pub fn expand(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
-        let Fields::Named(named) = fields else { return lists };
-        let counts: Vec<Option<usize>> = named.named.iter().map(|field| lists.read(field, cx)).collect();
+        let Fields::Named(named_fields) = fields else { return lists };
+        let counts: Vec<Option<usize>> =
+            named_fields.named.iter().map(|field| lists.read(field, cx)).collect();
         if lists.lists.is_empty() {
             return lists;
         }
         cx.count_alike(lists.lists.iter().map(|(name, _)| name.clone()).collect());
-        lists.check_names(named.named.iter(), cx);
-        let taken = std::mem::take(&mut named.named);
-        for (mut field, count) in taken.into_iter().zip(counts) {
+        lists.check_names(named_fields.named.iter(), cx);
+        let fields_before = std::mem::take(&mut named_fields.named);
+        for (mut field, count) in fields_before.into_iter().zip(counts) {
             let Some(count) = count else {
                 lists.rewrite_attributes(&mut field, None, cx);
-                named.named.push(field);
+                named_fields.named.push(field);
                 continue;
             };
             for k in 0..count {
-                named.named.push(lists.element(&field, k, cx));
+                named_fields.named.push(lists.element(&field, k, cx));
             }
         }
         lists
     }
 
-    /// The number of elements of a field that is a list; 0 of one that cannot be written out.
+    /// Returns the number of elements of a field that is a list; 0 for an invalid list.
     fn read(&mut self, field: &Field, cx: &mut Diagnostics) -> Option<usize> {
         let (Type::Array(array), Some(ident)) = (&field.ty, &field.ident) else { return None };
         if matches!(&*array.elem, Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("f32"))
@@ -81,7 +82,7 @@ impl Lists {
         Some(count)
     }
 
-    /// No other field can have the name of what counts.
+    /// Reports a field with the name of the index.
     fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
         let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
         if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
@@ -90,7 +91,7 @@ impl Lists {
         }
     }
 
-    /// One element of a list as a field of its own.
+    /// Returns one element of a list as a separate field.
     fn element(&mut self, list: &Field, k: usize, cx: &mut Diagnostics) -> Field {
         let mut field = list.clone();
         if let Type::Array(array) = &list.ty {
@@ -110,7 +111,7 @@ impl Lists {
         }
     }
 
-    /// Tokens with names in place of `leg[1]`, and numbers in place of what counts.
+    /// Replaces `leg[1]` by the element's name, and the index by its value.
     pub fn rewrite(
         &mut self,
         tokens: TokenStream,
@@ -125,15 +126,18 @@ impl Lists {
         let mut member = false;
         while let Some(token) = tokens.next() {
             self.tokens += 1;
-            if self.tokens > MOST_TOKENS {
-                if self.tokens == MOST_TOKENS + 1 {
-                    cx.error(token.span(), format!("lists are written out to {MOST_TOKENS} tokens at most"));
+            if self.tokens > MAX_EXPANDED_TOKENS {
+                if self.tokens == MAX_EXPANDED_TOKENS + 1 {
+                    cx.error(
+                        token.span(),
+                        format!("lists are written out to {MAX_EXPANDED_TOKENS} tokens at most"),
+                    );
                 }
                 break;
             }
-            let behind_a_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
+            let after_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
             match token {
-                TokenTree::Ident(word) if !behind_a_dot => {
+                TokenTree::Ident(word) if !after_dot => {
                     let index_of = match tokens.peek() {
                         Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Bracket => {
                             Some(group.clone())
@@ -141,7 +145,7 @@ impl Lists {
                         _ => None,
                     };
                     let ends = tokens.peek().is_none_or(|next| !is_punct(next, '='));
-                    let (token, used) = self.word(&word, index_of.as_ref(), ends, index, cx);
+                    let (token, used) = self.replace_word(&word, index_of.as_ref(), ends, index, cx);
                     written.push(token);
                     if used {
                         tokens.next();
@@ -159,8 +163,8 @@ impl Lists {
         written.into_iter().collect()
     }
 
-    /// What a word becomes, with what stands in brackets behind it, if that belongs to it.
-    fn word(
+    /// Returns the replacement of a word, and whether the brackets after it were consumed.
+    fn replace_word(
         &self,
         word: &Ident,
         brackets: Option<&Group>,
@@ -180,7 +184,7 @@ impl Lists {
             return (word.clone().into(), false);
         };
         let Some(group) = brackets else {
-            // A list that could not be read, or the name of an argument.
+            // An invalid list, or the name of an argument.
             if *count > 0 && ends {
                 let error = cx.error(word.span(), format!("`{text}` is a list of {count}"));
                 match index {
@@ -190,12 +194,12 @@ impl Lists {
             }
             return (word.clone().into(), false);
         };
-        let k = self.number(&text, *count, group, index, cx).unwrap_or(0);
+        let k = self.index_value(&text, *count, group, index, cx).unwrap_or(0);
         (element_name(&text, k, word.span()).into(), true)
     }
 
-    /// The value of what stands in brackets behind the name of a list.
-    fn number(
+    /// Returns the value of the index in brackets after the name of a list.
+    fn index_value(
         &self,
         list: &str,
         count: usize,
@@ -203,7 +207,7 @@ impl Lists {
         index: Option<usize>,
         cx: &mut Diagnostics,
     ) -> Option<usize> {
-        let short = group.stream().into_iter().count() <= LONGEST;
+        let short = group.stream().into_iter().count() <= MAX_INDEX_TOKENS;
         let written: Option<Expr> = short.then(|| syn::parse2(group.stream()).ok()).flatten();
         let value = written.as_ref().and_then(|e| value(e, index));
         let Some(value) = value else {
@@ -233,7 +237,7 @@ impl Lists {
     }
 }
 
-/// The name of an element: `leg_1` of `leg`.
+/// Returns the name of an element: `leg_1` of `leg`.
 fn element_name(list: &str, k: usize, span: Span) -> Ident {
     Ident::new(&format!("{list}_{k}"), span)
 }
@@ -242,12 +246,12 @@ fn is_punct(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
 }
 
-/// Where an expression of Rust begins.
+/// Returns the span of the first token of a Rust expression.
 fn span(e: &Expr) -> Span {
     e.to_token_stream().into_iter().next().map_or_else(Span::call_site, |token| token.span())
 }
 
-/// The whole number that an expression is; none beyond what a machine counts to, or divided without a rest.
+/// Returns the value of an integer expression; `None` for overflow and division by zero.
 fn value(e: &Expr, index: Option<usize>) -> Option<i64> {
     match e {
         Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse().ok(),

@@ -1,23 +1,22 @@
-//! What a use of `#[mechanism]` says as a whole: its description, its options, and what remains of the
-//! struct.
+//! Result of parsing `#[mechanism]`: the description, the options, and the remaining struct.
 
-use super::figures::{FileField, FileFigures};
+use super::file_parameters::{FileField, FileParameters};
+use super::readable::Reading;
 use super::request::Requests;
-use super::sound::Reading;
 use super::{Base, Description, Inertias, Name};
 use syn::{Attribute, Field, Ident, Visibility};
 
 /// A parsed use of `#[mechanism]`.
 pub struct Mechanism {
-    /// What the struct says.
+    /// Description of the mechanism.
     pub description: Description,
-    /// What remains of the struct itself.
+    /// Struct without its elements.
     pub shell: Shell,
-    /// The file to read, if one is named.
+    /// File to import, if there is one.
     pub file: Option<FileOptions>,
-    /// What is generated on request.
+    /// Optional functions to generate.
     pub requests: Requests,
-    /// What could be read.
+    /// Fields that could be read.
     pub reading: Reading,
 }
 
@@ -31,58 +30,58 @@ pub struct Shell {
     pub ident: Ident,
     /// Generics, with their where clause.
     pub generics: syn::Generics,
-    /// The fields that stay.
+    /// Fields that remain in the struct.
     pub parameters: Vec<Field>,
-    /// The fields that are tables, which stay too.
+    /// Fields that are tables, which also remain.
     pub tables: Vec<Field>,
-    /// The fields that hold figures of a file.
+    /// Fields that hold values of a file.
     pub file_fields: Vec<FileField>,
-    /// Name and type of the fields that go, for the editor's sake.
+    /// Name and type of the removed fields, for editors.
     pub elements: Vec<(Ident, Ident)>,
-    /// What the user says of fields in doc comments: name of the field, first paragraph.
+    /// Doc comments of fields: name of the field, first paragraph.
     pub notes: Vec<(String, String)>,
-    /// The attribute and the struct as they are written, if the compiler can tell.
+    /// Source text of the attribute and the struct, if the compiler provides it.
     pub declaration: Option<String>,
-    /// Where generated code finds the runtime, if not in a crate of its own name.
+    /// Path of the runtime in generated code, if it is not that of its crate.
     pub runtime: Option<syn::Path>,
 }
 
 impl Shell {
-    /// Whether generated code is concrete in its parameters: nothing is generic.
+    /// Whether the generated code is not generic.
     pub fn is_concrete(&self) -> bool {
         self.generics.params.is_empty()
     }
 
-    /// The name of every table.
+    /// Returns the names of all tables.
     pub fn table_names(&self) -> Vec<String> {
         self.tables.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string)).collect()
     }
 
-    /// How every parameter is written behind a mechanism.
+    /// Returns the member access of every parameter relative to a mechanism.
     pub fn accesses(&self) -> Vec<String> {
         let own = self.parameters.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string));
         own.chain(self.file_fields.iter().flat_map(FileField::members)).collect()
     }
 }
 
-/// The name of the fixed frame.
+/// Name of the fixed frame.
 pub const GROUND: &str = "ground";
 
-/// The joint that holds the root of a file, which no file names; with a number if one does.
+/// Name of the joint of a file's root, which is unnamed in files; a number is appended if the name is taken.
 pub const ROOT_JOINT: &str = "root_joint";
 
-/// What is made of the limits of a file.
+/// Treatment of the limits of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOption {
-    /// They are bounds that controllers read.
+    /// Bounds for controllers.
     Honour,
-    /// They are left out.
+    /// Omitted.
     Ignore,
-    /// They are bounds, and stops for the motion.
+    /// Bounds that are also stops.
     Stops,
 }
 
-/// A format of files that describe robots.
+/// A file format of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
     /// `urdf = "…"`
@@ -94,10 +93,10 @@ pub enum FileFormat {
 }
 
 impl FileFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
-    /// The word among the attribute's arguments.
+    /// Returns the option of `#[mechanism]` for the format.
     pub fn word(self) -> &'static str {
         match self {
             FileFormat::Urdf => "urdf",
@@ -106,7 +105,7 @@ impl FileFormat {
         }
     }
 
-    /// The format's word for a body.
+    /// Returns the format's term for a body.
     pub fn body(self) -> &'static str {
         match self {
             FileFormat::Urdf | FileFormat::Sdf => "link",
@@ -114,7 +113,7 @@ impl FileFormat {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the format.
     pub fn name(self) -> &'static str {
         match self {
             FileFormat::Urdf => "URDF",
@@ -123,7 +122,7 @@ impl FileFormat {
         }
     }
 
-    /// A file of it.
+    /// Returns the phrase for a file of this format, with its article.
     pub fn article(self) -> &'static str {
         match self {
             FileFormat::Urdf => "a URDF file",
@@ -132,7 +131,7 @@ impl FileFormat {
         }
     }
 
-    /// How names of such files end.
+    /// Returns the extensions of such files.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
@@ -142,48 +141,48 @@ impl FileFormat {
     }
 }
 
-/// What the inputs of a file are.
+/// Inputs of a mechanism from a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputOption {
-    /// Every moving joint with one degree of freedom.
+    /// One input per moving joint with one degree of freedom.
     Joints,
-    /// The motors that the file declares.
+    /// The motors declared in the file.
     Actuators,
-    /// There are none.
+    /// No inputs.
     None,
 }
 
-/// The options of `#[mechanism(urdf = "…", …)]` and `#[mechanism(mjcf = "…", …)]`.
+/// Options of `#[mechanism(urdf = "…", …)]` and `#[mechanism(mjcf = "…", …)]`.
 #[derive(Clone, Debug)]
 pub struct FileOptions {
-    /// The format.
+    /// File format.
     pub format: FileFormat,
     /// Path as written.
     pub path: Name,
-    /// How the root link is held.
+    /// Attachment of the root link.
     pub base: Base,
-    /// Damping and friction of the file are kept.
+    /// Whether damping and friction of the file are included.
     pub honour_passive: bool,
-    /// Mimic joints follow their masters.
+    /// Whether mimic joints follow their masters.
     pub follow_mimic: bool,
-    /// What is made of the limits of the file.
+    /// Treatment of the limits of the file.
     pub limits: LimitOption,
-    /// What is made of mass properties.
+    /// Treatment of mass properties.
     pub inertias: Inertias,
-    /// What the inputs are.
+    /// Inputs of the mechanism.
     pub inputs: InputOption,
-    /// Joints frozen at zero.
+    /// Joints fixed at zero.
     pub lock: Vec<Name>,
-    /// How far off round numbers the file's frames and axes may be to be taken for round, rad and m.
+    /// Tolerance within which frames and axes of the file are rounded, rad and m.
     pub snap: Option<f64>,
-    /// Figures that are parameters.
-    pub parameters: Vec<FileFigures>,
-    /// What touches what is taken from the file.
+    /// Values of the file that are parameters.
+    pub parameters: Vec<FileParameters>,
+    /// Whether contacts of the file are included.
     pub contacts: bool,
     /// Whether a link of a URDF file may be the child of several joints, of which all but one close loops.
     pub close_loops: bool,
-    /// Contacts name the collision geometry of links.
+    /// Whether contacts use the collision geometry of links.
     pub collisions: bool,
-    /// Visual geometry is drawn.
+    /// Whether visual geometry is drawn.
     pub visuals: bool,
 }

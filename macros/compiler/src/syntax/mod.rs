@@ -1,5 +1,6 @@
-//! Tokens → what the user wrote, with the place of every word. Knows Rust's grammar and the names of the
-//! language's elements; no mechanics. Imported files arrive in the same [`Description`].
+//! Parser from tokens to the unresolved description, with the source position of every word. Depends on
+//! Rust's grammar and the names of the language's elements, not on mechanics. Imported files produce the same
+//! [`Description`].
 
 pub mod action;
 pub mod arguments;
@@ -9,10 +10,11 @@ pub mod contact;
 pub mod crate_path;
 pub mod declaration;
 pub mod description;
+mod duplicate;
 pub mod element;
 pub mod expression;
 mod field;
-pub mod figures;
+pub mod file_parameters;
 pub mod guard;
 pub mod joint;
 pub mod limit;
@@ -20,29 +22,28 @@ mod lists;
 pub mod mechanism;
 mod options;
 mod parameter;
+pub mod readable;
 mod request;
 mod separate;
 pub mod skipped;
-pub mod sound;
 mod state;
 mod table;
-mod twice;
 pub mod words;
 
 pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
-    FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
-    ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
+    Action, Base, BinaryOp, Body, Callee, Collision, Compliance, Constraint, ConstraintKind, Contact,
+    Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
+    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
+    Restitution, ScalarType, Shape, SlipFriction, Table, Target, Term, Visual, Wrench,
 };
+pub use duplicate::second_definition;
 pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,
 };
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
-pub use twice::second_definition;
 
-/// What stands after a state's name in that of the function for its rate.
+/// Suffix of a state's name in the name of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

@@ -1,8 +1,8 @@
-//! What the arguments of `#[mechanism(…)]` ask for: gravity, a file with what is read of it, formulation,
-//! more functions.
+//! Options of `#[mechanism(…)]`: gravity, an imported file with its options, formulation, and optional
+//! functions.
 
 use super::arguments::Arguments;
-use super::figures::{self, FileFigures};
+use super::file_parameters::{self, FileParameters};
 use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption};
 use super::parameter::unify_scalar;
 use super::request::{Printed, REQUESTS, Requests};
@@ -10,10 +10,10 @@ use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, Scal
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
 
-/// Most that `snap` may change a frame by, rad and m.
+/// Maximum of the tolerance `snap`, rad and m.
 const LARGEST_SNAP: f64 = 0.01;
 
-/// The options that have a value.
+/// Options with a value.
 const OPTIONS: [&str; 22] = [
     "gravity",
     "friction_speed",
@@ -39,7 +39,7 @@ const OPTIONS: [&str; 22] = [
     "equations",
 ];
 
-/// Reads the arguments; those that belong to a file, if one is named.
+/// Reads the arguments. Returns the options of the imported file, if there is one.
 pub fn read_options(
     arguments: TokenStream,
     description: &mut Description,
@@ -48,13 +48,13 @@ pub fn read_options(
     cx: &mut Diagnostics,
 ) -> Option<FileOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    let mistaken: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_word(word, cx)).collect();
-    let asked = words_given(&mut arguments);
-    *requests = read_requests(&asked, &mistaken, &mut arguments, description, cx);
+    let rejected: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_option(word, cx)).collect();
+    let requested = take_requests(&mut arguments);
+    *requests = read_requests(&requested, &rejected, &mut arguments, description, cx);
     description.gravity = arguments.take_expr("gravity", cx);
     description.friction_speed = arguments.take_expr("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
-    if let Some((word, place)) = arguments.take_word("scalar", &["f64", "f32"], cx) {
+    if let Some((word, place)) = arguments.take_choice("scalar", &["f64", "f32"], cx) {
         let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
         unify_scalar(scalar, found, place, cx);
     }
@@ -71,35 +71,37 @@ pub fn read_options(
                     );
                 }
                 error.help("add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the option");
-                arguments.forget(option);
+                arguments.remove_key(option);
             }
         }
     }
     let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let close_loops = read_loops(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
-    let limits = arguments.take_word("limits", &["honour", "ignore", "stops"], cx);
+    let limits = arguments.take_choice("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
         "stops" => LimitOption::Stops,
         _ => LimitOption::Honour,
     });
-    let mut choice =
-        |key: &str, words: [&str; 2]| arguments.take_word(key, &words, cx).map(|(word, _)| word == words[1]);
+    let mut choice = |key: &str, words: [&str; 2]| {
+        arguments.take_choice(key, &words, cx).map(|(word, _)| word == words[1])
+    };
     let base = choice("base", ["fixed", "free"]).unwrap_or(false);
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
-    description.inertias = read_inertias(&mut arguments, &asked, description, cx);
+    description.inertias = read_inertias(&mut arguments, &requested, description, cx);
     requests.skipped = skipped::read(&mut arguments, cx);
-    let printed = arguments.take_word("equations", &Printed::WORDS.map(|(word, _)| word), cx);
-    let printed = printed.and_then(|(asked, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == asked));
+    let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);
+    let printed =
+        printed.and_then(|(requested, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == requested));
     requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
     let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let lock = arguments.take_texts("lock", cx);
     let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
-    let parameters = read_figures(&mut arguments, description.inertias, cx);
+    let parameters = read_file_parameters(&mut arguments, description.inertias, cx);
     requests.file_parameters = !parameters.is_empty();
-    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == figures::INERTIAL);
+    requests.file_inertials = parameters.iter().any(|figures| figures.word.text == file_parameters::INERTIAL);
     arguments.finish("`#[mechanism]`", &OPTIONS, cx);
     let (format, path) = file?;
     Some(FileOptions {
@@ -121,17 +123,17 @@ pub fn read_options(
     })
 }
 
-/// `contacts = file | ignore`: what touches what, of a format that says it.
+/// Reads `contacts = file | ignore`: whether contacts of the file are included, for a format that has them.
 fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
     let place = arguments.place_of("contacts");
-    let asked =
-        arguments.take_word("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
-    let other = format.filter(|format| asked && *format != FileFormat::Mjcf);
-    if let (Some(place), Some(other)) = (place, other) {
-        cx.error(place, format!("{} does not say what touches what", other.article()))
-            .help(super::contact::TOUCHES);
+    let from_file =
+        arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
+    let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
+    if let (Some(place), Some(unsupported)) = (place, unsupported) {
+        cx.error(place, format!("{} does not say what touches what", unsupported.article()))
+            .help(super::contact::CONTACT_HELP);
     }
-    asked && other.is_none()
+    from_file && unsupported.is_none()
 }
 
 /// Reads `loops = refuse | close`, an option of URDF files, and returns whether loops are closed. Other
@@ -139,7 +141,7 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
 fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
     let place = arguments.place_of("loops");
     let close =
-        arguments.take_word("loops", &["refuse", "close"], cx).is_some_and(|(word, _)| word == "close");
+        arguments.take_choice("loops", &["refuse", "close"], cx).is_some_and(|(word, _)| word == "close");
     if let (Some(place), Some(other)) = (place, format.filter(|format| *format != FileFormat::Urdf)) {
         cx.error(place, "`loops` is an option of URDF files")
             .help(format!("remove it: the loops of {} are always closed", other.article()));
@@ -147,7 +149,7 @@ fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Di
     close
 }
 
-/// `urdf = "…"` or `mjcf = "…"`.
+/// Reads `urdf = "…"`, `mjcf = "…"` or `sdf = "…"`.
 fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
     let mut found: Option<(FileFormat, Name)> = None;
     for format in FileFormat::ALL {
@@ -162,14 +164,14 @@ fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFor
     found
 }
 
-/// `inputs = joints | actuators | none`: joints are the motors of a format that declares none.
+/// Reads `inputs = joints | actuators | none`. The default for a format without motors is `joints`.
 fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> InputOption {
     let words: &[&str] = match format {
         Some(FileFormat::Mjcf) => &["actuators", "joints", "none"],
         _ => &["joints", "none"],
     };
     let found = arguments
-        .take_word("inputs", words, cx)
+        .take_choice("inputs", words, cx)
         .map_or(words.first().copied(), |(word, _)| words.iter().copied().find(|known| *known == word));
     match found {
         Some("actuators") => InputOption::Actuators,
@@ -178,18 +180,18 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
     }
 }
 
-/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of
-/// them.
+/// Reads `inertia = check | trust | none`. Without inertia there are no dynamics; options that need them are
+/// reported.
 fn read_inertias(
     arguments: &mut Arguments,
-    asked: &[(&str, Place)],
+    requested: &[(&str, Place)],
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Inertias {
-    match arguments.take_word("inertia", &["check", "trust", "none"], cx) {
+    match arguments.take_choice("inertia", &["check", "trust", "none"], cx) {
         Some((word, _)) if word == "trust" => Inertias::Trust,
         Some((word, _)) if word == "none" => {
-            for (word, place) in asked.iter().filter(|(word, _)| *word != "drawing") {
+            for (word, place) in requested.iter().filter(|(word, _)| *word != "drawing") {
                 cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
                     "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
                 ));
@@ -204,7 +206,7 @@ fn read_inertias(
     }
 }
 
-/// The tolerance of `snap`: a positive number, small beside an angle that is meant.
+/// Reads the tolerance of `snap`: a positive number, small compared with intended angles.
 fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     match e.kind {
         ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
@@ -216,11 +218,15 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     }
 }
 
-/// `parameters = inertial("trunk")`. Without inertia there are no mass properties.
-fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnostics) -> Vec<FileFigures> {
-    let mut found = figures::check(arguments.take_figures("parameters"), cx);
+/// Reads `parameters = inertial("trunk")`. Without inertia there are no mass properties.
+fn read_file_parameters(
+    arguments: &mut Arguments,
+    inertias: Inertias,
+    cx: &mut Diagnostics,
+) -> Vec<FileParameters> {
+    let mut found = file_parameters::check(arguments.take_file_parameters("parameters"), cx);
     found.retain(|figures| {
-        let good = inertias != Inertias::None || figures.word.text == figures::PLACEMENT;
+        let good = inertias != Inertias::None || figures.word.text == file_parameters::PLACEMENT;
         if !good {
             let word = &figures.word;
             cx.error(word.place.clone(), format!("`{}` needs inertia", word.text))
@@ -231,14 +237,14 @@ fn read_figures(arguments: &mut Arguments, inertias: Inertias, cx: &mut Diagnost
     found
 }
 
-/// `formulation = multipliers | speeds`; independent speeds that are named ask for the second.
+/// Reads `formulation = multipliers | speeds`; a list of independent velocities implies the latter.
 fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
     let place = arguments.place_of("independent");
     let independent = arguments.take_list("independent", cx);
-    let chosen = arguments.take_word("formulation", &["multipliers", "speeds"], cx);
+    let chosen = arguments.take_choice("formulation", &["multipliers", "speeds"], cx);
     match (chosen, place) {
-        (Some((word, at)), Some(_)) if word == "multipliers" => {
-            cx.error(at, "multipliers need no independent speeds")
+        (Some((word, word_place)), Some(_)) if word == "multipliers" => {
+            cx.error(word_place, "multipliers need no independent speeds")
                 .help("remove `independent`, or write `formulation = speeds`");
             Formulation::Multipliers
         }
@@ -248,23 +254,23 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     }
 }
 
-/// The words of [`Requests`] among the arguments.
-fn words_given(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
-    REQUESTS.iter().filter_map(|word| Some((*word, arguments.word_given(word)?))).collect()
+/// Takes the options of [`Requests`] from the arguments.
+fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
+    REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_option(word)?))).collect()
 }
 
-/// What the words among the arguments ask for.
+/// Returns the requested functions, and reports unknown or meaningless options.
 fn read_requests(
-    asked: &[(&str, Place)],
-    mistaken: &[&str],
+    requested: &[(&str, Place)],
+    rejected: &[&str],
     arguments: &mut Arguments,
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Requests {
-    let is_asked = |word: &str| asked.iter().any(|(known, _)| *known == word);
-    let requests = Requests::of_words(is_asked);
-    for (word, place) in asked {
-        let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
+    let is_asked = |word: &str| requested.iter().any(|(known, _)| *known == word);
+    let requests = Requests::from_options(is_asked);
+    for (word, place) in requested {
+        let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
             cx.error(
                 place.clone(),

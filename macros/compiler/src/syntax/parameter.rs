@@ -1,5 +1,4 @@
-//! What fields that are parameters have in common: a scalar type and a unit; and the types of fields as they
-//! are written.
+//! Common properties of parameters: scalar type and unit; and written types of fields.
 
 use super::{Description, Name, ScalarType, element};
 use crate::diag::{Diagnostics, Place};
@@ -35,7 +34,7 @@ fn spell(scalar: &ScalarType) -> &str {
     }
 }
 
-/// From the first to the last token of a type.
+/// Returns the source range from the first to the last token of a type.
 pub fn span_of(ty: &Type) -> Place {
     let mut tokens = ty.to_token_stream().into_iter();
     let Some(first) = tokens.next() else { return ty.span().into() };
@@ -43,21 +42,21 @@ pub fn span_of(ty: &Type) -> Place {
     Place::from(first.span()).to(&last.into())
 }
 
-/// The last word of a plain path without arguments.
+/// Returns the last segment of a plain path without arguments.
 pub fn type_name(ty: &Type) -> Option<Ident> {
     match ty {
         Type::Path(p) if p.qself.is_none() => {
             let last = p.path.segments.last()?;
             last.arguments.is_empty().then(|| last.ident.clone())
         }
-        // What a macro has put in the place of a fragment.
+        // A fragment substituted by a macro.
         Type::Group(group) => type_name(&group.elem),
         Type::Paren(group) => type_name(&group.elem),
         _ => None,
     }
 }
 
-/// The `#[unit(…)]` of the parameter that comes next.
+/// Reads the `#[unit(…)]` of the next parameter.
 pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut Diagnostics) {
     let mut units = attributes.iter().filter(|a| element::is_one_of(a, &["unit"]));
     if let Some(first) = units.next() {
@@ -72,7 +71,8 @@ pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &
 pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
         if element::is_conditional(attribute) {
-            cx.error(attribute.path().span(), "a parameter cannot be conditional").help(element::CONDITIONS);
+            cx.error(attribute.path().span(), "a parameter cannot be conditional")
+                .help(element::CONDITION_HELP);
         }
         if let Some(word) = attribute.path().get_ident()
             && word != "unit"

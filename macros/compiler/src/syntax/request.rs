@@ -1,13 +1,12 @@
-//! What a mechanism asks for by words among the attribute's arguments, beside the functions that every
-//! mechanism has.
+//! Optional functions of a mechanism, requested by options of the attribute.
 
-/// Which equations are printed: `equations = word`.
+/// Equations printed in the documentation: `equations = word`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Printed {
-    /// Lagrange's, if they are short enough to be read.
+    /// Lagrange's, if they are short enough to be readable.
     #[default]
     Readable,
-    /// Lagrange's, also where they are long.
+    /// Lagrange's, even if they are long.
     Lagrange,
     /// Hamilton's.
     Hamilton,
@@ -15,12 +14,12 @@ pub enum Printed {
     Kane,
     /// Routh's.
     Routh,
-    /// Their structure alone.
+    /// Only their structure.
     Structure,
 }
 
 impl Printed {
-    /// The words that ask for others than the readable ones.
+    /// Options, with the equations that they select.
     pub const WORDS: [(&str, Printed); 5] = [
         ("lagrange", Printed::Lagrange),
         ("hamilton", Printed::Hamilton),
@@ -30,33 +29,33 @@ impl Printed {
     ];
 }
 
-/// The passes that are left out: `skip_passes = [word, …]`. No function depends on them, only what it costs.
+/// Skipped passes: `skip_passes = [word, …]`. They affect the cost of functions, but not their results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Skipped {
-    /// Link frames stay where they are described.
+    /// Whether link frames remain as described.
     pub frames: bool,
-    /// Mass properties stay with their links.
+    /// Whether mass properties remain with their links.
     pub regroup: bool,
-    /// Links that turn about parallel axes are described in their own axes.
+    /// Whether links that rotate about parallel axes are described in their own axes.
     pub parallel: bool,
-    /// Neither alike limbs nor joints of one path are lanes.
+    /// Whether SIMD lanes over identical limbs or over the joints of one path are disabled.
     pub limbs: bool,
 }
 
-/// One row for each word: the word, its variant, and what it asks for.
+/// One row for each option: the option, its variant, and its meaning.
 macro_rules! words {
     ($($(#[$doc:meta])* $word:ident: $variant:ident,)+) => {
-        /// A word that asks for functions.
+        /// An option that requests functions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Word {
             $($(#[$doc])* $variant,)+
         }
 
         impl Word {
-            /// All words.
+            /// All options.
             pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
 
-            /// The trait of the runtime that says that a mechanism lacks it.
+            /// Returns the trait of the runtime that reports a missing option.
             pub const fn reason(self) -> &'static str {
                 match self {
                     $(Word::$variant => concat!("AsksFor", stringify!($variant)),)+
@@ -64,35 +63,35 @@ macro_rules! words {
             }
         }
 
-        /// The words as they are written.
+        /// Options as written.
         pub(super) const REQUESTS: [&str; Word::ALL.len()] = [$(stringify!($word)),+];
 
-        /// What is generated beside the functions of every mechanism.
+        /// Functions to generate in addition to those of every mechanism.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Requests {
             $($(#[$doc])* pub $word: bool,)+
-            /// Figures of a file are parameters.
+            /// Whether values of a file are parameters.
             pub file_parameters: bool,
-            /// Mass properties of links are among them.
+            /// Whether mass properties of links are among these parameters.
             pub file_inertials: bool,
-            /// No instructions beside those of the compilation's target.
+            /// Whether only instructions of the compilation target are used.
             pub target_only: bool,
-            /// Passes over the model that are left out.
+            /// Passes over the model to skip.
             pub skipped: Skipped,
-            /// Which equations are printed.
+            /// Equations to print.
             pub equations: Printed,
         }
 
         impl Requests {
-            /// Whether a word is among them.
+            /// Whether an option is requested.
             pub fn has(&self, word: Word) -> bool {
                 match word {
                     $(Word::$variant => self.$word,)+
                 }
             }
 
-            /// Those of words that are given; the second derivatives of something need the first.
-            pub(super) fn of_words(given: impl Fn(&str) -> bool) -> Requests {
+            /// Returns the requests of the given options; second derivatives imply first derivatives.
+            pub(super) fn from_options(given: impl Fn(&str) -> bool) -> Requests {
                 let asked = Requests { $($word: given(stringify!($word)),)+ ..Requests::default() };
                 let further = asked.second_derivatives || asked.momentum_derivatives;
                 Requests { derivatives: asked.derivatives || further, ..asked }
@@ -104,28 +103,28 @@ macro_rules! words {
 words! {
     /// First derivatives of the dynamics.
     derivatives: Derivatives,
-    /// Second derivatives, too.
+    /// First and second derivatives of the dynamics.
     second_derivatives: SecondDerivatives,
-    /// Derivatives of momenta and of their rates, too.
+    /// First derivatives, and derivatives of momenta and of their rates.
     momentum_derivatives: MomentumDerivatives,
-    /// The matrix of the momentum, and its bias.
+    /// Centroidal momentum matrix and its bias.
     centroidal: Centroidal,
     /// Energy and canonical equations as functions of configuration and momentum.
     hamilton: Hamilton,
-    /// Motion without cyclic coordinates, by their momenta.
+    /// Motion without cyclic coordinates, in terms of their momenta.
     routh: Routh,
-    /// Quantities that keep their values.
+    /// Conserved quantities.
     conserved: Conserved,
-    /// The dynamics as linear functions of the mass properties.
+    /// Dynamics as linear functions of the mass properties.
     regressor: Regressor,
     /// Derivatives of the dynamics by the parameters.
     sensitivities: Sensitivities,
-    /// The mass matrix without its zeros.
+    /// Mass matrix without its structural zeros.
     packed: Packed,
-    /// A second struct that holds what depends on the parameters alone.
+    /// A second struct with precomputed values that depend only on the parameters.
     prepare: Prepare,
-    /// Functions of several states at once, in lanes.
+    /// Functions of several states at once, in SIMD lanes.
     batch: Batch,
-    /// What it looks like.
+    /// Drawing of the mechanism.
     drawing: Drawing,
 }

@@ -1,6 +1,6 @@
-//! Structs whose fields are not separated by commas, or have no colon. Rustc says so before it gives the
-//! struct to the attribute, which is best served by what was meant: a second error for one mistake helps
-//! nobody.
+//! Structs whose fields are not separated by commas, or have no colon. The Rust compiler reports this before
+//! it calls the attribute. The attribute then continues with the corrected struct, to avoid a second error
+//! for the same cause.
 
 use super::{element, guard};
 use crate::diag::{Diagnostics, syn_error};
@@ -10,8 +10,8 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Token, Type, Visibility, token};
 
-/// The struct with a comma behind every field, and the first place where there was none. `None` if nothing
-/// else would make it a struct, or nothing is to be mended.
+/// Returns the struct with a comma after every field, and the error at the first missing one. `None` if the
+/// struct remains invalid, or needs no correction.
 pub fn separate(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
@@ -33,8 +33,8 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
         let mut name: Ident = input.parse()?;
         let (colon, place) = parse_colon(input)?;
         let mut kind: Type = input.parse()?;
-        // The type stands first, as in other languages.
-        if let Some((known, other)) = swapped(&name, &kind).filter(|_| place.is_some()) {
+        // The type precedes the name, as in other languages.
+        if let Some((known, other)) = swapped_type_and_name(&name, &kind).filter(|_| place.is_some()) {
             (name, kind) = (other, known);
         }
         let written = format!("{name}: {}", kind.to_token_stream()).replace(" :: ", "::");
@@ -65,7 +65,8 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
     Ok((fields, first))
 }
 
-/// The colon between a name and a type, and where one is missing: nothing stands there, or an equals sign.
+/// Parses the colon between a name and a type. If it is missing or an equals sign, returns a substitute and
+/// the span of the error.
 fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)> {
     if input.peek(Token![=]) {
         let sign: Token![=] = input.parse()?;
@@ -77,8 +78,8 @@ fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)>
     Ok((input.parse()?, None))
 }
 
-/// Type and name, if it is the name that says an element's type.
-fn swapped(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
+/// Returns type and name if they are swapped: the name is an element's type.
+fn swapped_type_and_name(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
     let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
     let is_type = |word: &Ident| element::is_element(&word.to_string());
     (is_type(name) && !is_type(&other)).then(|| (Type::Verbatim(name.to_token_stream()), other))

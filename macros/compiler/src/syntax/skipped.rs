@@ -1,17 +1,17 @@
-//! Passes over the model that a user switches off.
+//! Passes over the model that a user disables.
 
 use super::ExprKind;
 use super::arguments::Arguments;
 use super::request::Skipped;
 use crate::diag::Diagnostics;
 
-/// The argument.
+/// Name of the option.
 const KEY: &str = "skip_passes";
 
-/// Its words.
+/// Values of the option.
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
 
-/// Takes the argument.
+/// Takes the option from the arguments.
 pub fn read(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {
     let mut skipped = Skipped::default();
     let Some(e) = arguments.take_expr(KEY, cx) else { return skipped };

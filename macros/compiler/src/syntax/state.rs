@@ -7,7 +7,7 @@ use crate::diag::Diagnostics;
 use proc_macro2::Span;
 use syn::{Field, Ident};
 
-/// A state: a parameter for all functions, and a hidden output for its rate.
+/// Reads a state: a parameter for all functions, and a hidden output for its rate.
 pub fn read_state(
     field: Field,
     kind: Ident,
@@ -17,7 +17,7 @@ pub fn read_state(
     cx: &mut Diagnostics,
 ) {
     if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional(a)) {
-        cx.error(span_of_path(conditional), "a state cannot be conditional").help(element::CONDITIONS);
+        cx.error(span_of_path(conditional), "a state cannot be conditional").help(element::CONDITION_HELP);
         return;
     }
     let rate = element::read_rate(name, &kind, &field.attrs, cx);
@@ -43,7 +43,7 @@ fn span_of_path(attribute: &syn::Attribute) -> Span {
     attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span())
 }
 
-/// Gives the fields of states the mechanism's type of numbers.
+/// Sets the types of the fields of states to the scalar type of the mechanism.
 pub fn give_type(description: &Description, shell: &mut Shell) {
     for field in &mut shell.parameters {
         let Some(ident) = &field.ident else { continue };

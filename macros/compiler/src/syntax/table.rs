@@ -1,4 +1,4 @@
-//! Fields that are tables: functions that are parameters.
+//! Fields that are tables: parameters that are functions.
 
 use super::mechanism::Shell;
 use super::parameter::{check_parameter_attributes, span_of};
@@ -7,15 +7,15 @@ use crate::diag::Diagnostics;
 use syn::spanned::Spanned;
 use syn::{ExprLit, Field, GenericArgument, Lit, PathArguments, Type};
 
-/// Most tables of a mechanism.
+/// Maximum number of tables of a mechanism.
 const MAX_TABLES: usize = 256;
 
-/// How many variables a table has, as it is written: nothing else stands between the angle brackets of its
-/// type. `None` for a type that is no table.
+/// Returns the number of variables of a table, the only argument of its type; `Some(None)` if it is missing.
+/// `None` for a type that is not a table.
 pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
     let path = match ty {
         Type::Path(path) => path,
-        // What a macro has put in the place of a fragment.
+        // A fragment substituted by a macro.
         Type::Group(group) => return table_variables(&group.elem),
         Type::Paren(group) => return table_variables(&group.elem),
         _ => return None,
@@ -32,7 +32,7 @@ pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
     })
 }
 
-/// A function that is a parameter.
+/// Reads a table.
 pub fn read_table(
     mut field: Field,
     name: &Name,
@@ -52,8 +52,8 @@ pub fn read_table(
             description.tables.push(Table { name: name.clone(), variables });
         }
         Some(1..=3) => {
-            let most = MAX_TABLES;
-            cx.error(span_of(&field.ty), format!("a mechanism has {most} tables at most"))
+            let maximum = MAX_TABLES;
+            cx.error(span_of(&field.ty), format!("a mechanism has {maximum} tables at most"))
                 .help("remove some");
         }
         Some(other) => {

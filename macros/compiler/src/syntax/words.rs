@@ -1,5 +1,5 @@
-//! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else
-//! reads these tables but the help of messages.
+//! Words of other tools and of textbooks, with their meaning in this language. These tables serve only the
+//! help of messages.
 
 use super::{BinaryOp, Expr, ExprKind};
 use crate::diag::{Diagnostic, nearest};
@@ -9,7 +9,7 @@ mod tables;
 
 pub use tables::*;
 
-/// Returns the words for the arguments of an element; `kind` is the name of its type.
+/// Returns the synonyms of an element's arguments; `kind` is the name of its type.
 fn arguments(kind: &str) -> Words {
     match ElementKind::of_name(kind) {
         Some(element) => element.words(),
@@ -18,73 +18,76 @@ fn arguments(kind: &str) -> Words {
     }
 }
 
-/// The attribute itself, where an element could be.
+/// Name of the attribute where an element is expected.
 const ATTRIBUTE: &str = "`#[mechanism]`";
 
-/// The last word of what an element is called, such as `Pin` of `a Pin`.
+/// Returns the last word of an element's phrase, such as `Pin` of `a Pin`.
 fn kind_of(whose: &str) -> &str {
     whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
 }
 
-/// Returns advice that shows how an element is declared; `whose` is its type, with or without an article.
+/// Returns an example of an element's declaration; `whose` is its type, with or without an article.
 pub fn example(whose: &str) -> &'static str {
     ElementKind::of_name(kind_of(whose)).map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::example)
 }
 
-/// Words with what is meant by them.
+/// Words with their meanings.
 type Entries<'a> = &'a [(&'static str, &'static str)];
 
-/// Returns the words for functions, with what is meant by them.
+/// Returns the synonyms of functions.
 pub fn functions() -> Vec<(&'static str, &'static str)> {
     FunctionId::synonyms().chain(FUNCTIONS.iter().copied()).collect()
 }
 
-/// Returns the words for solids, with what is meant by them.
+/// Returns the synonyms of solids.
 pub fn solids() -> Vec<(&'static str, &'static str)> {
     Solid::synonyms().chain(SOLIDS.iter().copied()).collect()
 }
 
-/// Returns the words for rotations, with what is meant by them.
+/// Returns the synonyms of rotations.
 pub fn rotations() -> Vec<(&'static str, &'static str)> {
     Rotation::synonyms().chain(ROTATIONS.iter().copied()).collect()
 }
 
-/// A word as it is looked up.
+/// Normalises a word for the lookup.
 fn key(word: &str) -> String {
     word.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
 }
 
-/// What a word means, among `known` words if it is one word; none if nothing is known of it.
-pub fn meant(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
+/// Returns the meaning of a word. A single-word meaning must be among the `known` words, unless these are
+/// empty.
+pub fn meaning(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = key(word);
-    let fits = |meant: &str| meant.contains(' ') || known.is_empty() || known.contains(&meant);
-    let said = |(said, meant): &&(&str, &str)| fits(meant) && said.split(' ').any(|one| one == key);
-    words.iter().find(said).map(|(_, meant)| *meant)
+    let fits = |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
+    let synonyms =
+        |(synonyms, meaning): &&(&str, &str)| fits(meaning) && synonyms.split(' ').any(|one| one == key);
+    words.iter().find(synonyms).map(|(_, meaning)| *meaning)
 }
 
-/// True for the words of `#[mechanism]` that stand alone.
+/// Whether a word is an option of `#[mechanism]` without a value.
 pub fn is_request(word: &str) -> bool {
     super::request::REQUESTS.contains(&word)
 }
 
-/// Adds what is meant by a word, if it is known.
+/// Adds the meaning of a word to a message, if it is known; returns whether it is.
 pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
-    match meant(words, word, known) {
-        Some(meant) if meant.contains(' ') => diagnostic.help(meant),
-        Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
+    match meaning(words, word, known) {
+        Some(meaning) if meaning.contains(' ') => diagnostic.help(meaning),
+        Some(meaning) => diagnostic.help(format!("did you mean `{meaning}`?")),
         None => return false,
     };
     true
 }
 
-/// Adds what is meant by a word, or the nearest of the known ones, or their list.
-pub fn point(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
+/// Adds the meaning of a word to a message, or the nearest known word, or the list of known words.
+pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
     if !explain(diagnostic, words, word, known) {
         diagnostic.suggest(word, known.iter().copied());
     }
 }
 
-/// Adds what is meant by the type of a field, of the `known` ones. False if nothing is known of it.
+/// Adds the meaning of a field's type, one of the `known` types, to a message. Returns false if none is
+/// found.
 pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
     let key = key(word);
     let bare = key.strip_suffix("joint").or(key.strip_suffix("element")).unwrap_or(&key);
@@ -96,17 +99,17 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
     explain(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
 }
 
-/// Help for an argument that an element does not have; `whose` is the element with its article.
+/// Returns the help for an argument that an element does not have; `whose` is the element with its article.
 pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
-    let meant = meant(arguments(kind_of(whose)), word, known)?;
-    Some(match meant.contains(' ') {
-        true => meant.replace("NAME", owner),
-        false => format!("did you mean `{meant}`?"),
+    let meaning = meaning(arguments(kind_of(whose)), word, known)?;
+    Some(match meaning.contains(' ') {
+        true => meaning.replace("NAME", owner),
+        false => format!("did you mean `{meaning}`?"),
     })
 }
 
-/// The name that a Greek letter spells, or that is spelt so in another case.
-pub fn spelt_otherwise<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+/// Returns the known name that equals a word up to Greek letters and case.
+pub fn known_spelling<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let mut letters = word.to_string();
     for (letter, name) in GREEK {
         letters = letters.replace(letter, name);
@@ -115,7 +118,7 @@ pub fn spelt_otherwise<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known.iter().find(|name| same(&letters, name)).copied()
 }
 
-/// The coordinate whose rate a name seems to be: `hinge_dot`, `hinged`, `dhinge`.
+/// Returns the coordinate of a name that looks like its rate: `hinge_dot`, `hinged`, `dhinge`.
 pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["dot", "dt", "d", "rate", "vel", "velocity", "speed", "p"];
     let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
@@ -125,7 +128,7 @@ pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
 }
 
-/// The coordinate whose acceleration a name seems to be: `hinge_ddot`, `ddhinge`.
+/// Returns the coordinate of a name that looks like its acceleration: `hinge_ddot`, `ddhinge`.
 pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
     let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
@@ -135,18 +138,18 @@ pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str
     coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
 }
 
-/// True for what Rust's constants are called: their values are not known when a macro runs.
+/// Whether a word looks like a Rust constant. Values of constants are unknown when a macro runs.
 pub fn is_constant(word: &str) -> bool {
     word.chars().any(|c| c.is_ascii_uppercase()) && !word.chars().any(|c| c.is_ascii_lowercase())
 }
 
-/// Adds what is meant by a name without a value, of those that are `known`.
-pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
+/// Adds the likely meaning of a name without a value, one of the `known` names, to a message.
+pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
     if let Some(coordinate) = rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate({coordinate})` for its rate"));
     } else if let Some(coordinate) = second_rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate(rate({coordinate}))` for its acceleration"));
-    } else if let Some(same) = spelt_otherwise(name, known) {
+    } else if let Some(same) = known_spelling(name, known) {
         diagnostic.help(format!("did you mean `{same}`?"));
     } else if explain(diagnostic, NAMES, name, &[]) {
     } else if nearest(name, known).is_some() {
@@ -165,14 +168,14 @@ pub fn point_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coord
 }
 
 impl Expr {
-    /// The expression as the user would write it, if it is short.
-    pub fn spelt(&self) -> String {
+    /// Returns the expression as the user would write it, or `…` if it is long.
+    pub fn to_source(&self) -> String {
         let text = spell(self);
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
 
-    /// Whether another expression is written in the same words.
-    pub fn is_like(&self, other: &Expr) -> bool {
+    /// Whether another expression has the same text.
+    pub fn has_same_text(&self, other: &Expr) -> bool {
         spell(self) == spell(other)
     }
 }
@@ -235,11 +238,11 @@ mod tests {
         let elements = ElementKind::names().filter_map(ElementKind::of_name);
         let of_arguments = elements.flat_map(|element| element.words().iter().copied());
         let rows = [functions(), solids(), rotations()].concat();
-        for (said, meant) in
+        for (said, meaning) in
             all.into_iter().flatten().copied().chain(rows).chain(of_arguments).chain(ElementKind::synonyms())
         {
             assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
-            assert!(!meant.is_empty() && (meant.contains(' ') || !meant.contains('`')), "{meant}");
+            assert!(!meaning.is_empty() && (meaning.contains(' ') || !meaning.contains('`')), "{meaning}");
         }
     }
 
@@ -252,6 +255,6 @@ mod tests {
         assert_eq!(second_rate_of("hinge_ddot", &["hinge"]), Some("hinge"));
         assert_eq!(second_rate_of("ddtheta1", &["theta", "theta1"]), Some("theta1"));
         assert_eq!(second_rate_of("hinge_dot", &["hinge"]), None);
-        assert_eq!(spelt_otherwise("θ1", &["theta_1"]), Some("theta_1"));
+        assert_eq!(known_spelling("θ1", &["theta_1"]), Some("theta_1"));
     }
 }

@@ -9,7 +9,7 @@ use crate::import::element::place;
 use crate::import::pose::Pose;
 use crate::import::robot::{FileCollision, unused};
 use crate::syntax::Shape;
-use crate::syntax::contact::TOUCHES;
+use crate::syntax::contact::CONTACT_HELP;
 use std::collections::BTreeSet;
 
 impl<'a> Reader<'a> {
@@ -80,7 +80,7 @@ impl<'a> Reader<'a> {
         }
         if self.planes.is_empty() {
             let place = &self.options.path.place;
-            cx.error(place, "the world of the file has no plane to touch", |d| d.help(TOUCHES));
+            cx.error(place, "the world of the file has no plane to touch", |d| d.help(CONTACT_HELP));
             return;
         }
         self.left_out.push("contacts of bodies with each other".to_string());

@@ -6,7 +6,9 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
 use crate::import::pose::{IDENTITY, Matrix, Vector, about, product, roll_pitch_yaw, transpose};
-use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
+use crate::syntax::file_parameters::{
+    DAMPING, FRICTION, FileField, FileFieldKind, FileParameters, INERTIAL, PLACEMENT,
+};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
 /// Creates the fields of all requested values. `standing` are the names of links that are fixed to the
@@ -30,7 +32,7 @@ pub(in crate::import) fn make_fields(
 fn inertials(
     bodies: &mut [Body],
     standing: &[String],
-    figures: &FileFigures,
+    figures: &FileParameters,
     (fields, link): (&mut Vec<FileField>, &str),
     cx: &mut Cx<'_>,
 ) {
@@ -78,7 +80,7 @@ fn inertials(
 
 fn of_joints(
     joints: &mut [Joint],
-    figures: &FileFigures,
+    figures: &FileParameters,
     (fields, link): (&mut Vec<FileField>, &str),
     cx: &mut Cx<'_>,
 ) {
@@ -140,7 +142,7 @@ fn of_joints(
 
 /// Returns the requested links or joints, or all of them if none are named. Reports unknown and repeated
 /// names.
-fn chosen(figures: &FileFigures, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
+fn chosen(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
     let Some(of) = &figures.of else {
         let name = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
         return known.iter().map(name).collect();

@@ -1,7 +1,7 @@
 //! Joints: types, frames, axes, damping and friction, `mimic` and locks.
 
 use super::*;
-use crate::syntax::figures::FileFigures;
+use crate::syntax::file_parameters::FileParameters;
 
 /// Checks the last joints of a chain.
 fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
@@ -389,7 +389,7 @@ fn what_a_joint_cannot_have_is_listed() {
 /// by 0.5 rad about the axis after roll, pitch and yaw.
 #[test]
 fn placements_of_held_joints_have_their_rotation() {
-    let figures = FileFigures { word: name("placement"), of: Some(vec![name("j2")]) };
+    let figures = FileParameters { word: name("placement"), of: Some(vec![name("j2")]) };
     for (axis, rpy, expected) in [
         ("1 0 0", "0.1 0 0", [0.6, 0.0, 0.0]),
         ("0 0 1", "0 0 0.25", [0.0, 0.0, 0.75]),

@@ -1,14 +1,14 @@
-//! Collision geometry of a file's links, as surfaces of contacts.
+//! Collision geometry of the links of a file, as surfaces of contacts.
 
-use super::surface::{Form, Surface};
+use super::surface::{Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::Placed;
 use crate::syntax::{self, Collision, ExprKind, Name, Shape};
 
-/// Which shape of a link is meant, if one.
-fn part_of(e: &syntax::Expr) -> Option<usize> {
+/// Returns the index of the selected shape of a link, if one is selected.
+fn shape_index(e: &syntax::Expr) -> Option<usize> {
     match &e.kind {
         ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal()? as usize),
         _ => None,
@@ -16,7 +16,7 @@ fn part_of(e: &syntax::Expr) -> Option<usize> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The collision geometry of a link, `link.collision()`, or of all links, `collision()`.
+    /// Resolves the collision geometry of a link, `link.collision()`, or of all links, `collision()`.
     pub fn collisions(
         &self,
         e: &syntax::Expr,
@@ -31,7 +31,7 @@ impl<'g> Builder<'_, 'g> {
         let name = link.and_then(|link| link.name());
         let parts: Vec<&Collision> =
             known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
-        let parts = match part_of(e) {
+        let parts = match shape_index(e) {
             Some(part) => parts.into_iter().skip(part).take(1).collect(),
             None => parts,
         };
@@ -56,7 +56,7 @@ impl<'g> Builder<'_, 'g> {
         surfaces.collect()
     }
 
-    /// A part of the collision geometry where it is.
+    /// Returns the surface of a shape of the collision geometry, with its pose.
     fn collision(
         &self,
         part: &Collision,
@@ -75,11 +75,11 @@ impl<'g> Builder<'_, 'g> {
         let pose = frame.pose.then(&self.endpoint(&part.on, cx)?);
         let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
         let form = match part.shape {
-            Shape::Sphere(radius) => Form::Sphere(length(radius)),
-            Shape::Cuboid(edges) => Form::Cuboid(edges.map(length)),
-            Shape::Cylinder(radius, along) => Form::Drum(length(radius), length(along), z),
-            Shape::Capsule(radius, along) => Form::Capsule(length(radius), length(along), z),
-            Shape::Ellipsoid(radii) => Form::Ellipsoid(radii.map(length)),
+            Shape::Sphere(radius) => SurfaceForm::Sphere(length(radius)),
+            Shape::Cuboid(edges) => SurfaceForm::Cuboid(edges.map(length)),
+            Shape::Cylinder(radius, along) => SurfaceForm::Drum(length(radius), length(along), z),
+            Shape::Capsule(radius, along) => SurfaceForm::Capsule(length(radius), length(along), z),
+            Shape::Ellipsoid(radii) => SurfaceForm::Ellipsoid(radii.map(length)),
             Shape::Mesh => return None,
         };
         Some(Surface { frame: Placed { pose, ..frame }, form })

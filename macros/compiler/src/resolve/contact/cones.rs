@@ -1,14 +1,14 @@
-//! A cone that rolls on a plane, on a cone or inside of one: they touch along a line. That none of its points
-//! slips says that the apexes stay together and that the bodies turn relative to each other about the line
-//! (Poinsot's rolling cones).
+//! A cone that rolls on a plane, on a cone or inside a cone. The surfaces touch along a line. No point of
+//! that line slips if and only if the apexes coincide and the relative rotation is about the line (Poinsot's
+//! rolling cones).
 //!
-//! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α`
-//! inside, `α + β` outside), the line lies in the plane of the axes at the angle `α` from `a`, and
-//! `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half angle
-//! `π/2`.
+//! Let `a` and `b` be the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α`
+//! inside, `α + β` outside). The line of contact lies in the plane of the axes at the angle `α` from `a`. The
+//! vector `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half
+//! angle `π/2`.
 
-use super::Pair;
-use super::surface::Form;
+use super::SurfacePair;
+use super::surface::SurfaceForm;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular;
@@ -18,18 +18,18 @@ use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the rows of a pair whose first surface is a cone.
-    pub(super) fn roll_cone(
+    pub(super) fn add_rolling_cone(
         &mut self,
         constraint: &syntax::Constraint,
-        pair: &Pair<'g>,
+        pair: &SurfacePair<'g>,
         cx: &mut Diagnostics,
     ) {
         let g = self.scope.graph;
-        let Form::Cone(half, axis) = pair.a.form else { return };
+        let SurfaceForm::Cone(half, axis) = pair.a.form else { return };
         let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
-            Form::Plane(n) => (g.one(), g.zero(), n, true),
-            Form::Cone(half, n) => (half.sin(), half.cos(), n, false),
-            Form::Funnel(half, n) => (half.sin(), half.cos(), n, true),
+            SurfaceForm::Plane(n) => (g.one(), g.zero(), n, true),
+            SurfaceForm::Cone(half, n) => (half.sin(), half.cos(), n, false),
+            SurfaceForm::Funnel(half, n) => (half.sin(), half.cos(), n, true),
             _ => return,
         };
         let (sine_a, cosine_a) = (half.sin(), half.cos());
@@ -42,10 +42,10 @@ impl<'g> Builder<'_, 'g> {
         }
         let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
         self.scope.require(Rule::Positive, room, &[sine]);
-        let (a, b) = (self.of_first(pair, axis), self.of_second(pair, axis_b));
-        // Rows of the apex: three places, or one place and two velocities.
+        let (a, b) = (self.first_direction(pair, axis), self.second_direction(pair, axis_b));
+        // Rows of the apex: three positions, or one position and two velocities.
         let apex = match pair.b.form {
-            Form::Plane(n) => {
+            SurfaceForm::Plane(n) => {
                 let [first, second] = perpendicular(n);
                 [("normal", n, true), (first.0, first.1, false), (second.0, second.1, false)]
             }
@@ -54,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
         let (away, slip) = (pair.center.value - pair.base.value, self.slip(pair, Vec3::zero(g)));
         let (name, place) = (&constraint.name.text, &constraint.name.place);
         for (word, e, is_place) in apex {
-            let e = self.of_second(pair, e).value;
+            let e = self.second_direction(pair, e).value;
             let gap = is_place.then(|| e.dot(away));
             self.push_rate((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip));
         }
@@ -66,7 +66,7 @@ impl<'g> Builder<'_, 'g> {
         let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
         self.push_rate((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
         let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
-        let [w_a, w_b] = self.spins(pair);
+        let [w_a, w_b] = self.angular_velocities(pair);
         let spin = normal.dot(w_a - w_b);
         self.push_rate((format!("{name}.spin"), place), Measure::Angle, None, spin);
     }

@@ -1,6 +1,6 @@
-//! Surfaces that touch, as pieces of the drawing.
+//! Surfaces in contact, as pieces of the drawing.
 
-use super::surface::{Form, Surface};
+use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::drawing::{entries, rows};
@@ -9,7 +9,8 @@ use crate::resolve::builder::Builder;
 use crate::syntax::ExprKind;
 
 impl<'g> Builder<'_, 'g> {
-    /// The surfaces of contacts and of pairs that roll or slip, each once; returns the heights of terrains.
+    /// Adds the surfaces of contacts and of pairs that roll or slip, each once. Returns the heights of
+    /// terrains.
     pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) -> Vec<Expr<'g>> {
         let mut heights = Vec::new();
         let mut silent = Diagnostics::unread();
@@ -18,7 +19,7 @@ impl<'g> Builder<'_, 'g> {
         let mut found: Vec<(&str, Surface<'g>)> = Vec::new();
         for contact in contacts {
             for side in [&contact.first, &contact.second] {
-                let surfaces = self.touching(side, &mut silent).unwrap_or_default();
+                let surfaces = self.contact_surfaces(side, &mut silent).unwrap_or_default();
                 found.extend(surfaces.into_iter().map(|surface| (contact.name.text.as_str(), surface)));
             }
         }
@@ -57,26 +58,28 @@ impl<'g> Builder<'_, 'g> {
         let along_axes =
             |lengths: &[Expr<'g>; 3]| [at.clone(), rows(&pose.rotation.matrix()), lengths.to_vec()].concat();
         let (kind, numbers) = match form {
-            Form::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
-            Form::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
-            Form::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
-            Form::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
-            Form::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
-            Form::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
-            Form::Plane(n) => (PieceKind::Plane, round(*n, &[])),
-            Form::Cylinder(r, n) | Form::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
-            Form::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
-            Form::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
-            Form::Cone(half, n) | Form::Funnel(half, n) => (PieceKind::Funnel, round(*n, &[*half])),
-            Form::Point => (PieceKind::Point, at.clone()),
-            Form::Terrain(terrain) => {
+            SurfaceForm::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
+            SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
+            SurfaceForm::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
+            SurfaceForm::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
+            SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
+            SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
+            SurfaceForm::Plane(n) => (PieceKind::Plane, round(*n, &[])),
+            SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
+            SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
+            SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
+            SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => {
+                (PieceKind::Funnel, round(*n, &[*half]))
+            }
+            SurfaceForm::Point => (PieceKind::Point, at.clone()),
+            SurfaceForm::Terrain(terrain) => {
                 let known = heights.iter().position(|height| *height == terrain.height);
                 let number = known.unwrap_or(heights.len());
                 heights.extend(known.is_none().then_some(terrain.height));
                 (PieceKind::Terrain(number), [at.clone(), rows(&pose.rotation.matrix())].concat())
             }
-            // It has no end, and no place along which it is as high as it is.
-            Form::Sheet(_) => return None,
+            // The surface is unbounded and has no axis of symmetry.
+            SurfaceForm::Sheet(_) => return None,
         };
         Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
     }

@@ -1,6 +1,6 @@
-//! Forces and moments at contacts, for the outputs that name them.
+//! Forces and moments at contacts, as functions in outputs.
 
-use super::unilateral::Point;
+use super::unilateral::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
@@ -9,9 +9,9 @@ use crate::resolve::call::Call;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
 use crate::syntax;
 
-/// Whether expressions that name forces at contacts name no reactions and accelerations, which are those
-/// without contacts.
-pub fn stands_alone(values: &[Expr<'_>]) -> bool {
+/// Whether expressions use no contact forces, or use them without reactions and accelerations. Reactions and
+/// accelerations are those of the motion without contact forces.
+pub fn has_consistent_forces(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
     !any(|q| matches!(q, Quantity::ContactForce(_)))
@@ -19,19 +19,20 @@ pub fn stands_alone(values: &[Expr<'_>]) -> bool {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `contact_force(name)`: the force of the second surface on the first, summed over the points of contact.
+    /// Resolves `contact_force(name)`: the force of the second surface on the first, summed over the contact
+    /// points.
     pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
-        Some(sum_by_axes(&kinematics.touches.get(name)?.forces))
+        Some(sum_by_axes(&kinematics.contact_loads.get(name)?.forces))
     }
 
-    /// `contact_moment(name)`: the moment of friction of the second surface on the first, against spin and
-    /// rolling.
+    /// Resolves `contact_moment(name)`: the moment of friction of the second surface on the first, against
+    /// spin and rolling.
     pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
         let kinematics = self.kinematics.borrow();
-        let moments = &kinematics.touches.get(name)?.moments;
+        let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
             cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
                 .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
@@ -40,22 +41,22 @@ impl<'g> Scope<'_, 'g> {
         Some(sum_by_axes(moments))
     }
 
-    /// Returns the name of the contact that a function takes.
+    /// Returns the name of the contact that is the argument of a function.
     fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = self.kinematics.borrow();
-        let known = || kinematics.touches.keys().map(String::as_str);
+        let contact_names = || kinematics.contact_loads.keys().map(String::as_str);
         let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a contact").suggest("", known());
+            cx.error(e.place.clone(), "expected a contact").suggest("", contact_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "a force at a contact", call.place, cx) {
             return None;
         }
-        if !kinematics.touches.contains_key(name) {
-            if self.is_news(name, cx) {
+        if !kinematics.contact_loads.contains_key(name) {
+            if self.is_first_report(name, cx) {
                 let error = cx.error(e.place.clone(), format!("unknown contact `{name}`"));
-                error.suggest(name, known());
+                error.suggest(name, contact_names());
                 if error.is_bare() {
                     error.help(
                         "name a field of type `Contact`; what stops transmit is among `contact::acting`",
@@ -68,7 +69,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Returns the sum of forces by the axes of links.
+/// Returns the sum of forces, grouped by the links in whose axes they are expressed.
 fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
     let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
     for (link, force) in forces {
@@ -81,14 +82,21 @@ fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
     Value::Vector(terms)
 }
 
-/// Reports moments of friction against what does not turn.
-pub(super) fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
-    let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
-    let asked = [
-        (&contact.torsional, "about the normal of this contact", still(0)),
-        (&contact.rolling, "about the tangents of this contact", still(1) && still(2)),
+/// Reports coefficients of torsional or rolling friction at contacts without the corresponding rotation.
+pub(super) fn check_relative_rotation(
+    contact: &syntax::Contact,
+    points: &[&CandidatePoint<'_>],
+    cx: &mut Diagnostics,
+) {
+    let has_no_rotation =
+        |axis: usize| points.iter().all(|point| velocity_gradient(point.angular_rates[axis]).is_empty());
+    let checks = [
+        (&contact.torsional, "about the normal of this contact", has_no_rotation(0)),
+        (&contact.rolling, "about the tangents of this contact", has_no_rotation(1) && has_no_rotation(2)),
     ];
-    for (e, about, _) in asked.into_iter().filter(|(.., still)| *still && !contact.of_file) {
+    for (e, about, _) in
+        checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
+    {
         let Some(e) = e else { continue };
         cx.error(e.place.clone(), format!("nothing turns {about}"))
             .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");

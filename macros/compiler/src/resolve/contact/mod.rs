@@ -1,7 +1,7 @@
-//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is
-//! found in closed form: where a convex body touches a plane is its point farthest along the normal (its
-//! support function), a sphere touches along the normal through its centre, and cones touch along a line. On
-//! a surface given by its points two coordinates say where.
+//! Pairs of surfaces in contact. Surfaces of a rolling pair have equal velocities at the contact; those of a
+//! slipping pair do not. The contact point has a closed form. A convex body touches a plane at its farthest
+//! point along the normal (its support function). A sphere touches along the normal through its centre. Cones
+//! touch along a line. On a surface given by its points, two coordinates determine the contact point.
 
 mod boxes;
 mod collision;
@@ -13,12 +13,12 @@ mod slipping;
 mod soft;
 mod stops;
 mod surface;
-pub use force::stands_alone;
+pub use force::has_consistent_forces;
 mod terrain;
 mod unilateral;
 
 pub use slipping::check_pressed;
-pub use terrain::PLACE;
+pub use terrain::TERRAIN_COORDINATES;
 
 use super::builder::Builder;
 use super::scope::Terms;
@@ -29,46 +29,48 @@ use crate::kinematics::{perpendicular, time_derivative};
 use crate::language::Callable;
 use crate::mechanism::{FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
-use surface::{Form, Surface};
+use surface::{Surface, SurfaceForm};
 
-/// A contact at a point, in the axes of the link that carries both.
-struct Contact<'g> {
-    /// Distance of the surfaces.
+/// A contact at a point, in the axes of the link that carries both bodies.
+struct PointContact<'g> {
+    /// Signed distance of the surfaces, m.
     gap: Expr<'g>,
-    /// The point of the first body, from its centre.
+    /// Contact point, relative to the centre of the first surface.
     point: Vec3<'g>,
     /// Normal and two tangents, with their names.
     axes: [(&'static str, Vec3<'g>); 3],
-    /// Distances that are zero where the coordinates of a surface are those of the contact.
+    /// Distances that vanish when the coordinates of a surface given by its points are those of the contact,
+    /// with their names.
     conditions: Vec<(&'static str, Expr<'g>)>,
 }
 
-/// Two surfaces with the motions of their bodies, relative to the link that carries both, in its axes.
-struct Pair<'g> {
+/// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
+/// link.
+struct SurfacePair<'g> {
     a: Surface<'g>,
     b: Surface<'g>,
     on_a: Relative<'g>,
     on_b: Relative<'g>,
-    /// The place of the first surface.
+    /// Position of the first surface.
     center: Moving<'g>,
-    /// The place of the second one.
+    /// Position of the second surface.
     base: Moving<'g>,
 }
 
-const PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+const SUPPORTED_PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the rows of a rolling pair.
+    /// Adds the constraint rows of a rolling pair.
     pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let Some(pair) = self.pair(constraint, cx) else { return };
-        if let Form::Cone(..) = pair.a.form {
-            self.roll_cone(constraint, &pair, cx);
+        if let SurfaceForm::Cone(..) = pair.a.form {
+            self.add_rolling_cone(constraint, &pair, cx);
             return;
         }
         let Some(contact) = self.contact(&pair) else { return };
-        self.know_contact(&constraint.name.text, &pair, &contact);
+        self.record_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
-        self.hold(constraint, &contact, slip, Vec::new());
+        self.add_contact_rows(constraint, &contact, slip, Vec::new());
         let [_, tangents @ ..] = contact.axes;
         for (word, e) in tangents {
             let name = format!("{}.{word}", constraint.name.text);
@@ -76,18 +78,18 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal
-    /// force, and the place of the contact on a surface that is given by its points.
-    fn hold(
+    /// Adds the rows that keep a pair in contact: the distance, with the friction caused by its normal force,
+    /// and the conditions for the contact coordinates of a surface given by its points.
+    fn add_contact_rows(
         &mut self,
         constraint: &syntax::Constraint,
-        contact: &Contact<'g>,
+        contact: &PointContact<'g>,
         slip: Vec3<'g>,
         friction: Vec<FrictionTerm<'g>>,
     ) {
         let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
-        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as
-        // well.
+        // The normal of a surface given by its points depends on the contact coordinates. Away from the
+        // contact, their velocities change the distance as well.
         let rate = match contact.conditions.is_empty() {
             true => normal.dot(slip),
             false => time_derivative(self.model.space(), contact.gap),
@@ -106,26 +108,27 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Remembers where a pair touches, for free-body diagrams.
-    fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
-        self.touching.insert(name.to_string(), self.place_of_touch(pair, contact.point));
+    /// Records the contact point of a pair for free-body diagrams.
+    fn record_contact(&mut self, name: &str, pair: &SurfacePair<'g>, contact: &PointContact<'g>) {
+        self.contact_points.insert(name.to_string(), self.contact_position(pair, contact.point));
     }
 
-    /// The place of a point that is given from the first one's centre.
-    fn place_of_touch(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Terms<'g> {
+    /// Returns the position of a point given relative to the centre of the first surface.
+    fn contact_position(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
         let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
         place.push((pair.on_a.ancestor, point));
         place
     }
 
-    /// Reads a pair, for its mistakes alone.
+    /// Parses a pair only to report its errors.
     pub fn check_pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let _ = self.pair(constraint, cx);
     }
 
-    /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
-    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
+    /// Parses `rolls(surface, surface)` or `slips(surface, surface)`. The first surface of the result is the
+    /// one that rolls.
+    fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<SurfacePair<'g>> {
         let e = &constraint.value;
         let kind = constraint.kind.pair();
         let known = kind.map_or("", Callable::verb);
@@ -138,28 +141,28 @@ impl<'g> Builder<'_, 'g> {
             }
         };
         let a = self.surface(first, &example, cx);
-        // Two bodies in the place of two surfaces are one mistake.
+        // Two bodies written instead of two surfaces are one error.
         if a.is_none() && !matches!(second.kind, ExprKind::Method(..)) {
             return None;
         }
         let b = self.surface(second, &example, cx);
-        let pair = self.two(a?, b?, Form::rolls_on, second, cx)?;
+        let pair = self.ordered_pair(a?, b?, SurfaceForm::rolls_on, second, cx)?;
         if !pair.a.form.rolls_on(&pair.b.form) {
-            cx.error(e.place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            cx.error(e.place.clone(), "where these surfaces touch is not known").help(SUPPORTED_PAIRS);
             return None;
         }
         Some(pair)
     }
 
-    /// Two surfaces with their motions, in the order that is known.
-    fn two(
+    /// Returns two surfaces with their motions, in the order that `is_known` accepts.
+    fn ordered_pair(
         &self,
         mut a: Surface<'g>,
         mut b: Surface<'g>,
-        is_known: fn(&Form<'g>, &Form<'g>) -> bool,
+        is_known: fn(&SurfaceForm<'g>, &SurfaceForm<'g>) -> bool,
         second: &syntax::Expr,
         cx: &mut Diagnostics,
-    ) -> Option<Pair<'g>> {
+    ) -> Option<SurfacePair<'g>> {
         if a.frame.link == b.frame.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
                 .help("surfaces touch that belong to bodies which move relative to each other");
@@ -172,91 +175,93 @@ impl<'g> Builder<'_, 'g> {
             (self.relative(a.frame.link, b.frame.link), self.relative(b.frame.link, a.frame.link));
         let center = self.point(&on_a, a.frame.pose.translation);
         let base = self.point(&on_b, b.frame.pose.translation);
-        Some(Pair { a, b, on_a, on_b, center, base })
+        Some(SurfacePair { a, b, on_a, on_b, center, base })
     }
 
-    /// A direction of the first body.
-    fn of_first(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+    /// Returns a direction of the first body, with its rate, in the common axes.
+    fn first_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
     }
 
-    /// A direction of the second body.
-    fn of_second(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
+    /// Returns a direction of the second body, with its rate, in the common axes.
+    fn second_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
         self.direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
     }
 
-    /// Velocity of the first body relative to the second one, at a point from the first one's centre.
-    fn slip(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Vec3<'g> {
-        let Pair { center, base, .. } = pair;
-        let [w_a, w_b] = self.spins(pair);
+    /// Returns the velocity of the first body relative to the second at a point given relative to the centre
+    /// of the first surface.
+    fn slip(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Vec3<'g> {
+        let SurfacePair { center, base, .. } = pair;
+        let [w_a, w_b] = self.angular_velocities(pair);
         let arm = center.value + point - base.value;
         center.rate + w_a.cross(point) - (base.rate + w_b.cross(arm))
     }
 
-    /// Angular velocities.
-    fn spins(&self, pair: &Pair<'g>) -> [Vec3<'g>; 2] {
+    /// Returns the angular velocities of both bodies relative to their common link.
+    fn angular_velocities(&self, pair: &SurfacePair<'g>) -> [Vec3<'g>; 2] {
         [&pair.on_a, &pair.on_b].map(|on| self.direction_out(on, on.twist.angular))
     }
 
-    /// Where a pair touches at a point; `None` for pairs that touch along a line.
-    fn contact(&self, pair: &Pair<'g>) -> Option<Contact<'g>> {
-        let turned_a = |v| self.of_first(pair, v).value;
-        let turned_b = |v| self.of_second(pair, v).value;
+    /// Returns the contact of a pair; `None` for pairs that touch along a line.
+    fn contact(&self, pair: &SurfacePair<'g>) -> Option<PointContact<'g>> {
+        let rotate_a = |v| self.first_direction(pair, v).value;
+        let rotate_b = |v| self.second_direction(pair, v).value;
         let c = pair.center.value - pair.base.value;
         match (&pair.a.form, &pair.b.form) {
-            (_, Form::Sheet(sheet)) => self.contact_point(pair, sheet),
-            (a, Form::Plane(n)) => {
-                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
-                let normal = turned_b(*n);
-                let point = -farthest(a, normal, 0.0, &turned_a)?;
+            (_, SurfaceForm::Sheet(sheet)) => self.contact_point(pair, sheet),
+            (a, SurfaceForm::Plane(n)) => {
+                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+                let normal = rotate_b(*n);
+                let point = -support_point(a, normal, 0.0, &rotate_a)?;
                 let gap = normal.dot(c + point);
-                Some(Contact {
+                Some(PointContact {
                     gap,
                     point,
                     axes: [("normal", normal), (first, e1), (second, e2)],
                     conditions: Vec::new(),
                 })
             }
-            (Form::Sphere(radius), b) => sphere_contact(*radius, b, c, &turned_b),
+            (SurfaceForm::Sphere(radius), b) => sphere_contact(*radius, b, c, &rotate_b),
             _ => None,
         }
     }
 }
 
-impl<'g> Form<'g> {
-    /// True for a surface that can roll on another.
-    fn rolls_on(&self, b: &Form<'g>) -> bool {
+impl<'g> SurfaceForm<'g> {
+    /// Whether the surface can roll on another one.
+    fn rolls_on(&self, b: &SurfaceForm<'g>) -> bool {
         let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
         self.id().is_some_and(|id| rollers.contains(&id))
     }
 }
 
-/// The contact of a sphere with its centre at `c` from the centre or apex of the other surface.
+/// Returns the contact of a sphere whose centre is at `c` relative to the centre or apex of the other
+/// surface.
 fn sphere_contact<'g>(
     radius: Expr<'g>,
-    b: &Form<'g>,
+    b: &SurfaceForm<'g>,
     c: Vec3<'g>,
-    turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
-) -> Option<Contact<'g>> {
-    let inside = matches!(b, Form::Bowl(_) | Form::Tube(..) | Form::Funnel(..));
+    rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> Option<PointContact<'g>> {
+    let inside = matches!(b, SurfaceForm::Bowl(_) | SurfaceForm::Tube(..) | SurfaceForm::Funnel(..));
     let side = |x: Expr<'g>| if inside { -x } else { x };
     let (normal, distance, tangents) = match b {
-        Form::Sphere(r) | Form::Bowl(r) => {
+        SurfaceForm::Sphere(r) | SurfaceForm::Bowl(r) => {
             let size = c.norm();
             let normal = c.map(|x| side(x / size));
             let (first, second) = tangents_of(normal);
             (normal, side(size - *r), [("first", first), ("second", second)])
         }
-        Form::Cylinder(r, u) | Form::Tube(r, u) => {
-            let axis = turned_b(*u);
+        SurfaceForm::Cylinder(r, u) | SurfaceForm::Tube(r, u) => {
+            let axis = rotate_b(*u);
             let outward = c - axis * axis.dot(c);
             let size = outward.norm();
             let normal = outward.map(|x| side(x / size));
             (normal, side(size - *r), [("along", axis), ("around", normal.cross(axis))])
         }
-        Form::Cone(half, u) | Form::Funnel(half, u) => {
+        SurfaceForm::Cone(half, u) | SurfaceForm::Funnel(half, u) => {
             let (sine, cosine) = (half.sin(), half.cos());
-            let axis = turned_b(*u);
+            let axis = rotate_b(*u);
             let height = axis.dot(c);
             let outward = c - axis * height;
             let size = outward.norm();
@@ -270,32 +275,32 @@ fn sphere_contact<'g>(
     };
     let [first, second] = tangents;
     let axes = [("normal", normal), first, second];
-    Some(Contact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
+    Some(PointContact { gap: distance - radius, point: -(normal * radius), axes, conditions: Vec::new() })
 }
 
-/// The point of a convex body that is farthest along `n`, from its centre.
+/// Returns the farthest point of a convex body along `n`, relative to its centre.
 ///
-/// Of a rim in the plane across `n` all are; with `least`, the least square of the sine of the angle between
-/// axis and `n`, its centre stands for them.
-fn farthest<'g>(
-    form: &Form<'g>,
+/// If `n` is the axis of a rim, all its points are equally far. With a positive `min_sine_squared`, a lower
+/// bound on the squared sine of the angle between axis and `n`, the centre of the rim is returned then.
+fn support_point<'g>(
+    form: &SurfaceForm<'g>,
     n: Vec3<'g>,
-    least: f64,
-    turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    min_sine_squared: f64,
+    rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<Vec3<'g>> {
     let across = |axis: Vec3<'g>| {
-        let a = turned(axis);
+        let a = rotate(axis);
         let cosine = a.dot(n);
-        let sine = (cosine.num(1.0 + least) - cosine.square()).sqrt();
+        let sine = (cosine.num(1.0 + min_sine_squared) - cosine.square()).sqrt();
         (n - a * cosine).map(|x| x / sine)
     };
     Some(match form {
-        Form::Circle(r, axis) => across(*axis) * *r,
-        Form::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
-        Form::Sphere(r) => n * *r,
-        Form::Ellipsoid(half) => {
+        SurfaceForm::Circle(r, axis) => across(*axis) * *r,
+        SurfaceForm::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
+        SurfaceForm::Sphere(r) => n * *r,
+        SurfaceForm::Ellipsoid(half) => {
             let g = n[0].graph();
-            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned(Vec3::axis(g, k)));
+            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate(Vec3::axis(g, k)));
             let parts: [Expr<'g>; 3] = std::array::from_fn(|k| half[k] * axes[k].dot(n));
             let size = Vec3(parts).norm();
             (0..3).fold(Vec3::zero(g), |sum, k| sum + axes[k] * (half[k] * parts[k] / size))
@@ -304,8 +309,8 @@ fn farthest<'g>(
     })
 }
 
-/// Two tangents for a normal of any direction (Duff et al., *Building an orthonormal basis, revisited*,
-/// 2017).
+/// Returns two unit tangents for a unit normal of any direction (Duff et al., *Building an orthonormal basis,
+/// revisited*, 2017).
 fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
     let [x, y, z] = n.0;
     let sign = z.call(Function::Signum);

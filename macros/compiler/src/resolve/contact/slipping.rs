@@ -1,7 +1,6 @@
-//! Surfaces that touch and slip, with Coulomb's friction:
-//! `slips(surface, surface), friction = μ, speed = v₀`. The bodies are held at their distance, by the normal
-//! force `λ`; in the tangent plane acts `−μ |λ| s / √(|s|² + v₀²)` at the slip `s`, Coulomb's law made smooth
-//! around rest.
+//! Surfaces that touch and slip, with Coulomb friction: `slips(surface, surface), friction = μ, speed = v₀`.
+//! The normal force `λ` keeps the surfaces in contact. The force in the tangent plane is
+//! `−μ |λ| s / √(|s|² + v₀²)` for the slip velocity `s`: Coulomb's law, regularised around zero slip.
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
@@ -21,7 +20,7 @@ impl<'g> Builder<'_, 'g> {
             );
             return;
         };
-        self.know_contact(&constraint.name.text, &pair, &contact);
+        self.record_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
         let [_, tangents @ ..] = contact.axes;
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
@@ -29,10 +28,10 @@ impl<'g> Builder<'_, 'g> {
         let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
         let friction =
             moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        self.hold(constraint, &contact, slip, friction);
+        self.add_contact_rows(constraint, &contact, slip, friction);
     }
 
-    /// Coefficient of friction and speed of the regularisation.
+    /// Returns the coefficient of friction and the speed of the regularisation.
     fn friction(
         &self,
         constraint: &syntax::Constraint,
@@ -63,8 +62,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// Reports slipping contacts whose normal force does not follow from the motion: with their rows goes their
-/// friction.
+/// Reports slipping contacts whose row is redundant: the normal force, and therefore the friction, is
+/// undetermined.
 pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
     for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
         cx.error(row.place.clone(), "the normal force of this contact does not follow from the motion").help(

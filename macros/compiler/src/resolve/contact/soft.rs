@@ -1,24 +1,24 @@
-//! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient
-//! of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is
-//! smooth in the slip.
+//! Compliant contacts: forces that depend on penetration and its rate (Hunt and Crossley, *Coefficient of
+//! restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth
+//! in the slip velocity.
 
-use super::unilateral::{Laws, Point};
+use super::unilateral::{CandidatePoint, ContactCoefficients};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context, Exerted};
-use crate::syntax::{self, Softness};
+use crate::resolve::scope::{Allowed, ContactLoads, Context};
+use crate::syntax::{self, Compliance};
 
-/// The speed of slip below which friction falls off, m/s.
-const SPEED: f64 = 1e-3;
+/// Default slip speed below which friction is regularised, m/s.
+const DEFAULT_SLIP_SPEED: f64 = 1e-3;
 
-/// An overlap that is none, m: keeps the derivative of its root finite.
-const NONE: f64 = 1e-30;
+/// Offset under the square root of the penetration, m, which keeps its derivative finite at zero.
+const ROOT_OFFSET: f64 = 1e-30;
 
-/// How surfaces yield.
-pub(super) struct Soft<'g> {
+/// Stiffness and dissipation of a compliant contact.
+pub(super) struct CompliantContact<'g> {
     stiffness: Expr<'g>,
     hertz: bool,
     dissipation: Expr<'g>,
@@ -26,8 +26,12 @@ pub(super) struct Soft<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Reads how surfaces yield; `None` after a mistake.
-    pub(super) fn softness(&self, soft: &Softness, cx: &mut Diagnostics) -> Option<Soft<'g>> {
+    /// Reads stiffness and dissipation; `None` after an error.
+    pub(super) fn read_compliance(
+        &self,
+        soft: &Compliance,
+        cx: &mut Diagnostics,
+    ) -> Option<CompliantContact<'g>> {
         let g = self.scope.graph;
         let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
             let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
@@ -47,22 +51,27 @@ impl<'g> Builder<'_, 'g> {
         };
         let speed = match &soft.speed {
             Some(e) => read(e, "speed", Rule::Positive),
-            None => Some(g.num(SPEED)),
+            None => Some(g.num(DEFAULT_SLIP_SPEED)),
         };
-        Some(Soft { stiffness: stiffness?, hertz: soft.hertz, dissipation: dissipation?, speed: speed? })
+        Some(CompliantContact {
+            stiffness: stiffness?,
+            hertz: soft.hertz,
+            dissipation: dissipation?,
+            speed: speed?,
+        })
     }
 
-    /// Adds what acts at a point: energy of the overlap, what takes energy from its rate, and friction.
+    /// Adds the effects of a contact point: potential energy of the penetration, dissipation and friction.
     pub(super) fn add_soft_point(
         &mut self,
-        point: &Point<'g>,
-        laws: Laws<'g>,
-        soft: &Soft<'g>,
-        exerted: &mut Exerted<'g>,
+        point: &CandidatePoint<'g>,
+        coefficients: ContactCoefficients<'g>,
+        soft: &CompliantContact<'g>,
+        exerted: &mut ContactLoads<'g>,
     ) {
         let g = self.scope.graph;
         let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
-        let root = if soft.hertz { (overlap + g.num(NONE)).sqrt() } else { g.num(1.0) };
+        let root = if soft.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = soft.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
         self.model.potentials.push(energy);
@@ -74,12 +83,12 @@ impl<'g> Builder<'_, 'g> {
             self.model.loads.push(Load { rate, force: damping, dissipative: true });
         }
         exerted.forces.push((point.ancestor, normal * pressure));
-        for (about, most) in [(0..1, laws.torsional), (1..3, laws.rolling)] {
-            let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.turns[k])).collect();
+        for (about, most) in [(0..1, coefficients.torsional), (1..3, coefficients.rolling)] {
+            let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.angular_rates[k])).collect();
             let moments = self.add_moment(&turns, most, pressure, soft.speed);
             exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
         }
-        let friction = laws.friction;
+        let friction = coefficients.friction;
         if friction.is_zero() {
             return;
         }
@@ -94,25 +103,26 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds moments of friction against the angular velocities `turns` about directions: at most `most` by
-    /// the normal force, and less where `most` times the angular velocity is below the speed at which
-    /// friction falls off. Returns them.
+    /// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment
+    /// is `coefficient` times the normal force. The moment is smaller if `coefficient` times the angular
+    /// velocity is below the regularisation speed.
     fn add_moment(
         &mut self,
-        turns: &[(Vec3<'g>, Expr<'g>)],
-        most: Expr<'g>,
+        rotations: &[(Vec3<'g>, Expr<'g>)],
+        coefficient: Expr<'g>,
         pressure: Expr<'g>,
         speed: Expr<'g>,
     ) -> Vec<Vec3<'g>> {
-        if most.is_zero() {
+        if coefficient.is_zero() {
             return Vec::new();
         }
-        let square = turns.iter().fold(speed.square(), |sum, (_, turn)| sum + (most * *turn).square());
-        let size = square.sqrt();
+        let square =
+            rotations.iter().fold(speed.square(), |sum, (_, rate)| sum + (coefficient * *rate).square());
+        let magnitude = square.sqrt();
         let mut moments = Vec::new();
-        for (direction, turn) in turns.iter().filter(|(_, turn)| !velocity_gradient(*turn).is_empty()) {
-            let force = -(most * pressure * (most * *turn) / size);
-            self.model.loads.push(Load { rate: *turn, force, dissipative: true });
+        for (direction, rate) in rotations.iter().filter(|(_, rate)| !velocity_gradient(*rate).is_empty()) {
+            let force = -(coefficient * pressure * (coefficient * *rate) / magnitude);
+            self.model.loads.push(Load { rate: *rate, force, dissipative: true });
             moments.push(*direction * force);
         }
         moments

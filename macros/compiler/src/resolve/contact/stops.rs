@@ -1,6 +1,6 @@
-//! Stops: coordinates and expressions at the bounds of limits.
+//! Stops: contacts of coordinates and expressions at the bounds of limits.
 
-use super::unilateral::{Laws, apart};
+use super::unilateral::{ContactCoefficients, split_restitution};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
@@ -12,30 +12,38 @@ use crate::syntax;
 impl<'g> Builder<'_, 'g> {
     /// Adds the stops at the bounds of a limit.
     pub(super) fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let (value, of_impulses) = apart(limit.restitution.as_ref());
+        let (value, of_impulses) = split_restitution(limit.restitution.as_ref());
         let restitution = self.coefficient(value, "restitution", Rule::Fraction, &limit.name.text, cx);
-        let (Some(restitution), Some((own, rate, turns))) = (restitution, self.stopped(limit, cx)) else {
+        let (Some(restitution), Some((limited, rate, turns))) = (restitution, self.stop_value(limit, cx))
+        else {
             return;
         };
         let g = self.scope.graph;
-        let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
-            // Mistakes are told where the limit is read.
+        let bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
+            // Errors are reported by the pass that reads the limit.
             true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
             false => self.scope.scalar(e, &mut Diagnostics::unread()),
         };
         let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
-        let bounds = bounds.map(|(word, e, side)| Some((word, value(e.as_ref()?)?, side)));
+        let bounds = bounds.map(|(word, e, side)| Some((word, bound_value(e.as_ref()?)?, side)));
         for (word, bound, side) in bounds.into_iter().flatten() {
-            let gap = (own - bound) * g.num(side);
+            let gap = (limited - bound) * g.num(side);
             let name = format!("{}.{word}", limit.name.text);
             let (friction, torsional, rolling) = (g.zero(), g.zero(), g.zero());
-            let laws = Laws { friction, stiction: friction, torsional, rolling, restitution, of_impulses };
-            self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], laws);
+            let coefficients = ContactCoefficients {
+                friction,
+                stiction: friction,
+                torsional,
+                rolling,
+                restitution,
+                of_impulses,
+            };
+            self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], coefficients);
         }
     }
 
-    /// What a limit stops: its value, its rate, and whether it is an angle.
-    fn stopped(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
+    /// Returns the limited value, its rate, and whether it is an angle.
+    fn stop_value(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
         let g = self.scope.graph;
         if !self.scope.is_moving(&limit.on) {
             let (c, angle) = self.coordinate(&limit.on, cx)?;

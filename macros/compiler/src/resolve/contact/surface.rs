@@ -1,4 +1,4 @@
-//! Surfaces of bodies, as contacts name them: `body.form(arguments)`.
+//! Surfaces of bodies in contacts, written as `body.form(arguments)`.
 
 use super::terrain::Terrain;
 use crate::diag::{Diagnostics, all_of};
@@ -10,87 +10,87 @@ use crate::resolve::scope::{Allowed, Context, Placed};
 use crate::syntax::{self, ExprKind, GROUND};
 use std::f64::consts::FRAC_PI_2;
 
-/// A surface of a body; vectors and lengths in body axes.
+/// Form of a surface; vectors and lengths in body axes.
 #[derive(Clone)]
-pub enum Form<'g> {
-    /// The rim of a disk: radius, axis.
+pub enum SurfaceForm<'g> {
+    /// Rim of a disk: radius, axis.
     Circle(Expr<'g>, Vec3<'g>),
-    /// A tyre: radius of its centre line, radius of its section, axis.
+    /// Tyre: radius of its centre line, radius of its section, axis.
     Torus(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// Radius.
+    /// Sphere: radius.
     Sphere(Expr<'g>),
-    /// Semi-axes along the body's axes.
+    /// Ellipsoid: semi-axes along the body's axes.
     Ellipsoid([Expr<'g>; 3]),
-    /// Normal, towards what rolls on it.
+    /// Plane: normal, towards the body that rolls on it.
     Plane(Vec3<'g>),
-    /// The inside of a sphere: radius.
+    /// Inside of a sphere: radius.
     Bowl(Expr<'g>),
-    /// The outside of a cylinder: radius, axis.
+    /// Outside of a cylinder of infinite length: radius, axis.
     Cylinder(Expr<'g>, Vec3<'g>),
-    /// A cylinder with two ends: radius, length, axis.
+    /// Cylinder with two ends: radius, length, axis.
     Drum(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// The inside of a cylinder: radius, axis.
+    /// Inside of a cylinder: radius, axis.
     Tube(Expr<'g>, Vec3<'g>),
-    /// The outside of a cone: half angle, axis from the apex into the cone.
+    /// Outside of a cone: half angle, axis from the apex into the cone.
     Cone(Expr<'g>, Vec3<'g>),
-    /// The inside of a cone: half angle, axis from the apex to the opening.
+    /// Inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
-    /// A surface given by its points.
+    /// Surface given by its points.
     Sheet(Sheet<'g>),
-    /// A height over x and y.
+    /// Height as a function of x and y.
     Terrain(Box<Terrain<'g>>),
-    /// A point, which can only be in contact.
+    /// Point; only in unilateral contacts.
     Point,
-    /// A box: its lengths along the body's axes.
+    /// Box: its lengths along the body's axes.
     Cuboid([Expr<'g>; 3]),
-    /// A cylinder between two halves of a sphere: radius, distance of their centres, axis.
+    /// Cylinder between two hemispheres: radius, distance of their centres, axis.
     Capsule(Expr<'g>, Expr<'g>, Vec3<'g>),
 }
 
-/// Points of a surface as expressions of two coordinates, in body axes from its place.
+/// Surface given by its points as expressions of two coordinates, in body axes relative to its position.
 #[derive(Clone)]
 pub struct Sheet<'g> {
-    /// The point.
-    pub at: Vec3<'g>,
-    /// Its derivatives; their cross product points to what rolls.
+    /// Point of the surface.
+    pub point: Vec3<'g>,
+    /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
     pub tangents: [Vec3<'g>; 2],
 }
 
-/// A surface where it is.
+/// A surface with its pose.
 #[derive(Clone)]
 pub struct Surface<'g> {
-    /// Its centre, apex or a point of it.
+    /// Frame at the centre, at the apex or at a point of the surface.
     pub frame: Placed<'g>,
-    /// Its form.
-    pub form: Form<'g>,
+    /// Form of the surface.
+    pub form: SurfaceForm<'g>,
 }
 
-impl Form<'_> {
-    /// Returns the row of the surface; `None` for a point.
+impl SurfaceForm<'_> {
+    /// Returns the row of the surface in the table of the language; `None` for a point.
     pub fn id(&self) -> Option<SurfaceId> {
         match self {
-            Form::Circle(..) => Some(SurfaceId::Circle),
-            Form::Torus(..) => Some(SurfaceId::Torus),
-            Form::Sphere(_) => Some(SurfaceId::Sphere),
-            Form::Ellipsoid(_) => Some(SurfaceId::Ellipsoid),
-            Form::Plane(_) => Some(SurfaceId::Plane),
-            Form::Bowl(_) => Some(SurfaceId::Bowl),
-            Form::Cylinder(..) => Some(SurfaceId::Cylinder),
-            Form::Drum(..) => Some(SurfaceId::Drum),
-            Form::Tube(..) => Some(SurfaceId::Tube),
-            Form::Cone(..) => Some(SurfaceId::Cone),
-            Form::Funnel(..) => Some(SurfaceId::Funnel),
-            Form::Sheet(_) => Some(SurfaceId::Sheet),
-            Form::Terrain(_) => Some(SurfaceId::Terrain),
-            Form::Cuboid(_) => Some(SurfaceId::Cuboid),
-            Form::Capsule(..) => Some(SurfaceId::Capsule),
-            Form::Point => None,
+            SurfaceForm::Circle(..) => Some(SurfaceId::Circle),
+            SurfaceForm::Torus(..) => Some(SurfaceId::Torus),
+            SurfaceForm::Sphere(_) => Some(SurfaceId::Sphere),
+            SurfaceForm::Ellipsoid(_) => Some(SurfaceId::Ellipsoid),
+            SurfaceForm::Plane(_) => Some(SurfaceId::Plane),
+            SurfaceForm::Bowl(_) => Some(SurfaceId::Bowl),
+            SurfaceForm::Cylinder(..) => Some(SurfaceId::Cylinder),
+            SurfaceForm::Drum(..) => Some(SurfaceId::Drum),
+            SurfaceForm::Tube(..) => Some(SurfaceId::Tube),
+            SurfaceForm::Cone(..) => Some(SurfaceId::Cone),
+            SurfaceForm::Funnel(..) => Some(SurfaceId::Funnel),
+            SurfaceForm::Sheet(_) => Some(SurfaceId::Sheet),
+            SurfaceForm::Terrain(_) => Some(SurfaceId::Terrain),
+            SurfaceForm::Cuboid(_) => Some(SurfaceId::Cuboid),
+            SurfaceForm::Capsule(..) => Some(SurfaceId::Capsule),
+            SurfaceForm::Point => None,
         }
     }
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// `body.form(arguments)`; `example` is how a pair is written.
+    /// Parses `body.form(arguments)`; `example` is the syntax of a pair, for errors.
     pub fn surface(&self, e: &syntax::Expr, example: &str, cx: &mut Diagnostics) -> Option<Surface<'g>> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
             let error = cx.error(e.place.clone(), "expected a surface");
@@ -124,12 +124,12 @@ impl<'g> Builder<'_, 'g> {
         match (id, arguments.as_slice()) {
             (SurfaceId::Sheet, [u, w, point]) => {
                 let frame = frame?;
-                let form = Form::Sheet(self.sheet(&frame, [u, w, point], cx)?);
+                let form = SurfaceForm::Sheet(self.sheet(&frame, [u, w, point], cx)?);
                 return Some(Surface { frame, form });
             }
             (SurfaceId::Terrain, [height]) => {
                 let terrain = self.terrain(height, cx);
-                return Some(Surface { frame: frame?, form: Form::Terrain(Box::new(terrain?)) });
+                return Some(Surface { frame: frame?, form: SurfaceForm::Terrain(Box::new(terrain?)) });
             }
             _ => {}
         }
@@ -146,8 +146,8 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             }
             let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
-            let figure = || format!("the {} of a {}", name.replace('_', " "), row.name);
-            self.scope.require(rule, figure, &[value]);
+            let quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
+            self.scope.require(rule, quantity, &[value]);
             numbers.push(value);
         }
         Some(Surface {
@@ -158,28 +158,28 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Returns the form of a surface with the values of its lengths and angles, and its direction.
-fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<Form<'g>> {
+fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceForm<'g>> {
     let number = |k: usize| numbers.get(k).copied();
     Some(match id {
-        SurfaceId::Circle => Form::Circle(number(0)?, n),
-        SurfaceId::Torus => Form::Torus(number(0)?, number(1)?, n),
-        SurfaceId::Sphere => Form::Sphere(number(0)?),
-        SurfaceId::Ellipsoid => Form::Ellipsoid([number(0)?, number(1)?, number(2)?]),
-        SurfaceId::Plane => Form::Plane(n),
-        SurfaceId::Bowl => Form::Bowl(number(0)?),
-        SurfaceId::Cylinder => Form::Cylinder(number(0)?, n),
-        SurfaceId::Drum => Form::Drum(number(0)?, number(1)?, n),
-        SurfaceId::Tube => Form::Tube(number(0)?, n),
-        SurfaceId::Cone => Form::Cone(number(0)?, n),
-        SurfaceId::Funnel => Form::Funnel(number(0)?, n),
-        SurfaceId::Cuboid => Form::Cuboid([number(0)?, number(1)?, number(2)?]),
-        SurfaceId::Capsule => Form::Capsule(number(0)?, number(1)?, n),
-        // These have other arguments than numbers and a direction.
+        SurfaceId::Circle => SurfaceForm::Circle(number(0)?, n),
+        SurfaceId::Torus => SurfaceForm::Torus(number(0)?, number(1)?, n),
+        SurfaceId::Sphere => SurfaceForm::Sphere(number(0)?),
+        SurfaceId::Ellipsoid => SurfaceForm::Ellipsoid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Plane => SurfaceForm::Plane(n),
+        SurfaceId::Bowl => SurfaceForm::Bowl(number(0)?),
+        SurfaceId::Cylinder => SurfaceForm::Cylinder(number(0)?, n),
+        SurfaceId::Drum => SurfaceForm::Drum(number(0)?, number(1)?, n),
+        SurfaceId::Tube => SurfaceForm::Tube(number(0)?, n),
+        SurfaceId::Cone => SurfaceForm::Cone(number(0)?, n),
+        SurfaceId::Funnel => SurfaceForm::Funnel(number(0)?, n),
+        SurfaceId::Cuboid => SurfaceForm::Cuboid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Capsule => SurfaceForm::Capsule(number(0)?, number(1)?, n),
+        // The arguments of these surfaces are not numbers and a direction.
         SurfaceId::Sheet | SurfaceId::Terrain => return None,
     })
 }
 
-/// Reports a length that is not positive, and a half angle that is not between zero and a right one.
+/// Reports a length that is not positive, and a half angle that is not between 0 and π/2. Returns false then.
 fn check_size(is_angle: bool, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(n) = value.value() else { return true };
     if is_angle {

@@ -1,9 +1,9 @@
-//! Contacts that open and close: surfaces of bodies, and coordinates at their bounds.
+//! Unilateral contacts: surfaces of bodies that separate and collide, and coordinates at their bounds.
 
-use super::force::check_turns;
-use super::surface::{Form, Surface};
+use super::force::check_relative_rotation;
+use super::surface::{Surface, SurfaceForm};
 use super::terrain::Terrain;
-use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
+use super::{PointContact, SurfacePair, perpendicular, sphere_contact, support_point};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
@@ -11,61 +11,61 @@ use crate::language::{Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
-use crate::resolve::power::{Counts, is_asked};
-use crate::resolve::scope::{Allowed, Context, Exerted, Terms};
+use crate::resolve::power::{ForceCounts, is_power_used};
+use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
 use crate::syntax::contact::collision;
 use crate::syntax::{self, ExprKind, GROUND};
 
-/// Most points of all contacts of a mechanism: what is generated grows as their number.
+/// Maximum number of contact points of a mechanism: the generated code grows with their number.
 const MAX_CONTACT_POINTS: usize = 128;
 
-/// Square of the sine of an angle between lines that are parallel.
+/// Squared sine of the angle below which lines are treated as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
-const FLAT: f64 = 1e-24;
+/// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
+const FLAT_RIM: f64 = 1e-24;
 
-const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
+const SUPPORTED_PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
-/// What stands for a cylinder.
-const STAND_IN: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
+/// Help for unsupported contacts of cylinders.
+const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
 
-/// Coefficients of a contact.
+/// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy)]
-pub(super) struct Laws<'g> {
+pub(super) struct ContactCoefficients<'g> {
     pub(super) friction: Expr<'g>,
-    /// Coefficient of friction at rest.
+    /// Coefficient of static friction.
     pub(super) stiction: Expr<'g>,
-    /// Largest moment about the normal by the normal force.
+    /// Maximum friction moment about the normal per unit normal force, m.
     pub(super) torsional: Expr<'g>,
-    /// Largest moment about the tangents by the normal force.
+    /// Maximum friction moment about the tangents per unit normal force, m.
     pub(super) rolling: Expr<'g>,
     pub(super) restitution: Expr<'g>,
-    /// Restitution is a ratio of impulses.
+    /// Whether restitution is a ratio of impulses (Poisson) instead of velocities (Newton).
     pub(super) of_impulses: bool,
 }
 
 /// A point where two surfaces may touch.
-pub(super) struct Point<'g> {
-    /// Distance.
+pub(super) struct CandidatePoint<'g> {
+    /// Signed distance, m.
     pub(super) gap: Expr<'g>,
-    /// Normal and tangents, towards the first surface, each with the rate along it.
+    /// Normal and two tangents, towards the first surface, each with the velocity along it.
     pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
-    /// Relative angular velocity about each.
-    pub(super) turns: [Expr<'g>; 3],
-    /// The link in whose axes the directions are.
+    /// Relative angular velocity about the normal and each tangent.
+    pub(super) angular_rates: [Expr<'g>; 3],
+    /// Link in whose axes the directions are expressed.
     pub(super) ancestor: Option<LinkId>,
-    /// Where it is.
+    /// Position of the point.
     pub(super) place: Terms<'g>,
 }
 
-/// The value of a coefficient of restitution, and whether it is a ratio of impulses.
-pub(super) fn apart(restitution: Option<&syntax::Restitution>) -> (Option<&syntax::Expr>, bool) {
+/// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses.
+pub(super) fn split_restitution(restitution: Option<&syntax::Restitution>) -> (Option<&syntax::Expr>, bool) {
     restitution.map_or((None, false), |e| (Some(&e.value), e.of_impulses))
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all contacts to the model: declared ones in their order, then the stops of limits.
+    /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
     pub fn add_contacts(&mut self, _: Moving, cx: &mut Diagnostics) {
         let description = self.description;
         for contact in &description.contacts {
@@ -83,134 +83,157 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_contact(&mut self, contact: &syntax::Contact, cx: &mut Diagnostics) {
-        let laws = self.laws(contact, cx);
-        let firsts = self.touching(&contact.first, cx);
-        // Two bodies in the place of two surfaces are one mistake.
+        let coefficients = self.read_coefficients(contact, cx);
+        let firsts = self.contact_surfaces(&contact.first, cx);
+        // Two bodies written instead of two surfaces are one error.
         let seconds = match firsts {
             None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
-            _ => self.touching(&contact.second, cx),
+            _ => self.contact_surfaces(&contact.second, cx),
         };
-        let soft = contact.soft.as_ref().map(|soft| self.softness(soft, cx));
-        let (Some(firsts), Some(seconds), Some(laws)) = (firsts, seconds, laws) else { return };
+        let soft = contact.soft.as_ref().map(|soft| self.read_compliance(soft, cx));
+        let (Some(firsts), Some(seconds), Some(coefficients)) = (firsts, seconds, coefficients) else {
+            return;
+        };
         if let Some(None) = soft {
             return;
         }
         let place = contact.first.place.to(&contact.second.place);
         let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
-        let mut points: Vec<Point<'g>> = Vec::new();
+        let mut points: Vec<CandidatePoint<'g>> = Vec::new();
         for first in &firsts {
             for second in &seconds {
-                // Of a whole file, what moves.
+                // A contact of all links of a file omits surfaces of the same link.
                 if whole && first.frame.link == second.frame.link {
                     continue;
                 }
-                let Some(found) = self.points_of(first, second, (&contact.second, &place), cx) else {
+                let Some(found) = self.candidate_points(first, second, (&contact.second, &place), cx) else {
                     return;
                 };
                 points.extend(found);
             }
         }
-        let apart: Vec<&Point<'g>> =
+        let separable: Vec<&CandidatePoint<'g>> =
             points.iter().filter(|point| !velocity_gradient(point.rates[0].1).is_empty()).collect();
-        if contact.of_file && apart.is_empty() {
+        if contact.of_file && separable.is_empty() {
             return;
         }
-        if apart.is_empty() || (apart.len() < points.len() && !whole && !contact.of_file) {
+        if separable.is_empty() || (separable.len() < points.len() && !whole && !contact.of_file) {
             cx.error(place, "nothing moves these surfaces apart, or together")
                 .help("surfaces touch that belong to bodies which move relative to each other");
             return;
         }
-        check_turns(contact, &apart, cx);
-        let (several, mut exerted, before) = (apart.len() > 1, Exerted::default(), Counts::of(&self.model));
-        for (k, point) in apart.into_iter().enumerate() {
+        check_relative_rotation(contact, &separable, cx);
+        let (several, mut exerted, before) =
+            (separable.len() > 1, ContactLoads::default(), ForceCounts::of_model(&self.model));
+        for (k, point) in separable.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
             match soft.as_ref().and_then(Option::as_ref) {
-                Some(soft) => self.add_soft_point(point, laws, soft, &mut exerted),
-                None => self.add_point(name, point, laws, &mut exerted),
+                Some(soft) => self.add_soft_point(point, coefficients, soft, &mut exerted),
+                None => self.add_point(name, point, coefficients, &mut exerted),
             }
         }
-        if is_asked(self.description, &contact.name) {
+        if is_power_used(self.description, &contact.name) {
             let power = match (&soft, exerted.power) {
                 (None, Some(power)) => Ok(power),
                 _ => self.power_since(&before, &contact.name.text),
             };
             self.scope.kinematics.borrow_mut().powers.insert(contact.name.text.clone(), power);
         }
-        self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), exerted);
+        self.scope.kinematics.borrow_mut().contact_loads.insert(contact.name.text.clone(), exerted);
     }
 
-    /// Where two surfaces touch; `None` after a mistake.
-    fn points_of(
+    /// Returns the points where two surfaces may touch; `None` after an error.
+    fn candidate_points(
         &self,
         first: &Surface<'g>,
         second: &Surface<'g>,
         (second_place, place): (&syntax::Expr, &Place),
         cx: &mut Diagnostics,
-    ) -> Option<Vec<Point<'g>>> {
+    ) -> Option<Vec<CandidatePoint<'g>>> {
         let first_link = first.frame.link;
-        let mut pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
-        // The same as by the velocities of links, in fewer terms to differentiate.
+        let mut pair = self.ordered_pair(
+            first.clone(),
+            second.clone(),
+            SurfaceForm::has_contact_with,
+            second_place,
+            cx,
+        )?;
+        // Equals the velocity from the twists of links, with fewer terms to differentiate.
         let [x, y, z] = motion_rates(self.model.space(), &pair.center.value.0, false)[..] else {
             return None;
         };
         pair.center.rate = Vec3([x, y, z]);
-        let touches = self.touches(&pair);
-        if touches.is_empty() {
-            let is_cylinder =
-                |surface: &Surface<'g>| matches!(surface.form, Form::Cylinder(..) | Form::Drum(..));
+        let candidate_contacts = self.candidate_contacts(&pair);
+        if candidate_contacts.is_empty() {
+            let is_cylinder = |surface: &Surface<'g>| {
+                matches!(surface.form, SurfaceForm::Cylinder(..) | SurfaceForm::Drum(..))
+            };
             let help = match is_cylinder(first) || is_cylinder(second) {
-                true => format!("{STAND_IN}; {PAIRS}"),
-                false => PAIRS.to_string(),
+                true => format!("{CYLINDER_HELP}; {SUPPORTED_PAIRS}"),
+                false => SUPPORTED_PAIRS.to_string(),
             };
             cx.error(place.clone(), "where these surfaces touch is not known").help(help);
             return None;
         }
         let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
-        let [w_a, w_b] = self.spins(&pair);
-        let points = touches.into_iter().map(|touch| {
+        let [w_a, w_b] = self.angular_velocities(&pair);
+        let points = candidate_contacts.into_iter().map(|touch| {
             let slip = self.slip(&pair, touch.point);
             let rates = touch.axes.map(|(_, e)| (e * side, e.dot(slip)));
-            let turns = touch.axes.map(|(_, e)| e.dot(w_a - w_b));
-            let place = self.place_of_touch(&pair, touch.point);
-            Point { gap: touch.gap, rates, turns, ancestor: pair.on_a.ancestor, place }
+            let angular_rates = touch.axes.map(|(_, e)| e.dot(w_a - w_b));
+            let place = self.contact_position(&pair, touch.point);
+            CandidatePoint { gap: touch.gap, rates, angular_rates, ancestor: pair.on_a.ancestor, place }
         });
         Some(points.collect())
     }
 
-    /// Adds a point of contact to the model, and its forces on the first surface.
-    fn add_point(&mut self, name: String, point: &Point<'g>, laws: Laws<'g>, exerted: &mut Exerted<'g>) {
+    /// Adds a contact point to the model, and its forces on the first surface to `exerted`.
+    fn add_point(
+        &mut self,
+        name: String,
+        point: &CandidatePoint<'g>,
+        coefficients: ContactCoefficients<'g>,
+        exerted: &mut ContactLoads<'g>,
+    ) {
         let [normal, slip @ ..] = point.rates;
         let slides = slip
             .into_iter()
-            .filter(|(_, rate)| !laws.friction.is_zero() && !velocity_gradient(*rate).is_empty());
+            .filter(|(_, rate)| !coefficients.friction.is_zero() && !velocity_gradient(*rate).is_empty());
         let rates: Vec<(Vec3<'g>, Expr<'g>)> = std::iter::once(normal).chain(slides).collect();
         let number = self.model.contact_rates().len();
         for (k, (direction, rate)) in rates.iter().enumerate() {
             let force = Quantity::ContactForce(number + k).expr(self.scope.graph);
             exerted.forces.push((point.ancestor, *direction * force));
-            exerted.deliver(force * *rate);
+            exerted.add_power(force * *rate);
         }
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
         let presses = self.model.contacts.len();
-        self.touching.insert(name.clone(), point.place.clone());
-        self.push_contact(name.clone(), (point.gap, false), None, rates, laws);
+        self.contact_points.insert(name.clone(), point.place.clone());
+        self.push_contact(name.clone(), (point.gap, false), None, rates, coefficients);
         let none = self.scope.graph.zero();
-        for (word, about, most) in [("spin", 0..1, laws.torsional), ("roll", 1..3, laws.rolling)] {
-            let turns = about.map(|k| (point.rates[k].0, point.turns[k]));
+        for (word, about, coefficient) in
+            [("spin", 0..1, coefficients.torsional), ("roll", 1..3, coefficients.rolling)]
+        {
+            let turns = about.map(|k| (point.rates[k].0, point.angular_rates[k]));
             let turns: Vec<_> = turns.filter(|(_, rate)| !velocity_gradient(*rate).is_empty()).collect();
-            if !most.is_zero() && !turns.is_empty() {
+            if !coefficient.is_zero() && !turns.is_empty() {
                 let number = self.model.contact_rates().len();
                 for (k, (direction, rate)) in turns.iter().enumerate() {
                     let moment = Quantity::ContactForce(number + k).expr(self.scope.graph);
                     exerted.moments.push((point.ancestor, *direction * moment));
-                    exerted.deliver(moment * *rate);
+                    exerted.add_power(moment * *rate);
                 }
                 let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let name = format!("{name}.{word}");
-                let laws =
-                    Laws { friction: most, stiction: most, restitution: none, of_impulses: false, ..laws };
-                self.push_contact(name, (point.gap, false), Some(presses), rates, laws);
+                let coefficients = ContactCoefficients {
+                    friction: coefficient,
+                    stiction: coefficient,
+                    restitution: none,
+                    of_impulses: false,
+                    ..coefficients
+                };
+                self.push_contact(name, (point.gap, false), Some(presses), rates, coefficients);
             }
         }
     }
@@ -221,15 +244,19 @@ impl<'g> Builder<'_, 'g> {
         (gap, turns): (Expr<'g>, bool),
         pressed_by: Option<usize>,
         rates: Vec<Expr<'g>>,
-        Laws { friction, stiction, restitution, of_impulses, .. }: Laws<'g>,
+        ContactCoefficients { friction, stiction, restitution, of_impulses, .. }: ContactCoefficients<'g>,
     ) {
         let contact =
             Contact { name, gap, turns, pressed_by, rates, friction, stiction, restitution, of_impulses };
         self.model.contacts.push(contact);
     }
 
-    /// The coefficients of a contact; `None` after a mistake.
-    fn laws(&self, contact: &syntax::Contact, cx: &mut Diagnostics) -> Option<Laws<'g>> {
+    /// Reads the coefficients of a contact; `None` after an error.
+    fn read_coefficients(
+        &self,
+        contact: &syntax::Contact,
+        cx: &mut Diagnostics,
+    ) -> Option<ContactCoefficients<'g>> {
         let name = &contact.name.text;
         let mut read =
             |e: &Option<syntax::Expr>, what, rule| self.coefficient(e.as_ref(), what, rule, name, cx);
@@ -240,27 +267,27 @@ impl<'g> Builder<'_, 'g> {
         };
         let torsional = read(&contact.torsional, "torsional friction", Rule::NotNegative);
         let rolling = read(&contact.rolling, "rolling friction", Rule::NotNegative);
-        let (value, of_impulses) = apart(contact.restitution.as_ref());
+        let (value, of_impulses) = split_restitution(contact.restitution.as_ref());
         let restitution = self.coefficient(value, "restitution", Rule::Fraction, name, cx);
         let (friction, stiction) = (friction?, stiction?);
         if let Some(e) = contact.stiction.as_ref().filter(|_| contact.friction.is_some()) {
             match (friction.value(), stiction.value()) {
-                (Some(kinetic), Some(most)) if most < kinetic || kinetic == 0.0 => {
+                (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
                         true => format!("`{name}` has stiction, but no friction while it slides"),
-                        false => format!("stiction, {most}, is less than friction, {kinetic}"),
+                        false => format!("stiction, {static_value}, is less than friction, {kinetic}"),
                     };
                     cx.error(e.place.clone(), message)
                         .help("`friction` is the coefficient while surfaces slide, `stiction` the larger one at rest");
                     return None;
                 }
                 _ => {
-                    let figure = || format!("the friction of `{name}` and its stiction");
-                    self.scope.require(Rule::Order, figure, &[friction, stiction]);
+                    let quantity = || format!("the friction of `{name}` and its stiction");
+                    self.scope.require(Rule::Order, quantity, &[friction, stiction]);
                 }
             }
         }
-        Some(Laws {
+        Some(ContactCoefficients {
             friction,
             stiction,
             torsional: torsional?,
@@ -270,7 +297,7 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// A coefficient, zero if it is not given; `None` after a mistake.
+    /// Reads a coefficient, zero if it is absent; `None` after an error.
     pub(super) fn coefficient(
         &self,
         e: Option<&syntax::Expr>,
@@ -281,11 +308,11 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Expr<'g>> {
         let Some(e) = e else { return Some(self.scope.graph.zero()) };
         let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
-        let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
-        if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
-            let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
+        let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
+        if let Some(n) = value.value().filter(|n| !(0.0..=maximum).contains(n)) {
+            let range = if maximum < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
             cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
-                match most < 2.0 {
+                match maximum < 2.0 {
                     true => "the part of the speed that is left after the impact: 0 stays, 1 loses no energy",
                     false => "it opposes the motion by itself: write its size",
                 },
@@ -296,8 +323,13 @@ impl<'g> Builder<'_, 'g> {
         Some(value)
     }
 
-    /// Surfaces of one side of a contact: one that rolls, a point, or the collision geometry of a file.
-    pub(super) fn touching(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Surface<'g>>> {
+    /// Returns the surfaces of one side of a contact: a surface, a point, or the collision geometry of a
+    /// file.
+    pub(super) fn contact_surfaces(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Surface<'g>>> {
         if let Some(link) = collision(e) {
             return self.collisions(e, link, cx);
         }
@@ -307,29 +339,29 @@ impl<'g> Builder<'_, 'g> {
             _ => false,
         };
         if is_place {
-            return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: Form::Point }]);
+            return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: SurfaceForm::Point }]);
         }
         Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
 
-    /// Where a pair touches, at one point or several.
-    fn touches(&self, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+    /// Returns the points where a pair may touch.
+    fn candidate_contacts(&self, pair: &SurfacePair<'g>) -> Vec<PointContact<'g>> {
         let g = self.scope.graph;
-        let turned_a = |v| self.of_first(pair, v).value;
-        let turned_b = |v| self.of_second(pair, v).value;
+        let rotate_a = |v| self.first_direction(pair, v).value;
+        let rotate_b = |v| self.second_direction(pair, v).value;
         let c = pair.center.value - pair.base.value;
-        if let Form::Terrain(terrain) = &pair.b.form {
-            return self.grounded(pair, terrain, c, &turned_b);
+        if let SurfaceForm::Terrain(terrain) = &pair.b.form {
+            return self.terrain_contacts(pair, terrain, c, &rotate_b);
         }
-        if let Form::Cuboid(lengths) = &pair.b.form {
-            return self.on_box(pair, lengths, c);
+        if let SurfaceForm::Cuboid(lengths) = &pair.b.form {
+            return self.box_contacts(pair, lengths, c);
         }
-        let Form::Plane(n) = &pair.b.form else {
-            return self.round(pair, c, &turned_b).into_iter().collect();
+        let SurfaceForm::Plane(n) = &pair.b.form else {
+            return self.curved_contact(pair, c, &rotate_b).into_iter().collect();
         };
-        let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, turned_b(e)));
-        let normal = turned_b(*n);
-        let touch = |point: Vec3<'g>| Touch {
+        let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+        let normal = rotate_b(*n);
+        let touch = |point: Vec3<'g>| PointContact {
             gap: normal.dot(c + point),
             point,
             axes: [("normal", normal), (first, e1), (second, e2)],
@@ -337,93 +369,96 @@ impl<'g> Builder<'_, 'g> {
         };
         let half = g.num(0.5);
         match &pair.a.form {
-            Form::Point => vec![touch(Vec3::zero(g))],
-            Form::Cuboid(lengths) => corners(lengths).map(|corner| touch(turned_a(corner))).into(),
-            Form::Drum(radius, length, axis) => {
-                let rim = rim(*axis, normal, &turned_a);
-                let ends = [-half, half].map(|side| turned_a(*axis * (*length * side)));
+            SurfaceForm::Point => vec![touch(Vec3::zero(g))],
+            SurfaceForm::Cuboid(lengths) => corners(lengths).map(|corner| touch(rotate_a(corner))).into(),
+            SurfaceForm::Drum(radius, length, axis) => {
+                let rim = rim(*axis, normal, &rotate_a);
+                let ends = [-half, half].map(|side| rotate_a(*axis * (*length * side)));
                 let sides =
                     ends.into_iter().flat_map(|end| rim.map(|direction| touch(end + direction * *radius)));
                 sides.collect()
             }
-            Form::Capsule(radius, length, axis) => {
-                [-half, half].map(|side| touch(turned_a(*axis * (*length * side)) - normal * *radius)).into()
+            SurfaceForm::Capsule(radius, length, axis) => {
+                [-half, half].map(|side| touch(rotate_a(*axis * (*length * side)) - normal * *radius)).into()
             }
-            Form::Cone(..) => Vec::new(),
-            form => farthest(form, normal, FLAT, &turned_a).map(|far| touch(-far)).into_iter().collect(),
+            SurfaceForm::Cone(..) => Vec::new(),
+            form => {
+                support_point(form, normal, FLAT_RIM, &rotate_a).map(|far| touch(-far)).into_iter().collect()
+            }
         }
     }
 
-    /// Where a sphere, a point, the ends of a capsule or the corners of a box touch a terrain.
-    fn grounded(
+    /// Returns the contacts of a sphere, a point, the ends of a capsule or the corners of a box with a
+    /// terrain.
+    fn terrain_contacts(
         &self,
-        pair: &Pair<'g>,
+        pair: &SurfacePair<'g>,
         terrain: &Terrain<'g>,
         c: Vec3<'g>,
-        turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
-    ) -> Vec<Touch<'g>> {
+        rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> Vec<PointContact<'g>> {
         let g = self.scope.graph;
-        let turned_a = |v| self.of_first(pair, v).value;
+        let rotate_a = |v| self.first_direction(pair, v).value;
         let (radius, places) = match &pair.a.form {
-            Form::Point => (g.zero(), vec![Vec3::zero(g)]),
-            Form::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
-            Form::Cuboid(lengths) => (g.zero(), corners(lengths).map(turned_a).into()),
-            Form::Capsule(radius, length, axis) => {
-                (*radius, [-0.5, 0.5].map(|side| turned_a(*axis * (*length * side))).into())
+            SurfaceForm::Point => (g.zero(), vec![Vec3::zero(g)]),
+            SurfaceForm::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
+            SurfaceForm::Cuboid(lengths) => (g.zero(), corners(lengths).map(rotate_a).into()),
+            SurfaceForm::Capsule(radius, length, axis) => {
+                (*radius, [-0.5, 0.5].map(|side| rotate_a(*axis * (*length * side))).into())
             }
             _ => return Vec::new(),
         };
-        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned_b(Vec3::axis(g, k)));
+        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::axis(g, k)));
         let touches = places.into_iter().map(|place| {
-            let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), turned_b);
-            Touch { point: touch.point + place, ..touch }
+            let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), rotate_b);
+            PointContact { point: touch.point + place, ..touch }
         });
         touches.collect()
     }
 
-    /// Where a sphere, a point or a capsule touches what is no plane.
-    fn round(
+    /// Returns the contact of a sphere, a point or a capsule with a curved surface.
+    fn curved_contact(
         &self,
-        pair: &Pair<'g>,
+        pair: &SurfacePair<'g>,
         c: Vec3<'g>,
-        turned_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
-    ) -> Option<Touch<'g>> {
+        rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> Option<PointContact<'g>> {
         let g = self.scope.graph;
         let half = g.num(0.5);
         let (radius, own) = match &pair.a.form {
-            Form::Point => (g.zero(), None),
-            Form::Sphere(radius) => (*radius, None),
-            Form::Capsule(radius, length, axis) => {
-                (*radius, Some((self.of_first(pair, *axis).value, *length * half)))
+            SurfaceForm::Point => (g.zero(), None),
+            SurfaceForm::Sphere(radius) => (*radius, None),
+            SurfaceForm::Capsule(radius, length, axis) => {
+                (*radius, Some((self.first_direction(pair, *axis).value, *length * half)))
             }
             _ => return None,
         };
         match &pair.b.form {
-            Form::Capsule(other, length, axis) => {
-                let (axis, reach) = (turned_b(*axis), *length * half);
-                let sphere = Form::Sphere(*other);
+            SurfaceForm::Capsule(other, length, axis) => {
+                let (axis, reach) = (rotate_b(*axis), *length * half);
+                let sphere = SurfaceForm::Sphere(*other);
                 let Some((own, own_reach)) = own else {
-                    let along = within(axis.dot(c), reach);
-                    return sphere_contact(radius, &sphere, c - axis * along, turned_b);
+                    let along = clamp(axis.dot(c), reach);
+                    return sphere_contact(radius, &sphere, c - axis * along, rotate_b);
                 };
                 let (near, far) = nearest(c, (own, own_reach), (axis, reach));
-                let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, turned_b)?;
-                Some(Touch { point: touch.point + own * near, ..touch })
+                let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, rotate_b)?;
+                Some(PointContact { point: touch.point + own * near, ..touch })
             }
-            Form::Drum(wide, length, axis) => {
-                let axis = turned_b(*axis);
+            SurfaceForm::Drum(wide, length, axis) => {
+                let axis = rotate_b(*axis);
                 let height = axis.dot(c);
                 let outward = c - axis * height;
                 let size = outward.norm().extreme(Extreme::Max, *wide);
-                let inner = axis * within(height, *length * half) + outward * (*wide / size);
-                sphere_contact(radius, &Form::Sphere(g.zero()), c - inner, turned_b)
+                let inner = axis * clamp(height, *length * half) + outward * (*wide / size);
+                sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), c - inner, rotate_b)
             }
-            form => sphere_contact(radius, form, c, turned_b),
+            form => sphere_contact(radius, form, c, rotate_b),
         }
     }
 }
 
-/// The corners of a box.
+/// Returns the corners of a box with these edge lengths, relative to its centre.
 fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     std::array::from_fn(|k| {
         let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
@@ -431,27 +466,29 @@ fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     })
 }
 
-/// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn
-/// further each. Where the rim lies flat, every one is lowest: one of the body's own is chosen.
-fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
-    let [(_, own), _] = perpendicular(axis);
-    let (a, own) = (turned(axis), turned(own));
+/// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
+/// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
+/// the body is then used.
+fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
+    let [(_, fixed), _] = perpendicular(axis);
+    let (a, fixed) = (rotate(axis), rotate(fixed));
     let cosine = a.dot(normal);
-    let down = a * cosine - normal + own * cosine.num(FLAT.sqrt());
+    let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
     let size = down.norm();
     let lowest = down.map(|x| x / size);
-    let beside = a.cross(lowest);
-    [lowest, beside, -lowest, -beside]
+    let quarter = a.cross(lowest);
+    [lowest, quarter, -lowest, -quarter]
 }
 
-/// What is nearest to a number between `-most` and `most`.
-pub(super) fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
-    x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
+/// Clamps `x` to the interval from `-limit` to `limit`.
+pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
+    x.extreme(Extreme::Max, -limit).extreme(Extreme::Min, limit)
 }
 
-/// Where two straight lines of given half lengths are nearest to each other, from their middles along their
-/// axes; `c` leads from the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, §
-/// 5.1.9). Where they are parallel it is one place of many.
+/// Returns the closest points of two line segments, as signed distances from their centres along their unit
+/// axes. Each segment has an axis and half its length; `c` leads from the second centre to the first
+/// (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). For parallel segments, one of the many
+/// solutions is returned.
 pub(super) fn nearest<'g>(
     c: Vec3<'g>,
     (own, own_reach): (Vec3<'g>, Expr<'g>),
@@ -460,14 +497,14 @@ pub(super) fn nearest<'g>(
     let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
     let one = cosine.num(1.0);
     let across = (one - cosine * cosine).extreme(Extreme::Max, cosine.num(PARALLEL));
-    let guess = within((cosine * second - first) / across, own_reach);
-    let far = within(second + cosine * guess, reach);
-    (within(cosine * far - first, own_reach), far)
+    let guess = clamp((cosine * second - first) / across, own_reach);
+    let far = clamp(second + cosine * guess, reach);
+    (clamp(cosine * far - first, own_reach), far)
 }
 
-impl<'g> Form<'g> {
-    /// True for a surface whose contact with another is known.
-    fn touches(&self, b: &Form<'g>) -> bool {
+impl<'g> SurfaceForm<'g> {
+    /// Whether the contact of this surface with another one is supported.
+    fn has_contact_with(&self, b: &SurfaceForm<'g>) -> bool {
         b.id().is_some_and(|id| id.row().contacts.contains(&self.id()))
     }
 }

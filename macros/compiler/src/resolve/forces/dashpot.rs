@@ -1,4 +1,4 @@
-//! Dashpots: linear ones, and those with a force of the speed.
+//! Dashpots: linear, and with a force as an expression of the speed.
 
 use super::ActedOn;
 use crate::diag::Diagnostics;
@@ -10,7 +10,7 @@ use crate::resolve::terms::Stretch;
 use crate::syntax::{Action, Key};
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds a dashpot. A linear one on a coordinate is kept as such.
+    /// Adds a dashpot. A linear dashpot on a coordinate is stored separately in the model.
     pub(super) fn add_dashpot(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
         let damping = action.get(Key::Damping);
         if let (Some(written), Some(on)) = (damping, on.coordinate) {
@@ -20,8 +20,8 @@ impl<'g> Builder<'_, 'g> {
                     .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
             }
             if let Some(damping) = damping {
-                let figure = || format!("the damping of `{}`", action.name.text);
-                self.scope.require(Rule::NotNegative, figure, &[damping]);
+                let quantity = || format!("the damping of `{}`", action.name.text);
+                self.scope.require(Rule::NotNegative, quantity, &[damping]);
                 self.model.dashpots.push(Dashpot { on, damping });
             }
             return;
@@ -38,7 +38,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds a force against a rate, if it is known.
+    /// Adds a force that opposes a rate, if it is present.
     pub fn push_damping(&mut self, rate: Expr<'g>, force: Option<Expr<'g>>) {
         self.model.loads.extend(force.map(|force| Load { rate, force: -force, dissipative: true }));
     }

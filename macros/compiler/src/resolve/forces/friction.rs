@@ -7,7 +7,7 @@ use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
 use crate::syntax::{self, Action, Key};
 
-/// Regularisation speed of friction, unless given.
+/// Default regularisation speed of friction, m/s or rad/s.
 const FRICTION_SPEED: f64 = 0.01;
 
 impl<'g> Builder<'_, 'g> {
@@ -18,8 +18,8 @@ impl<'g> Builder<'_, 'g> {
         self.push_friction(stretch.rate, all.map(|key| action.get(key)), action.on.place(), cx);
     }
 
-    /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous friction:
-    /// `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
+    /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
+    /// friction: `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
     pub fn push_friction(
         &mut self,
         v: Expr<'g>,

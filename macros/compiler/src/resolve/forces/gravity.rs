@@ -18,8 +18,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Central gravity: between two bodies with a gravitational constant, or towards a point with a
-    /// gravitational parameter. It also turns a body with inertia.
+    /// Adds central gravity: between two bodies with a gravitational constant, or towards a point with a
+    /// gravitational parameter. Gravity also exerts a torque on a body with inertia.
     pub(super) fn add_gravity(&mut self, action: &Action, cx: &mut Diagnostics) {
         let (constant, mu) = (action.get(Key::Constant), action.get(Key::Mu));
         let Target::Between(a, b) = &action.on else {
@@ -29,7 +29,7 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let stretch = self.distance(a, b, cx);
-        // What has no place has no mass either, and that was told.
+        // An unresolved position has already been reported.
         let is_placed = stretch.is_some();
         let mut mass_of = |e: &syntax::Expr| if is_placed { self.mass_of(e, cx) } else { None };
         match (constant, mu) {
@@ -38,8 +38,8 @@ impl<'g> Builder<'_, 'g> {
                 let constant = self.scope.scalar(constant, cx);
                 if let (Some(g), [Some(m1), Some(m2)], Some(stretch)) = (constant, masses, stretch) {
                     self.push_attraction(&stretch, g * m1 * m2);
-                    self.turn_by_gravity(a, b, g * m1, cx);
-                    self.turn_by_gravity(b, a, g * m2, cx);
+                    self.add_gravity_torque(a, b, g * m1, cx);
+                    self.add_gravity_torque(b, a, g * m2, cx);
                 }
             }
             (None, Some(mu)) => {
@@ -47,7 +47,7 @@ impl<'g> Builder<'_, 'g> {
                 let mu = self.scope.scalar(mu, cx);
                 if let (Some(mu), Some(m), Some(stretch)) = (mu, mass, stretch) {
                     self.push_attraction(&stretch, mu * m);
-                    self.turn_by_gravity(a, b, mu, cx);
+                    self.add_gravity_torque(a, b, mu, cx);
                 }
             }
             _ => {
@@ -58,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn turn_by_gravity(&mut self, a: &syntax::Expr, b: &syntax::Expr, mu: Expr<'g>, cx: &mut Diagnostics) {
+    fn add_gravity_torque(&mut self, a: &syntax::Expr, b: &syntax::Expr, mu: Expr<'g>, cx: &mut Diagnostics) {
         let ExprKind::Name(name) = &b.kind else { return };
         let Some(index) = self.jointed_index(name).filter(|k| *k < self.description.bodies.len()) else {
             return;
@@ -68,7 +68,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The mass of a body or particle; its centre of mass must be its origin.
+    /// Returns the mass of a body or particle. Its origin must be its centre of mass.
     fn mass_of(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         if let ExprKind::Name(name) = &e.kind {
             if let Some(p) = self.description.particles.iter().find(|p| p.name.text == *name) {
@@ -92,21 +92,21 @@ impl<'g> Builder<'_, 'g> {
         None
     }
 
-    /// Adds an attraction `strength / distance²`: potential energy `−strength / distance`. Not finite where the
-    /// points meet, as it has no limit there.
+    /// Adds an attraction `strength / distance²` with the potential energy `−strength / distance`. The energy
+    /// is infinite if the points coincide; it has no limit there.
     fn push_attraction(&mut self, stretch: &Stretch<'g>, strength: Expr<'g>) {
         let distance = stretch.square.sqrt();
         self.model.potentials.push(-(strength / distance));
     }
 
-    /// Adds gravity towards a point on a body with inertia, to second order in its size over its distance
+    /// Adds the torque of central gravity on a body with inertia, to second order in size over distance
     /// (MacCullagh): `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
     fn add_gravity_gradient(&mut self, body: &Placed<'g>, center: &Placed<'g>, mu: Expr<'g>, index: usize) {
         let Some((_, _, central)) = self.masses.get(index).cloned().flatten() else { return };
         let tensor = body.pose.rotation.sym_to_parent(central);
         let zero = Vec3::zero(self.scope.graph);
         let kinematics = self.scope.kinematics.borrow();
-        let terms = kinematics.between(body, center);
+        let terms = kinematics.position_between(body, center);
         let r = kinematics.resolve(&terms, body.link, zero);
         drop(kinematics);
         let length = r.norm();

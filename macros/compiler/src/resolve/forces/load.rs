@@ -1,4 +1,4 @@
-//! Forces and torques from outside: with a value, or as inputs.
+//! Applied forces and torques: with a value, or as inputs.
 
 use crate::diag::Diagnostics;
 use crate::expr::{Function, Vec3};
@@ -10,7 +10,7 @@ use crate::resolve::target::Target;
 use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds a force or a torque: with a value, or as an input.
+    /// Adds a force or a torque, with a value or as an input.
     pub(super) fn add_acting(&mut self, action: &Action, cx: &mut Diagnostics) {
         let torque = action.kind.row().torque;
         let direction = action.get(if torque { Key::About } else { Key::Along });
@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
             Some(Target::Point(place)) => place,
             Some(Target::Coordinate(c, angle)) => {
                 if let Some(angle) = angle.filter(|angle| *angle != torque) {
-                    wrong_kind(on, angle, cx);
+                    report_wrong_kind(on, angle, cx);
                     return;
                 }
                 let ground = Some((None, Pose::identity(self.scope.graph)));
@@ -63,7 +63,7 @@ impl<'g> Builder<'_, 'g> {
             }
             None => return,
         };
-        if torque && !turns(on, &place, cx) {
+        if torque && !check_torque_target(on, &place, cx) {
             return;
         }
         let Some(link) = place.link else {
@@ -84,8 +84,8 @@ impl<'g> Builder<'_, 'g> {
         self.add_load(rate, force, &value.place, cx);
     }
 
-    /// Adds a force along the line of two points, by a value or as an input. It pushes them apart where it is
-    /// positive.
+    /// Adds a force along the line between two points, with a value or as an input. A positive force
+    /// separates the points.
     fn add_force_between(
         &mut self,
         action: &Action,
@@ -126,7 +126,7 @@ impl<'g> Builder<'_, 'g> {
     ) {
         let Some(target) = target else { return };
         let input = match target {
-            Target::Coordinate(_, Some(angle)) if angle != torque => return wrong_kind(on, angle, cx),
+            Target::Coordinate(_, Some(angle)) if angle != torque => return report_wrong_kind(on, angle, cx),
             Target::Coordinate(c, _) => {
                 if let Some(direction) = direction {
                     cx.error(direction.place.clone(), "the joint itself gives the direction")
@@ -152,14 +152,14 @@ impl<'g> Builder<'_, 'g> {
         self.set_input(&action.name.text, input);
     }
 
-    /// Puts an input at its place in the order of declaration.
+    /// Stores an input at its index in the order of declaration.
     fn set_input(&mut self, name: &str, input: Input<'g>) {
         if let Some((_, slot)) = self.model.inputs.iter_mut().find(|(known, _)| known == name) {
             *slot = input;
         }
     }
 
-    /// An input whose force works on a rate.
+    /// Adds an input as a force on a rate.
     pub fn add_input_load(&mut self, name: &str, rate: crate::expr::Expr<'g>) {
         let input = self.model.inputs.iter().position(|(known, _)| known == name);
         if let Some(k) = input {
@@ -168,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// An input at the point of a body that is somewhere at the moment.
+    /// Adds an input at a point that moves on its body.
     fn add_moving_input(
         &mut self,
         action: &Action,
@@ -206,7 +206,7 @@ impl<'g> Builder<'_, 'g> {
                 .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
             return None;
         };
-        if torque && !turns(on, place, cx) {
+        if torque && !check_torque_target(on, place, cx) {
             return None;
         }
         let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
@@ -232,14 +232,14 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// True for a vector that changes with the configuration or in time.
+/// Whether a vector depends on the configuration or on time.
 fn is_moving(v: Vec3<'_>) -> bool {
     let moves = |s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time);
     symbols_in(&v.0).into_iter().any(moves)
 }
 
-/// Reports a torque on a particle or a point, which has nothing to turn.
-fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+/// Whether a torque can act on an element; reports particles and points, which have no rotation.
+fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedKind::Point {
         cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
@@ -249,7 +249,7 @@ fn turns(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     true
 }
 
-fn wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+fn report_wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
     let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
     cx.error(on.place.clone(), format!("this coordinate is {is}"))
         .help(format!("what acts on it is a {other}"));

@@ -1,4 +1,4 @@
-//! Force elements and inputs: what they act on, and with which parameters.
+//! Force elements and inputs, with their targets and parameters.
 
 mod dashpot;
 mod friction;
@@ -11,7 +11,7 @@ pub use spring::Law;
 
 use super::builder::Builder;
 use super::motion::Moving;
-use super::power::{Counts, is_asked};
+use super::power::{ForceCounts, is_power_used};
 use super::target::Target;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -19,7 +19,7 @@ use crate::mechanism::{Coordinate, Input};
 use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
 
 impl<'g> Builder<'_, 'g> {
-    /// Resolves force elements on coordinates, which need no places.
+    /// Resolves force elements on coordinates, which need no positions.
     pub fn check_actions(&mut self, cx: &mut Diagnostics) {
         for action in &self.description.actions {
             let on_joint = match &action.on {
@@ -38,28 +38,30 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds all force elements and inputs.
     pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
-        // Inputs without an element of their own appear in expressions; the others are filled in by their
+        // Inputs without an element of their own appear in expressions. The others are filled in by their
         // elements.
         for input in &self.description.inputs {
             self.model.inputs.push((input.text.clone(), Input::Named));
         }
         for action in &self.description.actions {
-            let before = Counts::of(&self.model);
+            let before = ForceCounts::of_model(&self.model);
             self.add_action(action, cx);
-            // An element without an effect may be zero by its values; an input has an entry of `u` in any case.
-            let is_lost = Counts::of(&self.model) == before && !self.is_input(&action.name.text);
-            if cx.is_empty() && action.is_input() && is_lost {
-                report_lost(&action.name, cx);
+            // An element without an effect may be zero by its values. An input has an entry of `u` in any
+            // case.
+            let has_no_effect =
+                ForceCounts::of_model(&self.model) == before && !self.is_input(&action.name.text);
+            if cx.is_empty() && action.is_input() && has_no_effect {
+                report_unused_input(&action.name, cx);
             }
-            self.know_applied(&before, &action.name.text);
-            if is_asked(self.description, &action.name) {
+            self.record_applied(&before, &action.name.text);
+            if is_power_used(self.description, &action.name) {
                 let power = self.power_since(&before, &action.name.text);
                 self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
             }
         }
     }
 
-    /// Whether an entry of `u` acts where an element of this name says.
+    /// Whether an input with this name has its own entry of `u` on a coordinate or a body.
     fn is_input(&self, name: &str) -> bool {
         self.model.inputs.iter().any(|(known, input)| known == name && !matches!(input, Input::Named))
     }
@@ -80,7 +82,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns the length or the angle that a force element acts on.
+    /// Returns the length or the angle on which a force element acts.
     fn acted_on(&self, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
         match &action.on {
             On::On(e) => match self.target(e, cx)? {
@@ -105,24 +107,24 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns the value and the rate of the length or the angle that an element acts on.
+    /// Returns the value and the rate of the length or the angle on which an element acts.
     fn stretch_on(&self, on: ActedOn<'g>) -> Option<Stretch<'g>> {
         on.stretch.or_else(|| on.coordinate.map(|c| self.coordinate_stretch(&c)))
     }
 }
 
-/// The length or the angle that a force element acts on.
+/// The length or the angle on which a force element acts.
 pub struct ActedOn<'g> {
     /// Value and rate of the length or the angle; `None` for a coordinate.
     pub stretch: Option<Stretch<'g>>,
-    /// Whether an angle is meant; `None` if a length is possible, too.
+    /// Whether it is an angle; `None` if it may also be a length.
     pub angle: Option<bool>,
-    /// The coordinate, if the element acts on one.
+    /// Coordinate, if the element acts on one.
     pub coordinate: Option<Coordinate>,
 }
 
-/// True for an element that needs places and velocities: it is not on a coordinate or a body as a whole, or
-/// has a law or a value.
+/// Whether an element needs positions and velocities: it acts between points or at a point of a body, or it
+/// has a force law or a value.
 fn needs_motion(action: &Action) -> bool {
     let own = match action.kind {
         ForceKind::Force | ForceKind::Torque => !action.is_input(),
@@ -130,15 +132,15 @@ fn needs_motion(action: &Action) -> bool {
         ForceKind::Dashpot => action.get(Key::Force).is_some(),
         ForceKind::Spring | ForceKind::Inerter | ForceKind::Friction => false,
     };
-    // A point that a vector says may move on its body.
+    // A point given by a vector may move on its body.
     own || match &action.on {
         On::Between(..) => true,
         On::On(e) => matches!(e.kind, ExprKind::Method(..)),
     }
 }
 
-/// Reports an input that is declared and acts nowhere, although no error was reported.
-pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
+/// Reports a declared input without any effect, although no error was reported.
+pub fn report_unused_input(name: &Name, cx: &mut Diagnostics) {
     cx.error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
         .help("please report this with the mechanism");
 }

@@ -1,4 +1,4 @@
-//! Springs: linear ones, and those with a force or an energy of the stretch.
+//! Springs: linear, and with a force or an energy as an expression of the stretch.
 
 use super::ActedOn;
 use crate::diag::Diagnostics;
@@ -14,21 +14,21 @@ use crate::resolve::terms::Stretch;
 use crate::syntax::{self, Action, ExprKind, Key};
 use std::collections::BTreeSet;
 
-/// Highest power of the stretch in a spring's force that is integrated to its energy.
+/// Maximum power of the stretch in a spring's force for which the energy is found by integration.
 const HIGHEST_POWER: usize = 9;
 
-/// The law of a spring.
+/// Force law of a spring.
 pub enum Law<'e> {
     /// Proportional to the stretch, with this stiffness.
     Linear(&'e syntax::Expr),
-    /// This force, an expression of `stretch`.
+    /// Force as an expression of `stretch`.
     Force(&'e syntax::Expr),
-    /// The force that follows from this energy, an expression of `stretch`.
+    /// Energy as an expression of `stretch`; the force is its derivative.
     Energy(&'e syntax::Expr),
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds a spring. A linear one on a coordinate is kept as such.
+    /// Adds a spring. A linear spring on a coordinate is stored separately in the model.
     pub(super) fn add_spring(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
         let law = match action.law() {
             Some((Key::Force, e)) => Law::Force(e),
@@ -67,7 +67,7 @@ impl<'g> Builder<'_, 'g> {
         let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
         let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
         let energy = match law {
-            // Smooth where the points meet.
+            // Smooth even where the points coincide.
             Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
             Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
             Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
@@ -78,7 +78,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The energy of a force: that of its pieces, if they are told apart by the stretch or the length.
+    /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
+    /// sum of the energies of its pieces.
     fn energy_of(&self, e: &syntax::Expr, context: &Context<'g>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
             self.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
@@ -101,16 +102,21 @@ impl<'g> Builder<'_, 'g> {
                 let x = self.scope.graph.symbol(symbol);
                 let border = read(border, cx)? - (own - x);
                 let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
-                let with = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+                let substitute_stretch =
+                    |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
                 let (below, above) = (below?, above?);
                 let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
-                return Some(with(below, low) + with(above, high) - with(above, border));
+                return Some(
+                    substitute_stretch(below, low) + substitute_stretch(above, high)
+                        - substitute_stretch(above, border),
+                );
             }
         }
         self.integral(force, e, cx)
     }
 
-    /// The energy of a force that is a polynomial in the stretch: its Taylor series, integrated.
+    /// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
+    /// series.
     fn integral(&self, force: Expr<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let g = self.scope.graph;
         let symbol = Quantity::Stretch.symbol();
@@ -123,7 +129,7 @@ impl<'g> Builder<'_, 'g> {
             energy += at_zero * (1.0 / factorial) * power;
             power = power * x;
             derivative = d.of(derivative);
-            // A law with corners is like a polynomial between them.
+            // A law with corner points is a polynomial between them.
             if derivative.is_zero() && !has_corners(force, symbol) {
                 return Some(energy);
             }
@@ -150,7 +156,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// True if a sign, a magnitude or an extreme of what depends on the symbol is in an expression.
+/// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the
+/// symbol.
 fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
     let g = e.graph();
     let mut seen = BTreeSet::from([e.id()]);

@@ -1,11 +1,11 @@
-//! Expressions → dimensions: every expression is walked once, and what must be alike is equated.
+//! Inference of dimensions: every expression is visited once, and equal dimensions are equated.
 //!
 //! A number that is a term or an operand by itself may have any unit, and so may a direction by itself (one
 //! metre where a length is expected). A number that multiplies a parameter is a plain factor, except the
-//! number of the mechanism's gravity, which is an acceleration. A number that multiplies coordinates, rates,
-//! time or inputs alone is a coefficient: it takes the unit that is missing, and is plain otherwise. All
-//! terms of a sum have one unit. An argument accepts an expression of coordinates, rates and time alone as a
-//! number of the unit that it needs.
+//! number of the mechanism's gravity, which is an acceleration. A number that multiplies only coordinates,
+//! rates, time or inputs is a coefficient: its unit is inferred, and plain if unconstrained. All terms of a
+//! sum have one unit. An argument accepts an expression of coordinates, rates and time only as a number of
+//! the unit that it needs.
 
 use super::unify::{Outcome, System};
 use super::value::{Anchor, Value};
@@ -14,92 +14,93 @@ use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 use std::collections::BTreeMap;
 
-/// What an equation between dimensions comes from.
+/// Reason for an equation between dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason<'a> {
-    /// `#[unit(…)]`.
+    /// Attribute `#[unit(…)]`.
     Unit,
-    /// The place that the expression stands at.
+    /// Expected dimension of an argument or a field.
     Place,
-    /// The argument of a function that takes plain numbers.
+    /// Argument of a function of plain numbers.
     Argument,
-    /// The terms of a sum.
+    /// Terms of a sum.
     Sum(BinaryOp),
-    /// The components of a vector.
+    /// Components of a vector.
     Components,
-    /// The arguments of a function that are compared.
-    Alike(&'a str),
-    /// The pieces of a law.
+    /// Arguments that a function compares, with the function's name.
+    Compared(&'a str),
+    /// Pieces of a piecewise law.
     Pieces,
 }
 
-/// Where an equation stands.
+/// Origin of an equation.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin<'a> {
-    /// What it comes from.
+    /// Reason for the equation.
     pub reason: Reason<'a>,
-    /// The expression where it shows: an operator's whole, an argument, a component.
-    pub at: &'a Expr,
-    /// The expression that it is like.
-    pub like: Option<&'a Expr>,
+    /// Expression at which an error is reported: the whole operation, an argument, or a component.
+    pub expression: &'a Expr,
+    /// Expression with which it is compared.
+    pub compared_with: Option<&'a Expr>,
 }
 
-/// An equation that contradicts others.
+/// An equation that contradicts earlier ones.
 #[derive(Clone, Debug)]
 pub struct Mismatch<'a> {
-    /// Where it stands.
+    /// Origin of the equation.
     pub origin: Origin<'a>,
-    /// The dimension of `origin.at`, or of the second of two things.
+    /// Dimension of `origin.expression`, or of the second operand.
     pub found: Dimension,
-    /// What it should be, or the dimension of the first of two things.
+    /// Expected dimension, or the dimension of the first operand.
     pub expected: Dimension,
 }
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Clone, Debug)]
 pub enum Meaning {
-    /// A parameter or a definition.
+    /// Parameter or definition.
     Named(Variable, Anchor),
-    /// A coordinate or an input.
+    /// Coordinate or input.
     Moving(Dimension, Anchor),
 }
 
-/// Most contradictions that are kept.
-const MOST_MISMATCHES: usize = 32;
+/// Maximum number of contradictions that are recorded.
+const MAX_MISMATCHES: usize = 32;
 
-/// The inference in progress.
+/// State of the inference.
 pub struct Inference<'a> {
-    /// The equations so far.
+    /// Equations so far.
     pub system: System,
     /// Names of parameters, coordinates, inputs and definitions. The first unknowns are those of the
     /// parameters.
     pub names: BTreeMap<String, Meaning>,
-    /// Tables by name: the unknowns of their variables, then of their values.
+    /// Tables by name: the unknowns of their variables, followed by that of their values.
     pub tables: BTreeMap<String, Vec<Variable>>,
-    /// Names of the place at hand, such as `stretch`.
+    /// Local names of the current expression, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
-    /// By unknown: what made it known.
+    /// Origin of the equation that determined each unknown.
     pub origins: BTreeMap<Variable, Origin<'a>>,
-    /// By unknown: how its unit is written where it stands alone.
+    /// Notation of each unknown's unit where its name is the whole expression.
     pub hints: BTreeMap<Variable, String>,
-    /// Numbers of the mechanism's gravity, which are accelerations also as factors of parameters.
+    /// Numbers of the mechanism's gravity, which are accelerations even as factors of parameters.
     pub gravity: Vec<f64>,
-    /// What is a plain number unless something else demands a unit; the second one if the first is.
-    pub wishes: Vec<(Dimension, Option<Dimension>)>,
-    /// Contradictions.
+    /// Dimensions that are plain numbers unless constrained otherwise. If the first of a pair is plain, so is
+    /// the second.
+    pub plain_defaults: Vec<(Dimension, Option<Dimension>)>,
+    /// Contradictions found so far.
     pub mismatches: Vec<Mismatch<'a>>,
-    /// There was too much to do.
-    pub gave_up: bool,
+    /// Whether the limit of work was exceeded.
+    pub limit_exceeded: bool,
 }
 
-/// The numbers that gravity is given by, such as 9.81, without signs.
+/// Returns the magnitudes of the numbers in the mechanism's gravity, such as 9.81.
 fn numbers_of_gravity(description: &Description) -> Vec<f64> {
     let parts = description.gravity.iter().flat_map(Expr::parts);
     parts.filter_map(Expr::literal).map(f64::abs).filter(|g| *g > 0.0).collect()
 }
 
 impl<'a> Inference<'a> {
-    /// Begins with the parameters.
+    /// Begins the inference with the parameters and tables.
     pub fn new(description: &Description) -> Inference<'a> {
         let mut new = Inference {
             system: System::default(),
@@ -109,12 +110,12 @@ impl<'a> Inference<'a> {
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
             gravity: numbers_of_gravity(description),
-            wishes: Vec::new(),
+            plain_defaults: Vec::new(),
             mismatches: Vec::new(),
-            gave_up: false,
+            limit_exceeded: false,
         };
         for parameter in &description.parameters {
-            new.name_unknown(&parameter.text, Anchor::Parameter);
+            new.assign_unknown(&parameter.text, Anchor::Parameter);
         }
         for table in &description.tables {
             let unknown = (0..=table.variables).map(|_| new.system.variable()).collect();
@@ -123,15 +124,15 @@ impl<'a> Inference<'a> {
         new
     }
 
-    /// Gives a name an unknown dimension.
-    pub fn name_unknown(&mut self, name: &str, anchor: Anchor) {
+    /// Assigns an unknown dimension to a name.
+    pub fn assign_unknown(&mut self, name: &str, anchor: Anchor) {
         let v = self.system.variable();
         self.names.insert(name.to_string(), Meaning::Named(v, anchor));
     }
 
-    /// Demands that two dimensions are the same; false if they cannot be.
+    /// Equates two dimensions; returns false if they contradict each other.
     pub fn equate(&mut self, found: &Dimension, expected: &Dimension, origin: Origin<'a>) -> bool {
-        if self.gave_up {
+        if self.limit_exceeded {
             return true;
         }
         match self.system.equate(found, expected) {
@@ -142,7 +143,7 @@ impl<'a> Inference<'a> {
                 true
             }
             Outcome::Contradicts => {
-                if self.mismatches.len() < MOST_MISMATCHES {
+                if self.mismatches.len() < MAX_MISMATCHES {
                     self.mismatches.push(Mismatch {
                         origin,
                         found: found.clone(),
@@ -151,21 +152,21 @@ impl<'a> Inference<'a> {
                 }
                 false
             }
-            Outcome::GaveUp => {
-                self.gave_up = true;
+            Outcome::LimitExceeded => {
+                self.limit_exceeded = true;
                 true
             }
         }
     }
 
-    /// Lets something be a plain number if nothing else demands a unit of it.
-    pub fn wish(&mut self, dimension: Dimension) {
-        self.wishes.push((dimension, None));
+    /// Makes a dimension plain at the end if it is not constrained otherwise.
+    pub fn default_to_plain(&mut self, dimension: Dimension) {
+        self.plain_defaults.push((dimension, None));
     }
 
-    /// Grants the wishes that contradict nothing, in order.
-    pub fn grant(&mut self) {
-        for (wish, then) in std::mem::take(&mut self.wishes) {
+    /// Applies the defaults of plain numbers that contradict nothing, in order.
+    pub fn apply_defaults(&mut self) {
+        for (wish, then) in std::mem::take(&mut self.plain_defaults) {
             if self.system.equate(&wish, &PLAIN) != Outcome::Contradicts
                 && let Some(then) = then
             {
@@ -174,36 +175,36 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// True if two dimensions are known to be different.
-    pub fn differ(&mut self, a: &Dimension, b: &Dimension) -> bool {
+    /// Whether two dimensions are known to be different.
+    pub fn are_different(&mut self, a: &Dimension, b: &Dimension) -> bool {
         let quotient = a.over(b).and_then(|quotient| self.system.resolve(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
 
-    /// Demands a dimension of an expression. `unit` is how it is written at this place.
+    /// Equates the dimension of an expression with an expected one; `unit` is its notation in this context.
     pub fn expect(&mut self, e: &'a Expr, dimension: &Dimension, unit: &str, reason: Reason<'a>) -> Value {
         let value = match &e.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.sum(e, Some(dimension)),
             _ => self.value(e),
         };
         let Value::Quantity { dimension: found, anchor } = value else { return value };
-        // A number in front that is one has any unit.
-        if anchor == Anchor::Motion && self.differ(&found, dimension) {
+        // An expression of coordinates may have an implicit factor of one, with any unit.
+        if anchor == Anchor::Motion && self.are_different(&found, dimension) {
             return Value::Unknown;
         }
-        if !self.equate(&found, dimension, Origin { reason, at: e, like: None }) {
+        if !self.equate(&found, dimension, Origin { reason, expression: e, compared_with: None }) {
             return Value::Unknown;
         }
-        if let (Some(v), false) = (self.alone(e), unit.is_empty()) {
+        if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {
             self.hints.entry(v).or_insert_with(|| unit.to_string());
         }
         Value::Quantity { dimension: found, anchor }
     }
 
-    /// The unknown of a name that stands alone.
-    fn alone(&self, e: &Expr) -> Option<Variable> {
+    /// Returns the unknown of an expression that is a single name.
+    fn single_name(&self, e: &Expr) -> Option<Variable> {
         let dimension = match &e.kind {
-            ExprKind::Neg(inner) => return self.alone(inner),
+            ExprKind::Neg(inner) => return self.single_name(inner),
             ExprKind::Name(name) => match self.names.get(name)? {
                 Meaning::Named(v, _) => return Some(*v),
                 Meaning::Moving(dimension, _) => dimension,

@@ -1,6 +1,6 @@
-//! Units, inferred: the dimension of every parameter, coordinate, input and output follows from where it
-//! stands, by unification over exponents of length, mass and time; angles are plain numbers. Runs on what the
-//! user wrote, since values are simplified and know no places.
+//! Inference of units: the dimension of every parameter, coordinate, input and output follows from its use,
+//! by unification over exponents of length, mass and time. Angles are plain numbers. The inference visits the
+//! written expressions, because resolved values are simplified and have no source spans.
 
 mod infer;
 mod owner;
@@ -17,37 +17,37 @@ use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Uni
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{Inference, Meaning, Origin, Reason};
-use places::{Places, Task};
+use places::{DimensionedExpressions, Task};
 use std::collections::{BTreeMap, BTreeSet};
 use value::{Anchor, Value};
 
-/// The coordinates that expressions can name: true for an angle.
+/// Coordinates that expressions can name; the flag is true for an angle.
 pub type Coordinates = [(String, Coordinate, bool)];
 
-/// Infers the units of a checked description and reports what cannot have one.
+/// Infers the units of a checked description, and reports contradictions.
 pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: &mut Diagnostics) -> Units {
     let mut inference = Inference::new(d);
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
         let Some((dimension, text)) = si::read(e, cx) else { continue };
-        let origin = Origin { reason: Reason::Unit, at: e, like: None };
+        let origin = Origin { reason: Reason::Unit, expression: e, compared_with: None };
         inference.equate(&Dimension::variable(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
         }
     }
-    let definitions = name_everything(d, coordinates, &mut inference);
+    let definitions = assign_dimensions(d, coordinates, &mut inference);
     let mut places = places::collect(d, &definitions, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
-        // A diagram names a body, and has forces and torques.
+        // The expression of a diagram is a body, without a dimension.
         if output.rank == Rank::FreeBody {
             continue;
         }
         let (dimension, locals) = (Dimension::variable(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
-    // A state's rate is the state per second.
+    // The rate of a state is the state per second.
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
@@ -56,25 +56,25 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     }
     let sides = std::mem::take(&mut places.sides);
     solve(places, &mut inference);
-    if inference.gave_up {
+    if inference.limit_exceeded {
         inference.mismatches.clear();
     }
     report::report(d, &mut inference, cx);
-    inference.grant();
-    let mut units = Units { outputs: Vec::new(), ..moving(model, coordinates, &mut inference) };
+    inference.apply_defaults();
+    let mut units = Units { outputs: Vec::new(), ..state_units(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
-        units.parameters.push(pinned.unwrap_or_else(|| shown(&mut inference, &Dimension::variable(k), k)));
+        units.parameters.push(pinned.unwrap_or_else(|| notation(&mut inference, &Dimension::variable(k), k)));
     }
     for table in &d.tables {
         let unknown = inference.tables.get(&table.name.text).cloned().unwrap_or_default();
-        let each = unknown.iter().map(|v| shown(&mut inference, &Dimension::variable(*v), *v));
+        let each = unknown.iter().map(|v| notation(&mut inference, &Dimension::variable(*v), *v));
         units.tables.push(each.collect());
     }
-    // Figures of a file stand where they do: nothing else could follow from their use.
+    // Inertial parameters of a file have known units, which cannot be inferred from their use.
     let of_file = units.parameters.iter_mut().rev().zip(d.file_units.iter().rev());
     of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
-        let unit = shown(&mut inference, &Dimension::variable(v), v);
+        let unit = notation(&mut inference, &Dimension::variable(v), v);
         let energy = output.rank == Rank::Scalar && unit == "N·m";
         units.outputs.push(match output.rank {
             Rank::FreeBody => "N, N·m".to_string(),
@@ -82,13 +82,14 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
             _ => unit,
         });
     }
-    units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();
+    units.constraints =
+        model.constraints.iter().map(|c| constraint_units(c, &sides, &mut inference)).collect();
     units
 }
 
-/// Gives coordinates, inputs and definitions their known dimensions. Returns the definitions, each after
-/// those that it mentions.
-fn name_everything<'a>(
+/// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that
+/// it uses.
+fn assign_dimensions<'a>(
     d: &'a Description,
     coordinates: &Coordinates,
     inference: &mut Inference<'_>,
@@ -114,12 +115,12 @@ fn name_everything<'a>(
             _ => None,
         });
         let anchor = anchors.max().unwrap_or(Anchor::Motion);
-        inference.name_unknown(&definition.name.text, anchor);
+        inference.assign_unknown(&definition.name.text, anchor);
     }
     definitions
 }
 
-/// Sorts definitions so that each comes after those that it mentions.
+/// Sorts definitions such that each is after those that it uses.
 fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
@@ -132,16 +133,16 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     for (k, definition) in definitions.iter().enumerate() {
         let mentioned = mentioned(definition);
         missing.push(mentioned.len());
-        for of in mentioned {
-            if let Some(uses) = uses.get_mut(of) {
+        for used in mentioned {
+            if let Some(uses) = uses.get_mut(used) {
                 uses.push(k);
             }
         }
     }
     let mut order: Vec<usize> = (0..definitions.len()).filter(|k| missing.get(*k) == Some(&0)).collect();
-    let mut at = 0;
-    while let Some(k) = order.get(at).copied() {
-        at += 1;
+    let mut next = 0;
+    while let Some(k) = order.get(next).copied() {
+        next += 1;
         for user in uses.get(k).into_iter().flatten() {
             if let Some(count) = missing.get_mut(*user) {
                 *count -= 1;
@@ -154,9 +155,9 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     order.into_iter().filter_map(|k| definitions.get(k)).collect()
 }
 
-/// Infers from all places. Places that give the dimension of one name come first, so that the others are
+/// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
-fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
+fn solve<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
     let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
     };
@@ -168,57 +169,59 @@ fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// Infers from one place.
+/// Infers from one use.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
-    // A definition that is a number is a plain one, unless its uses demand a unit.
+    // A definition that is a number is plain, unless its uses require a unit.
     if !matches!(value, Value::Quantity { .. }) {
-        inference.wish(task.dimension);
+        inference.default_to_plain(task.dimension);
     }
     inference.locals.clear();
 }
 
-/// True for a product with one named factor, but no definition by coordinates alone: they say what it is.
+/// Whether an expression is a product with a single name that determines its dimension. Products with
+/// coordinates or inputs are excluded.
 fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
-    let mut at = e;
-    let mut named = 0;
+    let mut current = e;
+    let mut name_count = 0;
     loop {
-        let (factor, rest) = match &at.kind {
+        let (factor, rest) = match &current.kind {
             ExprKind::Neg(inner) => (None, Some(&**inner)),
             ExprKind::Binary(crate::syntax::BinaryOp::Mul | crate::syntax::BinaryOp::Div, left, right, _) => {
                 (Some(&**right), Some(&**left))
             }
-            _ => (Some(at), None),
+            _ => (Some(current), None),
         };
         match factor.map(|f| &f.kind) {
             None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
             Some(ExprKind::Name(name)) => match inference.names.get(name) {
                 Some(Meaning::Named(_, Anchor::Motion | Anchor::Input)) => return false,
-                found => named += usize::from(found.is_some()),
+                found => name_count += usize::from(found.is_some()),
             },
             Some(_) => return false,
         }
         match rest {
-            Some(rest) => at = rest,
-            None => return named == 1,
+            Some(rest) => current = rest,
+            None => return name_count == 1,
         }
     }
 }
 
-/// How a dimension is written: as where it stands alone, or as everywhere.
-fn shown(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
+/// Returns the notation of a dimension: the one used where the name is the whole expression, or the default
+/// one.
+fn notation(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
     let known = inference.system.resolve(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
         (None, _) => "any".to_string(),
-        _ if inference.gave_up => "any".to_string(),
+        _ if inference.limit_exceeded => "any".to_string(),
         (Some(_), Some(hint)) => hint.clone(),
         (Some(dimension), None) => si::unit(&dimension),
     }
 }
 
-/// Units of the entries of `q`, `v` and `u`.
-fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
+/// Returns the units of the entries of `q`, `v` and `u`.
+fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
     let push = |list: &mut Vec<String>, unit: &str, n| list.extend(std::iter::repeat_n(unit.to_string(), n));
@@ -238,7 +241,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
                 let (unit, rate) = match inference.names.get(model.configuration.get(k.0).map_or("", |n| n)) {
                     Some(Meaning::Moving(dimension, _)) if !angle => {
-                        of_coordinate(dimension.clone(), inference)
+                        coordinate_units(dimension.clone(), inference)
                     }
                     _ => ("rad".to_string(), "rad/s".to_string()),
                 };
@@ -252,7 +255,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
         if let (Some(Meaning::Named(v, _)), Some(unit)) =
             (inference.names.get(name), units.velocities.get_mut(k.0))
         {
-            *unit = of_speed(*v, inference);
+            *unit = speed_unit(*v, inference);
         }
     }
     for (name, input) in &model.inputs {
@@ -264,15 +267,15 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             Some(Meaning::Moving(dimension, _)) => dimension.clone(),
             _ => dimension::PLAIN,
         };
-        units.inputs.push(of_input(&dimension, inference));
+        units.inputs.push(input_unit(&dimension, inference));
     }
     units
 }
 
-/// Units of a coordinate and of its rate.
-fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
+/// Returns the units of a coordinate and of its rate.
+fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
     let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
-    let unit = shown(inference, &dimension, v);
+    let unit = notation(inference, &dimension, v);
     let rate = match unit.as_str() {
         "any" => "any".to_string(),
         "rad" => "rad/s".to_string(),
@@ -284,17 +287,17 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
     (unit, rate)
 }
 
-/// The unit of a generalized speed.
-fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
+/// Returns the unit of a generalized speed.
+fn speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::variable(v);
     match inference.system.resolve(&dimension) {
-        Some(known) if known == dimension::RATE && !inference.gave_up => "rad/s".to_string(),
-        _ => shown(inference, &dimension, v),
+        Some(known) if known == dimension::RATE && !inference.limit_exceeded => "rad/s".to_string(),
+        _ => notation(inference, &dimension, v),
     }
 }
 
-/// Units of a constraint and of its multiplier, whose product with the rate is a power.
-fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
+/// Returns the units of a constraint and of its multiplier. The product of multiplier and rate is a power.
+fn constraint_units(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
     let configurations = c.residual.is_some();
     let (length, angle, work) = match configurations {
         true => (dimension::LENGTH, dimension::PLAIN, dimension::ENERGY),
@@ -305,7 +308,7 @@ fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Infere
         Measure::Angle => Some(angle.clone()),
         Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
     };
-    let known = dimension.filter(|d| d.is_known() && !inference.gave_up);
+    let known = dimension.filter(|d| d.is_known() && !inference.limit_exceeded);
     let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.over(&d)?))) else {
         return ["any".to_string(), "any".to_string()];
     };
@@ -317,10 +320,10 @@ fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Infere
     [unit, si::unit(&multiplier)]
 }
 
-/// The unit of an input: that of a joint's motor is the motor's.
-fn of_input(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
+/// Returns the unit of an input; for a motor of a joint, that of its force or torque.
+fn input_unit(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
     match dimension.unknown.first() {
-        Some((v, _)) => shown(inference, dimension, *v),
+        Some((v, _)) => notation(inference, dimension, *v),
         None if dimension.is_plain() => "N·m".to_string(),
         None => "N".to_string(),
     }

@@ -1,11 +1,11 @@
-//! Which field an expression belongs to, for notes on what else a mistake has to do with.
+//! Attribution of expressions to fields and arguments, for notes of errors.
 
 use crate::language::Callable;
 use crate::syntax::{Callee, Description, Expr, ExprKind, Target};
 
-/// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not
-/// known.
-pub fn place_of(d: &Description, e: &Expr) -> String {
+/// Returns the argument and the field that contain an expression, as in ``in `com` of `arm` ``; empty if
+/// unknown.
+pub fn location_of(d: &Description, e: &Expr) -> String {
     let inside = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
     let found = fields(d).into_iter().find(|(.., whole)| inside(whole));
     match found {
@@ -15,7 +15,7 @@ pub fn place_of(d: &Description, e: &Expr) -> String {
     }
 }
 
-/// The solid that an expression is an argument of, with its arguments' names.
+/// Returns the solid that has an expression as an argument, with its syntax.
 pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
     let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
     inertias.flat_map(Expr::parts).find_map(|call| {
@@ -27,11 +27,11 @@ pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> 
     })
 }
 
-type Found<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
+type OwnedExpressions<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
 
-/// Every expression with its argument and its field.
-fn fields(d: &Description) -> Found<'_> {
-    let mut all: Found<'_> = Vec::new();
+/// Returns every expression with its argument and its field.
+fn fields(d: &Description) -> OwnedExpressions<'_> {
+    let mut all: OwnedExpressions<'_> = Vec::new();
     all.extend(d.gravity.iter().map(|e| ("gravity", d.name.text.as_str(), e)));
     for (k, unit) in &d.units {
         all.extend(d.parameters.get(*k).map(|p| ("unit", p.text.as_str(), unit)));

@@ -1,5 +1,4 @@
-//! The places of a description where expressions stand, each with the dimension that it gives to what stands
-//! there.
+//! Expressions of a description, each with the expected dimension of its argument or field.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::Value;
@@ -8,93 +7,97 @@ use crate::language::dimension::{
 };
 use crate::language::ratio::Ratio;
 use crate::language::{Argument, ArgumentKind, Callable, ForceQuantity, Key, Locals, Method};
-use crate::resolve::contact::PLACE;
+use crate::resolve::contact::TERRAIN_COORDINATES;
 use crate::syntax::contact::collision;
 use crate::syntax::{
     Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
     Member, Target,
 };
 
-/// An expression with the dimension of its place.
+/// An expression with its expected dimension.
 pub struct Task<'a> {
-    /// The expression.
+    /// Expression to visit.
     pub e: &'a Expr,
-    /// Its dimension.
+    /// Expected dimension.
     pub dimension: Dimension,
-    /// How the unit is written at this place; empty if as everywhere.
+    /// Notation of the unit in this context; empty for the default.
     pub unit: &'static str,
-    /// Names that the place has of its own.
+    /// Local names of the expression.
     pub locals: Vec<(&'static str, Dimension)>,
 }
 
-/// All places, as they are collected.
-pub struct Places<'a> {
-    /// The definitions, each after those that it mentions.
+/// All expressions of a description.
+pub struct DimensionedExpressions<'a> {
+    /// Definitions, each after those that it uses.
     pub definitions: Vec<Task<'a>>,
-    /// The other expressions.
+    /// All other expressions with expected dimensions.
     pub tasks: Vec<Task<'a>>,
-    /// Ends of force elements, which may be placed by vectors.
+    /// Ends of force elements, which may be given by vectors.
     pub points: Vec<&'a Expr>,
-    /// By declared constraint: what its sides are. Nothing of rolling pairs.
+    /// Dimension of both sides of each declared constraint, by index; unused for pairs of surfaces.
     pub sides: Vec<Dimension>,
 }
 
-/// What a force element works on.
+/// Coordinate on which a force element does work.
 struct Work {
     /// Dimension of the coordinate or the distance.
     coordinate: Dimension,
-    /// Units of force, stiffness, damping and inertance there.
+    /// Notation of the units of force, stiffness, damping and inertance.
     units: [&'static str; 4],
 }
 
-const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
-const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
+const LINEAR_UNITS: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
+const ANGULAR_UNITS: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
-/// Collects the places of a description, with its `definitions` in order. What comes from a file is all
-/// numbers.
+/// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
+/// because all their values are numbers.
 pub fn collect<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],
     inference: &mut Inference<'a>,
-) -> Places<'a> {
-    let mut places =
-        Places { definitions: Vec::new(), tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
-    // Definitions have unknowns of their own, which come with their names.
+) -> DimensionedExpressions<'a> {
+    let mut places = DimensionedExpressions {
+        definitions: Vec::new(),
+        tasks: Vec::new(),
+        points: Vec::new(),
+        sides: Vec::new(),
+    };
+    // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
             places.add(&definition.value, &Dimension::variable(*v), "");
         }
     }
     places.definitions = std::mem::take(&mut places.tasks);
-    places.all(&d.gravity, &ACCELERATION, "m/s²");
-    places.all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
-    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
+    places.add_all(&d.gravity, &ACCELERATION, "m/s²");
+    places.add_all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
+    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_body(b));
     for particle in &d.particles {
         places.add(&particle.mass, &MASS, "kg");
-        particle.at.iter().for_each(|at| places.position(at));
+        particle.at.iter().for_each(|at| places.add_position(at));
     }
-    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.joint(j));
+    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.add_joint(j));
     for frame in &d.frames {
-        places.rotations(&frame.rotations);
+        places.add_rotations(&frame.rotations);
     }
     for point in &d.points {
         places.points.extend(&point.on);
-        places.all(&point.at, &LENGTH, "m");
+        places.add_all(&point.at, &LENGTH, "m");
     }
     for action in &d.actions {
-        places.action(action, inference);
+        places.add_action(action, inference);
     }
-    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.limit(l, inference));
+    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.add_limit(l, inference));
     for (place, value) in d.equilibria.iter().flat_map(|e| &e.values) {
-        places.value(place, value, inference);
+        places.add_value_at_rest(place, value, inference);
     }
     for constraint in &d.constraints {
-        places.constraint(constraint, inference);
+        places.add_constraint(constraint, inference);
     }
     for contact in &d.contacts {
-        places.surface(&contact.first);
-        places.surface(&contact.second);
-        places.all(
+        places.add_surface(&contact.first);
+        places.add_surface(&contact.second);
+        places.add_all(
             contact
                 .friction
                 .iter()
@@ -103,13 +106,13 @@ pub fn collect<'a>(
             &PLAIN,
             "1",
         );
-        places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
+        places.add_all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
             let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));
-            places.maybe([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
-            places.maybe(&soft.dissipation, TIME.over(&LENGTH), "s/m");
-            places.all(&soft.speed, &SPEED, "m/s");
+            places.add_if_known([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
+            places.add_if_known(&soft.dissipation, TIME.over(&LENGTH), "s/m");
+            places.add_all(&soft.speed, &SPEED, "m/s");
         }
     }
     for (_, e) in &d.energies {
@@ -121,17 +124,17 @@ pub fn collect<'a>(
     places
 }
 
-impl<'a> Places<'a> {
+impl<'a> DimensionedExpressions<'a> {
     fn add(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
         self.tasks.push(Task { e, dimension: dimension.clone(), unit, locals: Vec::new() });
     }
 
-    fn all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
+    fn add_all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
         e.into_iter().for_each(|e| self.add(e, dimension, unit));
     }
 
     /// Adds the arguments of a solid, a surface or a rotation.
-    fn arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
+    fn add_arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
         for (e, argument) in written.iter().zip(arguments) {
             if let Some((dimension, unit)) = argument.kind.dimension() {
                 self.add(e, &dimension, unit);
@@ -139,49 +142,49 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn body(&mut self, body: &'a Body) {
-        self.all(&body.mass, &MASS, "kg");
-        self.all(body.com.iter().chain(&body.about), &LENGTH, "m");
-        body.inertia.iter().for_each(|e| self.inertia(e));
-        body.at.iter().for_each(|e| self.position(e));
+    fn add_body(&mut self, body: &'a Body) {
+        self.add_all(&body.mass, &MASS, "kg");
+        self.add_all(body.com.iter().chain(&body.about), &LENGTH, "m");
+        body.inertia.iter().for_each(|e| self.add_inertia(e));
+        body.at.iter().for_each(|e| self.add_position(e));
     }
 
-    /// `rod(m, l, y).rotated(…) + [[…], …]`
-    fn inertia(&mut self, e: &'a Expr) {
+    /// Adds an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
+    fn add_inertia(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Array(rows) => {
                 for row in rows {
                     if let ExprKind::Array(entries) = &row.kind {
-                        self.all(entries, &INERTIA, "kg·m²");
+                        self.add_all(entries, &INERTIA, "kg·m²");
                     }
                 }
             }
             ExprKind::Binary(_, a, b, _) => {
-                self.inertia(a);
-                self.inertia(b);
+                self.add_inertia(a);
+                self.add_inertia(b);
             }
             ExprKind::Method(inner, _, steps) => {
-                self.inertia(inner);
-                self.rotations(steps);
+                self.add_inertia(inner);
+                self.add_rotations(steps);
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
-                self.arguments(arguments, solid.row().arguments);
+                self.add_arguments(arguments, solid.row().arguments);
             }
             _ => {}
         }
     }
 
-    /// `z(angle)`, `eigenaxis(n, angle)`, a matrix.
-    fn rotations(&mut self, steps: &'a [Expr]) {
+    /// Adds rotations: `z(angle)`, `eigenaxis(n, angle)`, or a matrix.
+    fn add_rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
                 ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
-                    self.arguments(arguments, rotation.row().arguments);
+                    self.add_arguments(arguments, rotation.row().arguments);
                 }
                 ExprKind::Array(rows) => {
                     for row in rows {
                         if let ExprKind::Array(entries) = &row.kind {
-                            self.all(entries, &PLAIN, "1");
+                            self.add_all(entries, &PLAIN, "1");
                         }
                     }
                 }
@@ -190,29 +193,29 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A position: a place by name, `place.at(vector)`, or a vector from the ground's origin.
-    fn position(&mut self, e: &'a Expr) {
+    /// Adds a position: the name of an element, `place.at(vector)`, or a vector from the ground's origin.
+    fn add_position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
-            // The name of a place has no dimension of its own.
+            // The name of an element has no dimension.
             _ => self.add(e, &LENGTH, "m"),
         }
     }
 
-    fn endpoint(&mut self, end: &'a Endpoint) {
-        self.all(&end.at, &LENGTH, "m");
-        self.rotations(&end.rotated);
+    fn add_endpoint(&mut self, end: &'a Endpoint) {
+        self.add_all(&end.at, &LENGTH, "m");
+        self.add_rotations(&end.rotated);
     }
 
-    fn joint(&mut self, joint: &'a Joint) {
-        self.endpoint(&joint.parent);
-        self.endpoint(&joint.child);
-        self.all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
-        self.all(&joint.pitch, &LENGTH, "m/rad");
-        self.all(&joint.lead, &LENGTH, "m");
+    fn add_joint(&mut self, joint: &'a Joint) {
+        self.add_endpoint(&joint.parent);
+        self.add_endpoint(&joint.child);
+        self.add_all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
+        self.add_all(&joint.pitch, &LENGTH, "m/rad");
+        self.add_all(&joint.lead, &LENGTH, "m");
     }
 
-    fn action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
+    fn add_action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
         let on = match &action.on {
             Target::Between(a, b) => {
                 self.points.extend([a, b]);
@@ -236,22 +239,22 @@ impl<'a> Places<'a> {
         };
         let on_point = on.is_none();
         let units = match &on {
-            Some(d) if d.is_plain() => ABOUT,
+            Some(d) if d.is_plain() => ANGULAR_UNITS,
             Some(d) if !d.is_known() => [""; 4],
-            _ => ALONG,
+            _ => LINEAR_UNITS,
         };
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
-        // A force at a point works on a length, a torque on an angle.
+        // A force at a point does work on a length, a torque on an angle.
         let force = match on_point && action.kind.row().torque {
             true => Some(ENERGY),
             false => ENERGY.over(&work.coordinate),
         };
         if let Some(force) = force {
-            self.element(action, &work, &force, inference);
+            self.add_element(action, &work, &force, inference);
         }
     }
 
-    fn limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
+    fn add_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
         let q = coordinate(&limit.on, inference).unwrap_or_else(|| {
             let unknown = Dimension::variable(inference.system.variable());
             self.add(&limit.on, &unknown, "");
@@ -262,14 +265,14 @@ impl<'a> Places<'a> {
             (_, true) => ["m", "m/s", "N"],
             _ => [""; 3],
         };
-        self.all(limit.from.iter().chain(&limit.to), &q, length);
-        self.maybe(&limit.max_speed, q.over(&TIME), speed);
-        self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
-        self.all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
+        self.add_all(limit.from.iter().chain(&limit.to), &q, length);
+        self.add_if_known(&limit.max_speed, q.over(&TIME), speed);
+        self.add_if_known(&limit.max_effort, ENERGY.over(&q), effort);
+        self.add_all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
-    /// The value of a coordinate, an input or a state at rest.
-    fn value(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
+    /// Adds the value at rest of a coordinate, an input or a state.
+    fn add_value_at_rest(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
         if let Some(known) = coordinate(place, inference) {
             self.add(value, &known, if known.is_plain() { "rad" } else { "" });
         } else if place.name().is_some() {
@@ -279,7 +282,13 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {
+    fn add_element(
+        &mut self,
+        action: &'a Action,
+        work: &Work,
+        force: &Dimension,
+        inference: &mut Inference<'a>,
+    ) {
         let [n, stiffness, damping, inertance] = work.units;
         let q = &work.coordinate;
         let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
@@ -295,11 +304,11 @@ impl<'a> Places<'a> {
                 ForceQuantity::Speed => (q.over(&TIME), ""),
                 ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
                 ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
-                // It belongs to an input, which gets its unit below.
+                // The direction belongs to an input, whose unit is set below.
                 ForceQuantity::Direction => continue,
             };
             let Some(dimension) = dimension else { continue };
-            // Coefficients are no expressions of the stretch or the speed.
+            // Coefficients are not expressions of the stretch or the speed.
             let locals = match (row.locals, key) {
                 (Locals::Stretch, Key::Force | Key::Energy) => {
                     vec![("stretch", q.clone()), ("length", q.clone())]
@@ -318,25 +327,25 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Both sides are alike, whatever they are; surfaces have arguments of their own.
-    fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+    /// Adds both sides of a constraint, which have the same dimension. Surfaces have arguments of their own.
+    fn add_constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         let side = Dimension::variable(inference.system.variable());
         self.sides.push(side.clone());
         if constraint.kind.pair().is_none() {
             self.add(&constraint.value, &side, "");
-            self.all(&constraint.other, &side, "");
+            self.add_all(&constraint.other, &side, "");
             return;
         }
         if let Some(friction) = &constraint.friction {
             self.add(&friction.coefficient, &PLAIN, "1");
-            self.all(&friction.speed, &SPEED, "m/s");
+            self.add_all(&friction.speed, &SPEED, "m/s");
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
-        pair.iter().for_each(|surface| self.surface(surface));
+        pair.iter().for_each(|surface| self.add_surface(surface));
     }
 
-    /// A surface of a body, or a point.
-    fn surface(&mut self, surface: &'a Expr) {
+    /// Adds a surface of a body, or a point.
+    fn add_surface(&mut self, surface: &'a Expr) {
         if let Some(link) = collision(surface) {
             self.points.extend(link);
             return;
@@ -350,26 +359,27 @@ impl<'a> Places<'a> {
         for (e, argument) in arguments.iter().zip(id.row().arguments) {
             let Some((dimension, unit)) = argument.kind.dimension() else { continue };
             let locals = match argument.kind {
-                ArgumentKind::Height => PLACE.map(|name| (name, LENGTH.clone())).into(),
+                ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),
                 _ => Vec::new(),
             };
             self.tasks.push(Task { e, dimension, unit, locals });
         }
     }
 
-    fn maybe(
+    fn add_if_known(
         &mut self,
         e: impl IntoIterator<Item = &'a Expr>,
         dimension: Option<Dimension>,
         unit: &'static str,
     ) {
         if let Some(dimension) = dimension {
-            self.all(e, &dimension, unit);
+            self.add_all(e, &dimension, unit);
         }
     }
 }
 
-/// Gives an input its unit: times its direction it is a force or a torque. A bare direction has no unit.
+/// Sets the unit of an input: its product with the direction is a force or a torque. A direction without a
+/// length has no unit.
 fn input<'a>(
     action: &'a Action,
     direction: Option<&'a Expr>,
@@ -380,17 +390,21 @@ fn input<'a>(
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
     let (at, product) = match direction.map(|e| (e, inference.value(e))) {
         Some((at, Value::Quantity { dimension, .. })) => {
-            inference.wish(dimension.clone());
+            inference.default_to_plain(dimension.clone());
             (at, input.times(&dimension))
         }
         _ => (direction.unwrap_or(on), Some(input)),
     };
     if let Some(product) = product {
-        inference.equate(&product, force, Origin { reason: Reason::Place, at, like: None });
+        inference.equate(
+            &product,
+            force,
+            Origin { reason: Reason::Place, expression: at, compared_with: None },
+        );
     }
 }
 
-/// The dimension of the coordinate that an element acts on; none if it acts on a body or a point.
+/// Returns the dimension of the coordinate on which an element acts; `None` if it acts on a body or a point.
 fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
     let meaning = match &e.kind {
         ExprKind::Name(name) => inference.names.get(name),

@@ -1,18 +1,18 @@
-//! What does not fit together: one error for each mistake, with the other places in notes.
+//! Errors for contradictory units: one per cause, with the other uses in notes.
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
-use super::owner::{place_of, solid_of};
+use super::owner::{location_of, solid_of};
 use super::si::describe;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
 use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
-/// Most places of other uses that one mistake shows.
-const MOST_PLACES: usize = 2;
+/// Maximum number of other uses shown for an error.
+const MAX_PLACES: usize = 2;
 
-/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the
-/// same mistake. So are arguments of one solid.
+/// Reports the contradictions. Each parameter is reported once, because further contradictions most likely
+/// have the same cause. The same applies to the arguments of one solid.
 pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
@@ -23,7 +23,7 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
-        let solid = solid_of(d, mismatch.origin.at);
+        let solid = solid_of(d, mismatch.origin.expression);
         if let Some((call, _)) = &solid {
             if solids.iter().any(|known| std::ptr::eq(*known, *call)) {
                 continue;
@@ -31,17 +31,17 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             solids.push(call);
         }
         let error = match names.as_slice() {
-            [(v, e)] => one_parameter(d, &mismatch, *v, e, inference),
+            [(v, e)] => parameter_error(d, &mismatch, *v, e, inference),
             _ => None,
         };
-        let error = error.or_else(|| several(d, &mismatch, &names, inference));
+        let error = error.or_else(|| mismatch_error(d, &mismatch, &names, inference));
         if let Some(mut error) = error {
             if let Some((_, written)) = solid {
                 error.help(format!("write `{written}`"));
             } else if error.is_bare() {
-                error.help(what_is_missing(d, &names));
+                error.help(missing_factor_help(d, &names));
             }
-            if !names.is_empty() && has_number_as_factor(mismatch.origin.at) {
+            if !names.is_empty() && has_number_as_factor(mismatch.origin.expression) {
                 error.help(NUMBER_WITH_UNIT);
             }
             cx.add(error);
@@ -49,10 +49,10 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
     }
 }
 
-/// Advice on giving a number that multiplies a parameter a unit.
+/// Help on a number with a unit that multiplies a parameter.
 const NUMBER_WITH_UNIT: &str = "a number beside a parameter is a plain factor; one with a unit is a parameter, or has a name: `#[define(9.81)] g: Scalar`";
 
-/// True if a number multiplies or divides something in an expression.
+/// Whether an expression contains a product or quotient with a number.
 fn has_number_as_factor(e: &Expr) -> bool {
     e.parts().into_iter().any(|part| match &part.kind {
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => is_number(a) || is_number(b),
@@ -60,7 +60,7 @@ fn has_number_as_factor(e: &Expr) -> bool {
     })
 }
 
-/// True for an expression that names nothing but pi.
+/// Whether an expression contains no name except pi.
 fn is_number(e: &Expr) -> bool {
     e.parts().into_iter().all(|part| match &part.kind {
         ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
@@ -69,24 +69,23 @@ fn is_number(e: &Expr) -> bool {
     })
 }
 
-/// What is wrong where nothing says which of the things is not what it should be: the definitions among them,
-/// too.
-fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
+/// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
+fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> =
         names.iter().map(|(_, e)| text(e)).filter(is_defined).map(|name| format!("`{name}`")).collect();
-    let or_there = match defined.split_last() {
+    let other_places = match defined.split_last() {
         None => String::new(),
         Some((last, [])) => format!(" here or in {last}"),
         Some((last, others)) => format!(" here or in {} or {last}", others.join(", ")),
     };
-    format!("a factor is missing{or_there}, or two things have one name: name another parameter")
+    format!("a factor is missing{other_places}, or two things have one name: name another parameter")
 }
 
-/// The names in what an equation is about, those first that it compares.
+/// Collects the names in the expressions of an equation; the compared expressions are first.
 fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
-    origin.like.iter().for_each(|e| names_in(e, inference, found));
-    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.at.kind, origin.reason) {
+    origin.compared_with.iter().for_each(|e| names_in(e, inference, found));
+    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.expression.kind, origin.reason) {
         let before = match &left.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, _, before, _) => before,
             _ => left,
@@ -94,10 +93,10 @@ fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<
         names_in(before, inference, found);
         names_in(right, inference, found);
     }
-    names_in(origin.at, inference, found);
+    names_in(origin.expression, inference, found);
 }
 
-/// The parameters and definitions in an expression, each once, where it first stands.
+/// Collects the parameters and definitions in an expression, each at its first occurrence.
 fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     let mut inner = |e: &'a Expr| names_in(e, inference, found);
     match &e.kind {
@@ -124,8 +123,8 @@ fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variabl
     }
 }
 
-/// One parameter that would have to be two things at once.
-fn one_parameter(
+/// Returns the error for a parameter that would need two dimensions.
+fn parameter_error(
     d: &Description,
     mismatch: &Mismatch<'_>,
     v: Variable,
@@ -136,7 +135,7 @@ fn one_parameter(
     let is = inference.system.resolve(&Dimension::variable(v))?;
     let (found, expected) =
         (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
-    // To be what is expected, the parameter would have to be another thing by this power of the quotient.
+    // The expected dimension requires that of the parameter to change by this power of the quotient.
     let power = mismatch.found.exponent(v).plus(mismatch.expected.exponent(v).negated())?;
     let needed = is.times_power(&expected.over(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
@@ -146,18 +145,19 @@ fn one_parameter(
     let (is, needed) = (describe(&is), describe(&needed));
     if first.reason == Reason::Unit {
         let message = format!("`{name}` is declared as {is}, but used as {needed}");
-        let mut error = Diagnostic::new(first.at.place.clone(), message);
-        error.note(format!("it is {needed}{}", place_of(d, here)));
+        let mut error = Diagnostic::new(first.expression.place.clone(), message);
+        error.note(format!("it is {needed}{}", location_of(d, here)));
         return Some(error);
     }
     let mut error =
         Diagnostic::new(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
-    show(d, here, v, &is, first, inference, &mut error);
+    note_origin(d, here, v, &is, first, inference, &mut error);
     Some(error)
 }
 
-/// Returns the error for quantities of different units, at the operator between them, with the origin of each unit.
-fn several(
+/// Returns the error for quantities of different units, at the operator between them, with the origin of each
+/// unit.
+fn mismatch_error(
     d: &Description,
     mismatch: &Mismatch<'_>,
     names: &[(Variable, &Expr)],
@@ -166,25 +166,25 @@ fn several(
     let (found, expected) =
         (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
     let (found, expected) = (found?, expected?);
-    let place = match (&mismatch.origin.at.kind, mismatch.origin.reason) {
+    let place = match (&mismatch.origin.expression.kind, mismatch.origin.reason) {
         (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
-        _ => &mismatch.origin.at.place,
+        _ => &mismatch.origin.expression.place,
     };
     let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
     if names.is_empty() {
         diagnostic.help("multiply one of them by a factor, as in `2 * x`: a number that multiplies coordinates, rates or inputs alone takes the unit that is missing");
     }
-    for (v, e) in names.iter().take(MOST_PLACES) {
+    for (v, e) in names.iter().take(MAX_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            show(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
+            note_origin(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
         }
     }
     Some(diagnostic)
 }
 
-/// Shows where a parameter or a definition has become what it is.
-fn show(
+/// Adds a note on the use that determined the dimension of a parameter or a definition.
+fn note_origin(
     d: &Description,
     here: &Expr,
     v: Variable,
@@ -197,12 +197,12 @@ fn show(
     names_of(&origin, inference, &mut names);
     let name = text(here);
     match names.iter().find(|(known, _)| *known == v) {
-        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", place_of(d, e))),
-        None => diagnostic.note(format!("`{name}` becomes {is}{}", place_of(d, origin.at))),
+        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", location_of(d, e))),
+        None => diagnostic.note(format!("`{name}` becomes {is}{}", location_of(d, origin.expression))),
     };
 }
 
-/// The word of a name.
+/// Returns the text of a name.
 fn text(e: &Expr) -> &str {
     if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }
@@ -225,7 +225,7 @@ fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> 
         Reason::Sum(_) => format!("{found} cannot be added to {expected}"),
         Reason::Components => format!("this component is {found}, but another is {expected}"),
         Reason::Pieces => format!("this piece is {found}, but the other is {expected}"),
-        Reason::Alike(function) => format!("`{function}` cannot compare {expected} with {found}"),
+        Reason::Compared(function) => format!("`{function}` cannot compare {expected} with {found}"),
         Reason::Argument => format!("expected a plain number or an angle, found {found}"),
         Reason::Unit | Reason::Place => format!("expected {expected}, found {found}"),
     }

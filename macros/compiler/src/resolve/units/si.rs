@@ -1,5 +1,4 @@
-//! The units of SI in words: how a dimension is called, how it is written, and how it is read from
-//! `#[unit(…)]`.
+//! SI units: names and notation of dimensions, and parsing of `#[unit(…)]`.
 
 use crate::diag::{Diagnostics, nearest};
 use crate::language::dimension::{
@@ -10,7 +9,7 @@ use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Expr, ExprKind};
 use std::fmt::Write;
 
-/// Dimensions with a name of their own, and units that are not written in m, kg and s.
+/// Named dimensions, and units that are not written in m, kg and s.
 static NAMES: [(Dimension, &str, &str); 17] = [
     (PLAIN, "a plain number", "1"),
     (LENGTH, "a length", "m"),
@@ -31,7 +30,7 @@ static NAMES: [(Dimension, &str, &str); 17] = [
     (Dimension::new(0, 1, -1), "a damping", "N·s/m"),
 ];
 
-/// The units that may be written in `#[unit(…)]`, beside their powers: `m2`, `s3`.
+/// Units allowed in `#[unit(…)]`, together with their powers such as `m2` and `s3`.
 static UNITS: [(&str, Dimension); 9] = [
     ("m", LENGTH),
     ("kg", MASS),
@@ -44,8 +43,8 @@ static UNITS: [(&str, Dimension); 9] = [
     ("Pa", Dimension::new(-1, 1, -2)),
 ];
 
-/// Units of other systems, and the one to write instead.
-static OTHERS: [(&str, &str); 32] = [
+/// Units of other systems, with the SI unit to write instead.
+static FOREIGN_UNITS: [(&str, &str); 32] = [
     ("mm", "m"),
     ("cm", "m"),
     ("km", "m"),
@@ -80,7 +79,7 @@ static OTHERS: [(&str, &str); 32] = [
     ("radians", "rad"),
 ];
 
-/// A dimension with its article and its unit: `a mass (kg)`.
+/// Returns the name of a dimension with its article and its unit: `a mass (kg)`.
 pub fn describe(dimension: &Dimension) -> String {
     match NAMES.iter().find(|(known, ..)| known == dimension) {
         Some((_, name, _)) if dimension.is_plain() => (*name).to_string(),
@@ -89,7 +88,7 @@ pub fn describe(dimension: &Dimension) -> String {
     }
 }
 
-/// The unit of a dimension, `any` if it is not known.
+/// Returns the unit of a dimension; `any` if it is unknown.
 pub fn unit(dimension: &Dimension) -> String {
     if !dimension.is_known() {
         return "any".to_string();
@@ -98,11 +97,11 @@ pub fn unit(dimension: &Dimension) -> String {
         return (*unit).to_string();
     }
     let [length, mass, time] = dimension.base;
-    spell(&[("kg", mass), ("m", length), ("s", time)])
+    format_powers(&[("kg", mass), ("m", length), ("s", time)])
 }
 
-/// Powers of units as a fraction: `kg·m²/s`, `m³/(kg·s²)`.
-fn spell(powers: &[(&str, Ratio)]) -> String {
+/// Formats powers of units as a fraction: `kg·m²/s`, `m³/(kg·s²)`.
+fn format_powers(powers: &[(&str, Ratio)]) -> String {
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (name, e) in powers.iter().filter(|(_, e)| !e.is_zero()) {
         let side = if e.parts().0 > 0 { &mut above } else { &mut below };
@@ -116,7 +115,7 @@ fn spell(powers: &[(&str, Ratio)]) -> String {
     }
 }
 
-/// The magnitude of an exponent as superscripts; fractions in parentheses.
+/// Formats the magnitude of an exponent as superscripts; fractions are in parentheses.
 fn exponent(e: Ratio) -> String {
     let (n, d) = e.parts();
     if d != 1 {
@@ -132,8 +131,8 @@ fn exponent(e: Ratio) -> String {
     if n.abs() == 1 { String::new() } else { n.abs().to_string().chars().map(digit).collect() }
 }
 
-/// Reads the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension
-/// and the unit as it is shown.
+/// Parses the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension
+/// and the unit as shown to users.
 pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
     match &e.kind {
         ExprKind::Number(1.0) => Some((PLAIN, "1".to_string())),
@@ -173,7 +172,7 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
     }
     let diagnostic = cx.error(e.place.clone(), format!("unknown unit `{name}`"));
     let units: Vec<&str> = UNITS.iter().map(|(unit, _)| *unit).collect();
-    match OTHERS.iter().find(|(other, _)| *other == name) {
+    match FOREIGN_UNITS.iter().find(|(other, _)| *other == name) {
         Some((_, si)) => {
             diagnostic.help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
         }

@@ -1,47 +1,48 @@
-//! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of
-//! length, mass and time.
+//! Dimensions with unknowns, and linear equations between them: unification over exponent vectors of length,
+//! mass and time.
 
 use crate::language::dimension::{Dimension, Variable};
 use crate::language::ratio::Ratio;
 
-/// What became of an equation.
+/// Outcome of adding an equation.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It holds; these unknowns have become known by it.
+    /// The equation is consistent; it determined these unknowns.
     Holds(Vec<Variable>),
-    /// It contradicts those before.
+    /// The equation contradicts earlier ones.
     Contradicts,
-    /// It was too much work, or its numbers too large: nothing was decided.
-    GaveUp,
+    /// The limit of work or of exponents was exceeded; the result is undecided.
+    LimitExceeded,
 }
 
-/// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of
-/// it.
-const MOST_WORK: usize = 1_000_000;
+/// Maximum number of terms visited in total. A mechanism with thousands of parameters needs about a hundredth
+/// of it.
+const MAX_WORK: usize = 1_000_000;
 
-/// The equations so far, solved: every solved unknown in terms of unsolved ones (reduced row echelon form).
+/// Solved equations: every solved unknown in terms of unsolved ones (reduced row echelon form).
 #[derive(Debug, Default)]
 pub struct System {
     solution: Vec<Option<Dimension>>,
-    /// By unsolved unknown, the solved ones that it stands in. May name one that it has dropped out of.
+    /// For each unsolved unknown, the solved ones whose solutions contain it. May include solutions that no
+    /// longer contain it.
     uses: Vec<Vec<Variable>>,
     work: usize,
 }
 
 impl System {
-    /// A new unknown.
+    /// Adds an unknown.
     pub fn variable(&mut self) -> Variable {
         self.solution.push(None);
         self.uses.push(Vec::new());
         self.solution.len() - 1
     }
 
-    /// A dimension in terms of unsolved unknowns.
+    /// Returns a dimension in terms of unsolved unknowns; `None` if the limit of work is exceeded.
     pub fn resolve(&mut self, dimension: &Dimension) -> Option<Dimension> {
         let mut sum = Dimension { unknown: Vec::new(), ..dimension.clone() };
         for (v, e) in &dimension.unknown {
             self.work += 1 + sum.unknown.len();
-            if self.work > MOST_WORK {
+            if self.work > MAX_WORK {
                 return None;
             }
             sum = match self.solution.get(*v)? {
@@ -52,20 +53,20 @@ impl System {
         Some(sum)
     }
 
-    /// Demands that two dimensions are the same.
+    /// Equates two dimensions.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
         let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
-        let Some(quotient) = quotient else { return Outcome::GaveUp };
+        let Some(quotient) = quotient else { return Outcome::LimitExceeded };
         match quotient.unknown.last() {
             None if quotient.is_plain() => Outcome::Holds(Vec::new()),
             None => Outcome::Contradicts,
             Some((pivot, exponent)) => {
-                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::GaveUp, Outcome::Holds)
+                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::LimitExceeded, Outcome::Holds)
             }
         }
     }
 
-    /// Solves `quotient = 1` for an unknown in it and puts the solution in wherever it stands.
+    /// Solves `quotient = 1` for one of its unknowns, and substitutes the solution.
     fn solve(&mut self, pivot: Variable, exponent: Ratio, quotient: &Dimension) -> Option<Vec<Variable>> {
         let rest = quotient.times_power(&Dimension::variable(pivot), exponent.negated())?;
         let value = rest.power(exponent.negated().inverse()?)?;
@@ -77,7 +78,7 @@ impl System {
                 continue;
             }
             self.work += old.unknown.len() + value.unknown.len();
-            if self.work > MOST_WORK {
+            if self.work > MAX_WORK {
                 return None;
             }
             let new = old.times_power(&Dimension::variable(pivot), e.negated())?.times_power(&value, e)?;
@@ -140,10 +141,10 @@ mod tests {
         let all: Vec<Variable> = (0..3000).map(|_| s.variable()).collect();
         let product =
             Dimension { unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(), ..Dimension::new(0, 0, 0) };
-        let gave_up = (0..3000).any(|k| {
+        let limit_exceeded = (0..3000).any(|k| {
             let power = product.times_power(&Dimension::variable(k), Ratio::integer(k as i64)).unwrap();
-            s.equate(&power, &LENGTH) == Outcome::GaveUp
+            s.equate(&power, &LENGTH) == Outcome::LimitExceeded
         });
-        assert!(gave_up);
+        assert!(limit_exceeded);
     }
 }

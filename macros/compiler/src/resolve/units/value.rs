@@ -1,4 +1,4 @@
-//! What an expression is as far as units go: a number, a direction or a quantity; and products of them.
+//! Values of expressions in unit inference: a number, a direction or a quantity; and their products.
 
 use crate::language::dimension::{Dimension, PLAIN};
 use crate::language::ratio::Ratio;
@@ -7,41 +7,41 @@ use crate::language::ratio::Ratio;
 /// terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Anchor {
-    /// Coordinates, rates and time: a number that multiplies them is a coefficient with any unit, and by
+    /// Coordinates, rates and time. A number that multiplies them is a coefficient with any unit; by
     /// themselves they may be numbers of another unit.
     Motion,
-    /// An input, which has the unit of the quantity that it acts on: a number that multiplies it is a
+    /// An input, which has the unit of the quantity on which it acts. A number that multiplies it is a
     /// coefficient with any unit.
     Input,
-    /// A parameter: a number that multiplies it is a plain factor.
+    /// A parameter. A number that multiplies it is a plain factor.
     Parameter,
 }
 
-/// What is known of an expression.
+/// Known information about an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// A number: it has any unit.
+    /// Number, with any unit.
     Number(f64),
-    /// A direction: it has any unit alone, and none as a factor.
+    /// Direction, with any unit by itself and none as a factor.
     Direction,
-    /// A quantity.
+    /// Quantity.
     Quantity {
-        /// Its dimension.
+        /// Dimension of the quantity.
         dimension: Dimension,
         /// Source of the unit.
         anchor: Anchor,
     },
-    /// The dimension is unknown, or an error was found.
+    /// Unknown dimension, or an error.
     Unknown,
 }
 
 impl Value {
-    /// A quantity whose unit follows from the motion.
+    /// Returns a quantity whose unit follows from the motion.
     pub fn quantity(dimension: Dimension) -> Value {
         Value::Quantity { dimension, anchor: Anchor::Motion }
     }
 
-    /// The same with the other sign.
+    /// Returns the negated value.
     pub fn negated(self) -> Value {
         match self {
             Value::Number(value) => Value::Number(-value),
@@ -49,7 +49,7 @@ impl Value {
         }
     }
 
-    /// A power of it; unknown if the exponent is.
+    /// Returns a power of the value; unknown if the exponent is unknown.
     pub fn power(self, exponent: Option<Ratio>) -> Value {
         match self {
             Value::Quantity { dimension, .. } if dimension.is_plain() => Value::quantity(dimension),
@@ -61,7 +61,7 @@ impl Value {
         }
     }
 
-    /// Returns the source of the unit; `Motion` for a value that is no quantity.
+    /// Returns the source of the unit; `Motion` for a value that is not a quantity.
     pub fn anchor(&self) -> Anchor {
         match self {
             Value::Quantity { anchor, .. } => *anchor,
@@ -69,8 +69,8 @@ impl Value {
         }
     }
 
-    /// Of two things that are alike, the one that says more.
-    pub fn or(self, other: Value) -> Value {
+    /// Returns the more specific of two values with equal dimensions.
+    pub fn more_specific(self, other: Value) -> Value {
         match (&self, &other) {
             (Value::Quantity { .. }, _) => self,
             (_, Value::Quantity { .. }) => other,
@@ -81,11 +81,11 @@ impl Value {
     }
 }
 
-/// The product of factors, of which those marked divide; and whether a number among them may give it another
-/// unit.
+/// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
+/// divisors.
 pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
     let has = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
-    // Nothing has any unit.
+    // Zero has any unit.
     if factors.iter().any(|(below, f)| !below && matches!(f, Value::Number(0.0))) {
         return (Value::Number(0.0), false);
     }
@@ -117,7 +117,7 @@ pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
     }
 }
 
-/// The product of numbers.
+/// Returns the product of numbers; NaN if another factor is present.
 fn number(factors: &[(bool, Value)]) -> f64 {
     let value = |f: &Value| if let Value::Number(value) = f { *value } else { f64::NAN };
     factors.iter().fold(1.0, |p, (below, f)| if *below { p / value(f) } else { p * value(f) })

@@ -1,4 +1,4 @@
-//! The walk over an expression: what its parts are, and what must be alike.
+//! Traversal of an expression: values of its subexpressions, and equations between their dimensions.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::{Anchor, Value, product};
@@ -9,7 +9,7 @@ use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
-    /// The dimension of an expression.
+    /// Returns the value of an expression.
     pub fn value(&mut self, e: &'a Expr) -> Value {
         match &e.kind {
             ExprKind::Number(n) => Value::Number(*n),
@@ -19,7 +19,7 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.product(e),
             ExprKind::Binary(..) => self.sum(e, None),
             ExprKind::Call(function, arguments) => self.call(function, arguments),
-            ExprKind::Array(items) => self.all_alike(items, Reason::Components),
+            ExprKind::Array(items) => self.common_value(items, Reason::Components),
             ExprKind::Method(..) | ExprKind::Tuple(_) => Value::Unknown,
         }
     }
@@ -42,7 +42,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A coordinate of a joint, or the axis of a frame.
+    /// Returns the value of a coordinate of a joint, or of an axis of a frame.
     fn member(&self, inner: &Expr, member: &Name) -> Value {
         let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
@@ -51,12 +51,12 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Demands that two values are alike; returns what they are.
-    fn alike(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
+    /// Equates the dimensions of two values; returns the common value.
+    fn equate_values(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
         let (Value::Quantity { dimension, anchor }, Value::Quantity { dimension: other, anchor: second }) =
             (&a, &b)
         else {
-            return a.or(b);
+            return a.more_specific(b);
         };
         match self.equate(other, dimension, origin) {
             true => Value::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
@@ -64,14 +64,15 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The common dimension of several expressions.
-    fn all_alike(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
+    /// Returns the common value of several expressions.
+    fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
         let mut first: Option<&Expr> = None;
         let mut common = Value::Number(0.0);
         for item in items {
             let value = self.value(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
-            common = self.alike(common, value, Origin { reason, at: item, like: first });
+            common =
+                self.equate_values(common, value, Origin { reason, expression: item, compared_with: first });
             first = first.or(is_quantity.then_some(item));
         }
         match common {
@@ -80,16 +81,16 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A sum of any number of terms. If a term has a parameter or an input, terms of open dimension take the
-    /// expected one, so that the error points at the other term.
+    /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
+    /// unknown dimension get the expected one, so that an error is reported at the other term.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
-        let mut at = e;
-        while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &at.kind {
-            written.push((Some((Reason::Sum(*op), at)), &**right));
-            at = left;
+        let mut current = e;
+        while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
+            written.push((Some((Reason::Sum(*op), current)), &**right));
+            current = left;
         }
-        written.push((None, at));
+        written.push((None, current));
         let terms: Vec<_> =
             written.into_iter().rev().map(|(sum, term)| (sum, term, self.value(term))).collect();
         let is_anchored = terms.iter().any(|(.., value)| value.anchor() > Anchor::Motion);
@@ -97,14 +98,18 @@ impl<'a> Inference<'a> {
             if let (Value::Quantity { dimension, .. }, Some(expected), true) = (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
-                self.equate(dimension, expected, Origin { reason: Reason::Place, at: term, like: None });
+                self.equate(
+                    dimension,
+                    expected,
+                    Origin { reason: Reason::Place, expression: term, compared_with: None },
+                );
             }
         }
         let mut terms = terms.into_iter();
         let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
-            let (reason, at) = sum.unwrap_or((Reason::Place, term));
-            self.alike(total, value, Origin { reason, at, like: None })
+            let (reason, current) = sum.unwrap_or((Reason::Place, term));
+            self.equate_values(total, value, Origin { reason, expression: current, compared_with: None })
         });
         match total {
             Value::Number(_) => Value::Number(f64::NAN),
@@ -112,18 +117,18 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A product or quotient of any number of factors, those in parentheses among them: `a / (2 * b)` is
-    /// `a / 2 / b`.
+    /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
+    /// are flattened: `a / (2 * b)` is `a / 2 / b`.
     fn product(&mut self, e: &'a Expr) -> Value {
         let mut factors = Vec::new();
-        let mut rest = vec![(false, e)];
-        while let Some((below, at)) = rest.pop() {
-            match &at.kind {
+        let mut waiting = vec![(false, e)];
+        while let Some((below, factor)) = waiting.pop() {
+            match &factor.kind {
                 ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
-                    rest.push((below != (*op == BinaryOp::Div), &**right));
-                    rest.push((below, &**left));
+                    waiting.push((below != (*op == BinaryOp::Div), &**right));
+                    waiting.push((below, &**left));
                 }
-                _ => factors.push((below, self.value(at))),
+                _ => factors.push((below, self.value(factor))),
             }
         }
         let value = self.multiply(&factors);
@@ -139,7 +144,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The product of factors; those marked divide.
+    /// Returns the product of factors; marked ones are divisors.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
         let (value, free) = product(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
@@ -150,14 +155,14 @@ impl<'a> Inference<'a> {
             return value;
         };
         let number = Dimension::variable(self.system.variable());
-        self.wish(number.clone());
+        self.default_to_plain(number.clone());
         match dimension.times(&number) {
             Some(dimension) => Value::Quantity { dimension, anchor: *anchor },
             None => Value::Unknown,
         }
     }
 
-    /// The value of a call: of a table first, then of what the language has.
+    /// Returns the value of a call: of a table, otherwise of a function of the language.
     fn call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.lookup(&unknown, arguments);
@@ -169,14 +174,14 @@ impl<'a> Inference<'a> {
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
-                self.all_alike(compared, Reason::Alike(&callee.text));
-                self.all_alike(pieces, Reason::Pieces)
+                self.common_value(compared, Reason::Compared(&callee.text));
+                self.common_value(pieces, Reason::Pieces)
             }
             _ => Value::Unknown,
         }
     }
 
-    /// The value of a function of the language.
+    /// Returns the value of a function of the language.
     fn function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
         let [first, others @ ..] = arguments else {
             return match rule {
@@ -194,8 +199,8 @@ impl<'a> Inference<'a> {
                 self.visit(arguments);
                 Value::Direction
             }
-            UnitRule::Alike => self.all_alike(arguments, Reason::Alike(name)),
-            UnitRule::Quotient => match self.all_alike(arguments, Reason::Alike(name)) {
+            UnitRule::Alike => self.common_value(arguments, Reason::Compared(name)),
+            UnitRule::Quotient => match self.common_value(arguments, Reason::Compared(name)) {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
                 _ => Value::Number(f64::NAN),
             },
@@ -223,12 +228,13 @@ impl<'a> Inference<'a> {
                 _ => Value::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
-                // Of a vector, as seen from a frame, whose name has no dimension.
-                ExprKind::Binary(BinaryOp::Div, of, frame, _) if self.is_frame(frame) => match self.value(of)
-                {
-                    Value::Direction => Value::quantity(RATE),
-                    other => quotient(other, &TIME),
-                },
+                // The rate of a vector in a frame; the frame's name has no dimension.
+                ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
+                    match self.value(vector) {
+                        Value::Direction => Value::quantity(RATE),
+                        other => quotient(other, &TIME),
+                    }
+                }
                 _ => quotient(self.value(first), &TIME),
             },
             UnitRule::Inverse => self.value(first).power(Some(Ratio::integer(-1))),
@@ -249,7 +255,7 @@ impl<'a> Inference<'a> {
                 let directions: Vec<Value> = others.iter().map(|a| self.value(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
                     true => Value::quantity(INERTIA),
-                    // Vectors that have a unit count with it.
+                    // Vectors with a unit would contribute it.
                     false => Value::Unknown,
                 }
             }
@@ -270,12 +276,12 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Infers from expressions whose values do not matter.
+    /// Infers from expressions whose values are not used.
     fn visit(&mut self, e: &'a [Expr]) {
         e.iter().for_each(|e| drop(self.value(e)));
     }
 
-    /// True for the name of a body or a frame, which is no quantity.
+    /// Whether an expression is the name of a body or a frame, which has no dimension.
     fn is_frame(&self, e: &Expr) -> bool {
         let is_value = |name: &str| {
             self.names.contains_key(name)
@@ -285,7 +291,7 @@ impl<'a> Inference<'a> {
         e.name().is_some_and(|name| !is_value(name))
     }
 
-    /// The value of a table, whose variables have the units of their axes wherever it is called.
+    /// Returns the value of a table. Its variables have the same units in all calls.
     fn lookup(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
         let Some((value, variables)) = unknown.split_last() else { return Value::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
@@ -294,7 +300,8 @@ impl<'a> Inference<'a> {
         Value::Quantity { dimension: Dimension::variable(*value), anchor: Anchor::Parameter }
     }
 
-    /// An elementary function: magnitudes and roots of any quantity, all others of plain numbers.
+    /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
+    /// numbers.
     fn elementary(&mut self, f: Function, a: &'a Expr) -> Value {
         match f {
             Function::Abs => return self.value(a),
@@ -318,8 +325,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the
-    /// end.
+    /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
+    /// base is plain.
     fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
         let base = self.value(a);
         let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
@@ -329,24 +336,24 @@ impl<'a> Inference<'a> {
             (base, Value::Number(n)) => base.power(Ratio::of(n)),
             (Value::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::variable(self.system.variable());
-                self.wishes.push((dimension, Some(power.clone())));
+                self.plain_defaults.push((dimension, Some(power.clone())));
                 Value::Quantity { dimension: power, anchor }
             }
             _ => Value::Unknown,
         }
     }
 
-    /// Infers from the places between slashes, `y / x`, which may be placed by vectors.
+    /// Infers from the operands between slashes, `y / x`, which may be given by vectors.
     fn points(&mut self, e: &'a Expr) {
-        let mut at = e;
-        while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+        let mut current = e;
+        while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
             self.point(right);
-            at = left;
+            current = left;
         }
-        self.point(at);
+        self.point(current);
     }
 
-    /// A place: `body.at(vector)`.
+    /// Infers from a point: `body.at(vector)`.
     pub fn point(&mut self, e: &'a Expr) {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
             self.point(base);
@@ -357,10 +364,10 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// A quantity divided by one of this dimension; anything else as it is.
-fn quotient(value: Value, by: &Dimension) -> Value {
+/// Returns a quantity divided by another dimension; other values are unchanged.
+fn quotient(value: Value, divisor: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.over(by) {
+        Value::Quantity { dimension, anchor } => match dimension.over(divisor) {
             Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },

@@ -1,11 +1,11 @@
-//! The two ends of a joint: `parent -> child`, and what is written instead of it.
+//! The two ends of a joint: `parent -> child`, and common errors in their place.
 
-use super::{Arguments, Value};
+use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, Place};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 
-/// Names for the two ends of a thing in other tools.
-const ENDS: [(&str, &str); 14] = [
+/// Names of the two ends of an element in other tools.
+const END_KEYS: [(&str, &str); 14] = [
     ("parent", "child"),
     ("from", "to"),
     ("base", "follower"),
@@ -23,10 +23,10 @@ const ENDS: [(&str, &str); 14] = [
 ];
 
 impl Arguments {
-    /// The relation `parent -> child`.
+    /// Returns the relation `parent -> child`, or reports an error.
     pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
         if self.relation.is_none() {
-            let (place, ends) = self.seeming_ends(known);
+            let (place, ends) = self.likely_ends(known);
             self.plain.clear();
             let diagnostic = cx.error(place, "a joint says which bodies it joins");
             match ends {
@@ -38,47 +38,47 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away
-    /// if it has keys.
-    fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
-        let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
+    /// Returns the likely ends of a joint without an arrow, and the span of the error. Ends with keys are
+    /// removed.
+    fn likely_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
+        let pair = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
         if let Some((place, a, b)) = self.take_ends() {
-            return (place, spelt(&a, &b));
+            return (place, pair(&a, &b));
         }
         let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
         match self.plain.as_slice() {
-            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, spelt(a, b)),
-            [a] => return (place, Some(["parent".to_string(), a.spelt()])),
-            [a, b, ..] => return (place, spelt(a, b)),
+            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, pair(a, b)),
+            [a] => return (place, Some(["parent".to_string(), a.to_source()])),
+            [a, b, ..] => return (place, pair(a, b)),
             [] => {}
         }
-        let stranger = |(name, value): &(Name, Value)| {
-            !known.contains(&name.text.as_str()) && matches!(value, Value::Expr(_))
+        let is_unknown = |(name, value): &(Name, ArgumentValue)| {
+            !known.contains(&name.text.as_str()) && matches!(value, ArgumentValue::Expr(_))
         };
-        let Some(at) = self.named.iter().position(stranger) else { return (place, None) };
-        let (name, value) = self.named.remove(at);
-        let Value::Expr(value) = value else { return (name.place, None) };
+        let Some(index) = self.named.iter().position(is_unknown) else { return (place, None) };
+        let (name, value) = self.named.remove(index);
+        let ArgumentValue::Expr(value) = value else { return (name.place, None) };
         let ends = match (&value.kind, name.text.as_str()) {
-            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => spelt(&two[0], &two[1]),
-            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.spelt(), "child".to_string()]),
+            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => pair(&two[0], &two[1]),
+            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.to_source(), "child".to_string()]),
             (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
-                Some(["parent".to_string(), value.spelt()])
+                Some(["parent".to_string(), value.to_source()])
             }
-            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.spelt()]),
+            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.to_source()]),
             _ => None,
         };
         (name.place, ends)
     }
 
-    /// Two ends with names of their own, such as `from = a, to = b`.
+    /// Removes and returns two ends with keys of their own, such as `from = a, to = b`.
     pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
-        let given = |key: &str| {
-            self.named.iter().any(|(name, value)| name.text == key && matches!(value, Value::Expr(_)))
+        let has_key = |key: &str| {
+            self.named.iter().any(|(name, value)| name.text == key && matches!(value, ArgumentValue::Expr(_)))
         };
-        let (a, b) = ENDS.into_iter().find(|(a, b)| given(a) && given(b))?;
+        let (a, b) = END_KEYS.into_iter().find(|(a, b)| has_key(a) && has_key(b))?;
         let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
         let mut end = |key: &str| match self.take(key) {
-            Some((_, Value::Expr(e))) => Some(e),
+            Some((_, ArgumentValue::Expr(e))) => Some(e),
             _ => None,
         };
         Some((place, end(a)?, end(b)?))

@@ -1,16 +1,16 @@
-//! The grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
+//! Grammar of arguments: relations, equations, `key = value`, and expressions alone, separated by commas.
 
-use super::slips::{no_arrow, no_comma, text_alone};
-use super::{Arguments, Form, Value};
+use super::corrections::{missing_arrow_error, missing_comma_error, stray_string_error};
+use super::{ArgumentValue, Arguments, Grammar};
 use crate::diag::syn_error;
 use crate::syntax::expression::{parse_expr, parse_name};
-use crate::syntax::figures;
+use crate::syntax::file_parameters;
 use proc_macro2::Span;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, bracketed, token};
 
-/// Parses the arguments of an attribute at a place.
-pub fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::Result<Arguments> {
+/// Parses the arguments of an attribute; errors at the end of the input have the given span.
+pub fn parse_arguments(input: ParseStream<'_>, span: Span, grammar: Grammar) -> syn::Result<Arguments> {
     let mut arguments = Arguments {
         relation: None,
         equations: Vec::new(),
@@ -19,13 +19,13 @@ pub fn parse_arguments(input: ParseStream<'_>, span: Span, form: Form) -> syn::R
         seen: Vec::new(),
         place: span.into(),
         owner: String::new(),
-        form,
+        grammar,
     };
     while !input.is_empty() {
         parse_argument(input, &mut arguments)?;
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(no_comma(input));
+                return Err(missing_comma_error(input));
             }
             input.parse::<Token![,]>()?;
         }
@@ -47,31 +47,31 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
         }
         let value = match key.text.as_str() {
-            "parameters" => Value::Figures(figures::parse(input)?),
+            "parameters" => ArgumentValue::FileParameters(file_parameters::parse(input)?),
             _ => parse_value(input)?,
         };
-        if let ("between" | "on", Value::Expr(first)) = (key.text.as_str(), &value)
+        if let ("between" | "on", ArgumentValue::Expr(first)) = (key.text.as_str(), &value)
             && input.peek(Token![->])
         {
             let arrow: Token![->] = input.parse()?;
-            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.spelt());
-            let help = format!("write `between = ({}, {second})`", first.spelt());
+            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.to_source());
+            let help = format!("write `between = ({}, {second})`", first.to_source());
             return Err(syn_error(arrow.spans[0], "expected `,`", &help));
         }
         arguments.named.push((key, value));
         return Ok(());
     }
     if input.peek(LitStr) {
-        return Err(text_alone(&input.parse()?));
+        return Err(stray_string_error(&input.parse()?));
     }
     let first = parse_expr(input)?;
-    if let Some(error) = no_arrow(input, &first, arguments) {
+    if let Some(error) = missing_arrow_error(input, &first, arguments) {
         return Err(error);
     }
     if input.peek(Token![->]) {
         let arrow: Token![->] = input.parse()?;
         if input.is_empty() || input.peek(Token![,]) {
-            let help = format!("write `{} -> child`", first.spelt());
+            let help = format!("write `{} -> child`", first.to_source());
             return Err(syn_error(arrow.spans[1], "nothing stands behind this arrow", &help));
         }
         let second = parse_expr(input)?;
@@ -87,7 +87,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
         }
         let second = parse_expr(input)?;
-        if !arguments.equations.is_empty() && arguments.form != Form::Equilibrium {
+        if !arguments.equations.is_empty() && arguments.grammar != Grammar::Equilibrium {
             return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
         }
         arguments.equations.push((first, second));
@@ -97,7 +97,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     Ok(())
 }
 
-/// Names in quotes, with commas between them.
+/// Parses quoted names, separated by commas.
 fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     let mut texts = Vec::new();
     while !input.is_empty() {
@@ -108,7 +108,7 @@ fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
         texts.push(input.parse()?);
         if !input.is_empty() {
             if !input.peek(Token![,]) {
-                return Err(no_comma(input));
+                return Err(missing_comma_error(input));
             }
             input.parse::<Token![,]>()?;
         }
@@ -116,9 +116,9 @@ fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     Ok(texts)
 }
 
-fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
+fn parse_value(input: ParseStream<'_>) -> syn::Result<ArgumentValue> {
     if input.peek(LitStr) {
-        return input.parse().map(Value::Text);
+        return input.parse().map(ArgumentValue::Text);
     }
     if input.peek(token::Bracket) {
         let ahead = input.fork();
@@ -127,8 +127,8 @@ fn parse_value(input: ParseStream<'_>) -> syn::Result<Value> {
         if content.peek(LitStr) {
             let content;
             bracketed!(content in input);
-            return parse_texts(&content).map(Value::Texts);
+            return parse_texts(&content).map(ArgumentValue::Texts);
         }
     }
-    parse_expr(input).map(Value::Expr)
+    parse_expr(input).map(ArgumentValue::Expr)
 }

@@ -1,23 +1,23 @@
-//! What restricts motion: constraints, contacts, limits.
+//! Restrictions of motion: constraints, contacts, limits.
 
 use super::{Expr, Name};
 use crate::language::{Callable, OtherKind};
 
-/// What a constraint restricts.
+/// Kind of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintKind {
-    /// Configurations.
+    /// Restricts configurations.
     Holonomic,
-    /// Velocities.
+    /// Restricts velocities.
     Nonholonomic,
-    /// Two surfaces that touch and do not slip.
+    /// Two surfaces in contact that do not slip.
     Rolling,
-    /// Two surfaces that touch and slip with friction.
+    /// Two surfaces in contact that slip with friction.
     Slipping,
 }
 
 impl ConstraintKind {
-    /// Returns the word of a pair of surfaces; `None` for an equation.
+    /// Returns the function of a pair of surfaces; `None` for an equation.
     pub fn pair(self) -> Option<Callable> {
         match self {
             ConstraintKind::Rolling => Some(Callable::Rolls),
@@ -26,7 +26,7 @@ impl ConstraintKind {
         }
     }
 
-    /// Returns the row of the element.
+    /// Returns the row of the element in the table.
     pub fn element(self) -> OtherKind {
         match self {
             ConstraintKind::Holonomic => OtherKind::Holonomic,
@@ -37,92 +37,92 @@ impl ConstraintKind {
     }
 }
 
-/// Coulomb's friction of surfaces that slip.
+/// Coulomb friction of slipping surfaces.
 #[derive(Clone, Debug)]
 pub struct SlipFriction {
     /// Coefficient of friction.
     pub coefficient: Expr,
-    /// Speed around which it is smooth; the mechanism's if absent.
+    /// Speed at which friction is regularised; that of the mechanism if absent.
     pub speed: Option<Expr>,
 }
 
-/// An expression that stays zero, or two that stay equal; or a pair of surfaces.
+/// An expression that remains zero, two that remain equal, or a pair of surfaces.
 #[derive(Clone, Debug)]
 pub struct Constraint {
-    /// Its name.
+    /// Name of the constraint.
     pub name: Name,
-    /// What it restricts.
+    /// Kind of the constraint.
     pub kind: ConstraintKind,
-    /// The expression, a scalar or a vector, or `rolls(surface, surface)` or `slips(surface, surface)`.
+    /// Expression, a scalar or a vector, or `rolls(surface, surface)` or `slips(surface, surface)`.
     pub value: Expr,
-    /// What it stays equal to; zero if absent.
+    /// Right side of the equation; zero if absent.
     pub other: Option<Expr>,
-    /// Friction of surfaces that slip.
+    /// Friction of slipping surfaces.
     pub friction: Option<SlipFriction>,
 }
 
 /// Bounds of a coordinate.
 #[derive(Clone, Debug)]
 pub struct Limit {
-    /// Its name; that of the joint if it comes from a file.
+    /// Name of the limit; that of the joint if it is from a file.
     pub name: Name,
-    /// The joint, or the coordinate of a joint, or a coordinate of its own.
+    /// Joint, coordinate of a joint, declared coordinate, or expression.
     pub on: Expr,
-    /// Least value.
+    /// Lower bound.
     pub from: Option<Expr>,
-    /// Largest value.
+    /// Upper bound.
     pub to: Option<Expr>,
-    /// Largest rate, in both directions.
+    /// Maximum speed, in both directions.
     pub max_speed: Option<Expr>,
-    /// Largest force or torque, in both directions.
+    /// Maximum force or torque, in both directions.
     pub max_effort: Option<Expr>,
-    /// How much of its speed a coordinate keeps that strikes a bound, which is a stop then.
+    /// Coefficient of restitution; if present, the bounds are stops.
     pub restitution: Option<Restitution>,
 }
 
 /// A coefficient of restitution.
 #[derive(Clone, Debug)]
 pub struct Restitution {
-    /// Its value.
+    /// Value of the coefficient.
     pub value: Expr,
-    /// It is a ratio of impulses (Poisson), not of velocities (Newton).
+    /// Whether it is a ratio of impulses (Poisson) instead of velocities (Newton).
     pub of_impulses: bool,
 }
 
-/// Two surfaces that may part, strike, slide and stick.
+/// Two surfaces that may separate, collide, slide and stick.
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Its name.
+    /// Name of the contact.
     pub name: Name,
-    /// One surface.
+    /// First surface.
     pub first: Expr,
-    /// The other.
+    /// Second surface.
     pub second: Expr,
-    /// Coefficient of friction; none if absent.
+    /// Coefficient of friction; zero if absent.
     pub friction: Option<Expr>,
-    /// Coefficient of friction at rest; that of sliding if absent.
+    /// Coefficient of static friction; that of sliding if absent.
     pub stiction: Option<Expr>,
-    /// Largest moment of friction about the normal, by the normal force; none if absent.
+    /// Maximum friction moment about the normal per unit normal force, m; zero if absent.
     pub torsional: Option<Expr>,
-    /// Largest moment of friction about the tangents, by the normal force; none if absent.
+    /// Maximum friction moment about the tangents per unit normal force, m; zero if absent.
     pub rolling: Option<Expr>,
     /// Coefficient of restitution; zero if absent.
     pub restitution: Option<Restitution>,
-    /// The surfaces yield instead of being rigid.
-    pub soft: Option<Softness>,
-    /// A file says it: what never parts is left out.
+    /// Stiffness and dissipation of compliant surfaces; rigid if absent.
+    pub soft: Option<Compliance>,
+    /// Whether the contact is from a file. Pairs that never separate are then omitted.
     pub of_file: bool,
 }
 
-/// How surfaces yield.
+/// Stiffness and dissipation of compliant surfaces.
 #[derive(Clone, Debug)]
-pub struct Softness {
-    /// Force by overlap, or by its power of 3/2.
+pub struct Compliance {
+    /// Force per penetration, or per penetration to the power of 3/2.
     pub stiffness: Expr,
-    /// The power is that of bodies with round surfaces (Hertz).
+    /// Whether the power is 3/2, that of round bodies (Hertz).
     pub hertz: bool,
-    /// Dissipation by speed of approach (Hunt and Crossley); none if absent.
+    /// Dissipation per speed of approach (Hunt and Crossley), s/m; zero if absent.
     pub dissipation: Option<Expr>,
-    /// Speed of slip below which friction falls off.
+    /// Slip speed below which friction is regularised, m/s.
     pub speed: Option<Expr>,
 }

@@ -1,40 +1,40 @@
-//! Names for expressions, tables, and configurations at rest.
+//! Named expressions, tables, and equilibria.
 
 use super::{Expr, Name};
 
-/// A function that is a parameter, given by a table.
+/// A parameter that is a function, given by a table.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Its name.
+    /// Name of the table.
     pub name: Name,
-    /// How many variables it has, one to three.
+    /// Number of variables, one to three.
     pub variables: usize,
 }
 
-/// A configuration at rest: what is not named is zero, and orientations are those of the axes beside them.
+/// A configuration at rest. Unspecified values are zero; unspecified orientations are the identity.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
-    /// Its name.
+    /// Name of the equilibrium.
     pub name: Name,
     /// Coordinates, inputs and states, each with its value.
     pub values: Vec<(Expr, Expr)>,
 }
 
-/// What an expression stands for.
+/// Kind of value of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rank {
-    /// A number.
+    /// Scalar.
     Scalar,
-    /// A physical vector.
+    /// Physical vector.
     Vector,
-    /// A physical matrix, which takes vectors to vectors.
+    /// Physical matrix, which maps vectors to vectors.
     Matrix,
-    /// All that acts on a body, which the expression names.
+    /// Free-body diagram: all forces on the body that the expression names.
     FreeBody,
 }
 
 impl Rank {
-    /// The element's type.
+    /// Returns the type of the element.
     pub fn kind(self) -> &'static str {
         match self {
             Rank::Scalar => "Scalar",
@@ -45,15 +45,15 @@ impl Rank {
     }
 }
 
-/// A name for an expression.
+/// A named expression.
 #[derive(Clone, Debug)]
 pub struct Definition {
-    /// The name.
+    /// Name of the definition.
     pub name: Name,
-    /// What it stands for.
+    /// Declared kind of value.
     pub rank: Rank,
-    /// The expression.
+    /// Expression.
     pub value: Expr,
-    /// The axes of an output's components.
+    /// Axes of an output's components.
     pub resolved_in: Option<Expr>,
 }

@@ -1,9 +1,9 @@
-//! Words and expressions as written.
+//! Words and unresolved expressions.
 
 use crate::diag::Place;
 use crate::language::{Callable, Method};
 
-/// A word of the user's: an identifier of the source or a name of an imported file.
+/// A word chosen by the user: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
 pub struct Name {
     /// Text of the word.
@@ -12,18 +12,18 @@ pub struct Name {
     pub place: Place,
 }
 
-/// A word of the language as written, with its row in the tables.
+/// A written word of the language, with its row in the tables.
 #[derive(Clone, Debug)]
 pub struct Term<I> {
     /// Text of the word.
     pub text: String,
     /// Span or position in the source.
     pub place: Place,
-    /// The row; `None` for a word that is in no table.
+    /// Row of the word; `None` for an unknown word.
     pub id: Option<I>,
 }
 
-/// A word before parentheses: a function, a solid, a rotation, or a table of the user's.
+/// A word before parentheses: a function, a solid, a rotation, or a table of the user.
 pub type Callee = Term<Callable>;
 
 impl Callee {
@@ -34,7 +34,7 @@ impl Callee {
     }
 }
 
-/// A word behind the dot of a body.
+/// A word after the dot of a body.
 pub type Member = Term<Method>;
 
 impl Member {
@@ -45,39 +45,39 @@ impl Member {
     }
 }
 
-/// An expression as written; names are not yet resolved.
+/// An expression with unresolved names.
 #[derive(Clone, Debug)]
 pub struct Expr {
-    /// What it is.
+    /// Kind of the expression.
     pub kind: ExprKind,
-    /// Where it stands.
+    /// Span or position in the source.
     pub place: Place,
 }
 
-/// The forms of an expression.
+/// Kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
-    /// A number, finite.
+    /// Finite number.
     Number(f64),
-    /// `length`, `x`, `t`.
+    /// Name: `length`, `x`, `t`.
     Name(String),
-    /// `hoop.x`.
+    /// Member: `hoop.x`.
     Field(Box<Expr>, Name),
-    /// `body.at(vector)`.
+    /// Method: `body.at(vector)`.
     Method(Box<Expr>, Member, Vec<Expr>),
-    /// `sin(angle)`, `rod(mass, length, y)`.
+    /// Call: `sin(angle)`, `rod(mass, length, y)`.
     Call(Callee, Vec<Expr>),
-    /// `-e`.
+    /// Negation: `-e`.
     Neg(Box<Expr>),
-    /// `a + b` and its kin, with the operator's place.
+    /// Binary operation such as `a + b`, with the span of the operator.
     Binary(BinaryOp, Box<Expr>, Box<Expr>, Place),
-    /// `(a, b)`.
+    /// Tuple: `(a, b)`.
     Tuple(Vec<Expr>),
-    /// `[a, b, c]`.
+    /// Array: `[a, b, c]`.
     Array(Vec<Expr>),
 }
 
-/// The operators between two expressions.
+/// Binary operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BinaryOp {
     /// `+`
@@ -91,12 +91,12 @@ pub enum BinaryOp {
 }
 
 impl Expr {
-    /// This expression and everything inside it, from the outside in.
+    /// Returns this expression and all its subexpressions, outer ones before inner ones.
     pub fn parts(&self) -> Vec<&Expr> {
         let mut parts = vec![self];
-        let mut at = 0;
-        while let Some(part) = parts.get(at) {
-            at += 1;
+        let mut next = 0;
+        while let Some(part) = parts.get(next) {
+            next += 1;
             match &part.kind {
                 ExprKind::Number(_) | ExprKind::Name(_) => {}
                 ExprKind::Field(base, _) | ExprKind::Neg(base) => parts.push(base),
@@ -110,7 +110,7 @@ impl Expr {
         parts
     }
 
-    /// The name that it is, if it is one.
+    /// Returns the name, if the expression is a name.
     pub fn name(&self) -> Option<&str> {
         match &self.kind {
             ExprKind::Name(name) => Some(name),
@@ -118,7 +118,7 @@ impl Expr {
         }
     }
 
-    /// The number that it is as written, with its sign.
+    /// Returns the number, with its sign, if the expression is a number.
     pub fn literal(&self) -> Option<f64> {
         match &self.kind {
             ExprKind::Number(n) => Some(*n),
@@ -127,32 +127,32 @@ impl Expr {
         }
     }
 
-    /// A number at a place.
+    /// Returns a number at a source position.
     pub fn number(value: f64, place: &Place) -> Expr {
         Expr { kind: ExprKind::Number(value), place: place.clone() }
     }
 
-    /// A function call at a place.
+    /// Returns a function call at a source position.
     pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
         let name = Name { text: function.to_string(), place: place.clone() };
         Expr { kind: ExprKind::Call(Callee::new(name), arguments), place: place.clone() }
     }
 
-    /// Two expressions with an operator between them, at the place of the first.
+    /// Returns a binary operation at the source position of the first operand.
     pub fn binary(op: BinaryOp, a: Expr, b: Expr) -> Expr {
         let place = a.place.clone();
         Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b), place.clone()), place }
     }
 
-    /// `of.word(arguments)` at the place of what it is of.
-    pub fn method(of: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
-        let place = of.place.clone();
+    /// Returns `base.word(arguments)` at the source position of `base`.
+    pub fn method(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
+        let place = base.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };
         let member = Member::new(name, arguments.len());
-        Expr { kind: ExprKind::Method(Box::new(of), member, arguments), place }
+        Expr { kind: ExprKind::Method(Box::new(base), member, arguments), place }
     }
 
-    /// Three numbers as a vector `[a, b, c]` at a place.
+    /// Returns three numbers as a vector `[a, b, c]` at a source position.
     pub fn vector(values: [f64; 3], place: &Place) -> Expr {
         let items = values.iter().map(|v| Expr::number(*v, place)).collect();
         Expr { kind: ExprKind::Array(items), place: place.clone() }

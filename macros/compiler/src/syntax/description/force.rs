@@ -7,54 +7,54 @@ use crate::language::{ForceKind, Key};
 /// A force element or an input.
 #[derive(Clone, Debug)]
 pub struct Action {
-    /// Name of the element; that of an input is its entry in `INPUTS`.
+    /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
     /// Row in the table of force elements.
     pub kind: ForceKind,
-    /// Coordinate, body or points that the element acts on.
+    /// Coordinate, body or points on which the element acts.
     pub on: Target,
-    /// The arguments that are given.
+    /// Written arguments.
     pub arguments: Vec<(Key, Expr)>,
 }
 
-/// What a file says of springs, dampers, rotors and motors.
+/// A spring, damper, rotor or motor of a file.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// Name of the element; that of an input is its entry in `INPUTS`.
+    /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
-    /// What it acts on.
+    /// Target of the element.
     pub on: DriveOn,
-    /// What it does.
+    /// Force law of the element.
     pub law: DriveLaw,
 }
 
-/// What a force element of a file acts on.
+/// Target of a force element of a file.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
 pub enum DriveOn {
-    /// A weighted sum of coordinates: the joints with their weights; each has one coordinate.
+    /// Weighted sum of coordinates: joints with one coordinate each, and their weights.
     Sum(Vec<(Name, f64)>),
-    /// A length that the coordinates give, such as that of a cable.
+    /// Length that depends on the coordinates, such as that of a cable.
     Length(Expr),
-    /// What a force at a point and a torque work on; it has a rate, and its value is zero.
+    /// Rate on which a force at a point and a torque do work; its value is zero.
     Wrench(Wrench),
 }
 
-/// A force at a point of a body and a torque on it, for each newton of what drives them.
+/// A force at a point of a body and a torque on the body, per newton of the drive.
 #[derive(Clone, Debug)]
 pub struct Wrench {
-    /// The point, `body.at(vector)`.
+    /// Point of action, `body.at(vector)`.
     pub on: Expr,
-    /// The force, in axes of the body, or of that which the reaction is on.
+    /// Force, in axes of the body, or of the body on which the reaction acts.
     pub force: [f64; 3],
-    /// The torque, in the same axes.
+    /// Torque, in the same axes.
     pub torque: [f64; 3],
-    /// The point of a body that the reaction is on, if that is not the ground.
+    /// Point on which the reaction acts; on the ground if absent.
     pub against: Option<Expr>,
 }
 
 impl DriveOn {
-    /// What a drive works on, with all weights times a factor.
+    /// Returns the target with all weights multiplied by a factor.
     pub fn scaled(&self, factor: f64) -> DriveOn {
         match self {
             DriveOn::Sum(terms) => {
@@ -72,7 +72,7 @@ impl DriveOn {
         }
     }
 
-    /// The joints of a sum with their weights; none of anything else.
+    /// Returns the joints of a sum with their weights; empty for other targets.
     pub fn terms(&self) -> &[(Name, f64)] {
         match self {
             DriveOn::Sum(terms) => terms,
@@ -81,46 +81,46 @@ impl DriveOn {
     }
 }
 
-/// How a force element of a file answers to what it is on.
+/// Force law of a force element of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveLaw {
-    /// With a force in proportion to what the sum differs from a free length.
+    /// Force proportional to the difference from a free length.
     Spring {
         /// Stiffness.
         stiffness: f64,
-        /// Where the force is zero.
+        /// Value at which the force is zero.
         free: f64,
     },
-    /// With a force in proportion to what the sum is outside of a range.
+    /// Force proportional to the excess beyond a range.
     Slack {
         /// Stiffness.
         stiffness: f64,
-        /// The ends of the range.
+        /// Lower and upper end of the range.
         range: [f64; 2],
     },
-    /// With a force against its rate, in proportion to that.
+    /// Force opposite and proportional to the rate.
     Damper(f64),
-    /// With a force against its rate, of this size.
+    /// Force of this magnitude opposite to the rate.
     Friction(f64),
-    /// With a force against its acceleration, in proportion to that.
+    /// Force opposite and proportional to the acceleration.
     Inerter(f64),
-    /// With this force always.
+    /// Constant force.
     Push(f64),
-    /// With the force that an input says; the input's unit.
+    /// Force given by an input; the value is the unit of the input.
     Input(&'static str),
 }
 
-/// What a force element acts on.
+/// Target of a force element.
 #[derive(Clone, Debug)]
 pub enum Target {
-    /// `joint`, `joint.coordinate`, `body`, `body.at(vector)`, `point`.
+    /// One target: `joint`, `joint.coordinate`, `body`, `body.at(vector)`, `point`.
     On(Expr),
-    /// Two points: of bodies, or named ones.
+    /// Two points, of bodies or named.
     Between(Expr, Expr),
 }
 
 impl Target {
-    /// Where it stands.
+    /// Returns the source position of the target.
     pub fn place(&self) -> &Place {
         match self {
             Target::On(e) | Target::Between(_, e) => &e.place,
@@ -134,13 +134,13 @@ impl Action {
         self.arguments.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
     }
 
-    /// Returns the law that is given, with its argument.
+    /// Returns the written law, with its argument.
     pub fn law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
         self.arguments.iter().find(|(key, _)| laws.contains(key)).map(|(key, e)| (*key, e))
     }
 
-    /// True for a force or a torque without a value: an entry of `u` commands it.
+    /// Whether the element is a force or a torque without a value: an input.
     pub fn is_input(&self) -> bool {
         self.kind.row().arguments.contains(&Key::Value) && self.get(Key::Value).is_none()
     }

@@ -3,23 +3,23 @@
 use super::Endpoint;
 use crate::diag::Place;
 
-/// A part of the collision geometry of a file's link.
+/// A shape of the collision geometry of a file's link.
 #[derive(Clone, Debug)]
 pub struct Collision {
-    /// The link, and where the shape's centre and axes are on it.
+    /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
-    /// The shape.
+    /// Shape.
     pub shape: Shape,
-    /// Where the file says it.
+    /// Position in the file.
     pub place: Place,
 }
 
-/// Shapes of collision geometry; lengths in m.
+/// Shape of collision or visual geometry; lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Radius.
     Sphere(f64),
-    /// Edges along the axes.
+    /// Edge lengths along the axes.
     Cuboid([f64; 3]),
     /// Radius and length, along z.
     Cylinder(f64, f64),
@@ -31,22 +31,22 @@ pub enum Shape {
     Mesh,
 }
 
-/// A part of the visual geometry of a file's link.
+/// A shape of the visual geometry of a file's link.
 #[derive(Clone, Debug)]
 pub struct Visual {
-    /// The link, and where the shape's centre and axes are on it.
+    /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
-    /// The shape.
+    /// Shape.
     pub shape: Shape,
-    /// Its triangles, if it is a mesh.
+    /// Triangles, if the shape is a mesh.
     pub mesh: Option<Mesh>,
 }
 
 /// Triangles of another file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Its path, as the file writes it.
+    /// Path as written in the file.
     pub path: String,
-    /// Factors along the axes.
+    /// Scale factors along the axes.
     pub scale: [f64; 3],
 }

@@ -1,4 +1,5 @@
-//! A mechanism as the user wrote it, or as a file says it: the data that reading makes and resolution takes.
+//! Unresolved description of a mechanism, written by the user or read from a file: the output of the parser
+//! and the input of name resolution.
 
 use crate::diag::Place;
 
@@ -9,25 +10,25 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction, Softness};
+pub use constraint::{Compliance, Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
 pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench};
 pub use geometry::{Collision, Mesh, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 
-/// The scalar type of the generated functions.
+/// Scalar type of the generated functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScalarType {
     /// `f64`
     F64,
     /// `f32`
     F32,
-    /// The struct's own type parameter.
+    /// Type parameter of the struct.
     Generic(String),
 }
 
-/// How the root of an imported file is held.
+/// Attachment of the root of an imported file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// Welded to the ground.
@@ -36,26 +37,26 @@ pub enum Base {
     Free,
 }
 
-/// A mechanism as the user wrote it: nothing is resolved and nothing is checked but the grammar.
+/// A mechanism as written by the user. Only the grammar has been checked; names are unresolved.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// The struct's name.
+    /// Name of the struct.
     pub name: Name,
-    /// Uniform gravity, a vector in ground axes.
+    /// Uniform gravity, a vector in ground axes, m/s².
     pub gravity: Option<Expr>,
-    /// Speed at which regularised Coulomb friction reaches `tanh 1` of its full value.
+    /// Speed at which regularised Coulomb friction reaches `tanh 1` of its maximum.
     pub friction_speed: Option<Expr>,
-    /// The scalar type.
+    /// Scalar type.
     pub scalar: ScalarType,
-    /// Parameters: the fields that stay in the struct.
+    /// Parameters: the fields that remain in the struct.
     pub parameters: Vec<Name>,
-    /// Tables: functions that are parameters.
+    /// Tables: parameters that are functions.
     pub tables: Vec<Table>,
-    /// States of first order: parameters that change, each with its index among them.
+    /// States of first order: parameters that change, each with its index among the parameters.
     pub states: Vec<(Name, usize)>,
     /// `#[unit(…)]` of parameters, by index.
     pub units: Vec<(usize, Expr)>,
-    /// Units of the last parameters: those that are figures of a file.
+    /// Units of the last parameters, which replace values of a file.
     pub file_units: Vec<&'static str>,
     /// Rigid bodies.
     pub bodies: Vec<Body>,
@@ -65,22 +66,22 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// Force elements and inputs.
     pub actions: Vec<Action>,
-    /// Force elements and inputs of a file on its joints.
+    /// Force elements and inputs of a file.
     pub drives: Vec<Drive>,
     /// Limits of coordinates.
     pub limits: Vec<Limit>,
-    /// Configurations at rest about which linear equations are printed.
+    /// Equilibria about which linear equations are printed.
     pub equilibria: Vec<Equilibrium>,
-    /// Coordinates of their own.
+    /// Declared coordinates, which belong to no joint.
     pub coordinates: Vec<FreeCoordinate>,
-    /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs
-    /// themselves.
+    /// Names of all inputs, in order: those of force elements without a value, and fields of the type
+    /// `Input`.
     pub inputs: Vec<Name>,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Points.
     pub points: Vec<Point>,
-    /// Names for expressions.
+    /// Named expressions.
     pub definitions: Vec<Definition>,
     /// Definitions that are generalized speeds.
     pub speeds: Vec<Name>,
@@ -90,32 +91,32 @@ pub struct Description {
     pub energies: Vec<(Name, Expr)>,
     /// Rayleigh dissipation functions.
     pub dissipations: Vec<(Name, Expr)>,
-    /// Constraints beside those of joints that close loops.
+    /// Constraints other than those of loop-closing joints.
     pub constraints: Vec<Constraint>,
-    /// Surfaces that may touch.
+    /// Unilateral contacts.
     pub contacts: Vec<Contact>,
     /// Collision geometry of a file's links.
     pub collisions: Vec<Collision>,
-    /// What it looks like is asked for.
+    /// Whether the drawing is requested.
     pub drawing: bool,
     /// Visual geometry of a file's links, for the drawing.
     pub visuals: Vec<Visual>,
-    /// How constrained motion is solved.
+    /// Solution method for constrained motion.
     pub formulation: Formulation,
-    /// Numbers of a file that were rounded, as the user asked for.
+    /// Numbers of a file that were rounded by the option `snap`.
     pub snapped: Vec<String>,
-    /// What is in the file and not in the mechanism.
+    /// Contents of the file that the mechanism omits.
     pub left_out: Vec<String>,
-    /// What is made of mass properties.
+    /// Treatment of mass properties.
     pub inertias: Inertias,
-    /// The file's root is the ground: it is a frame as other links are.
+    /// Whether the file's root is the ground, which then has a frame as other links have.
     pub ground_frame: bool,
-    /// Parts with mistakes are left out: nobody knows what they would hold.
+    /// Whether elements with errors were removed; it is then unknown which bodies these would hold.
     pub partial: bool,
 }
 
 impl Description {
-    /// A mechanism of which nothing but the name is known.
+    /// Returns a mechanism with a name and without elements.
     pub fn empty(name: Name) -> Description {
         Description {
             name,
@@ -158,24 +159,24 @@ impl Description {
     }
 }
 
-/// What is made of mass properties.
+/// Treatment of mass properties.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inertias {
-    /// They are those of real bodies.
+    /// Checked for physical consistency.
     #[default]
     Check,
-    /// They are taken as they are.
+    /// Accepted without a check.
     Trust,
-    /// There are none: the mechanism has no dynamics.
+    /// Absent: the mechanism has no dynamics.
     None,
 }
 
-/// How the accelerations of a mechanism with constraints are found.
+/// Solution method for the accelerations of a mechanism with constraints.
 #[derive(Clone, Debug, Default)]
 pub enum Formulation {
-    /// By Lagrange multipliers.
+    /// Lagrange multipliers.
     #[default]
     Multipliers,
-    /// By independent speeds, of those velocities or of any.
+    /// Independent velocities: the listed ones, or chosen automatically if the list is empty.
     Speeds(Vec<Expr>, Place),
 }

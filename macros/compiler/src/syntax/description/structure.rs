@@ -1,4 +1,4 @@
-//! What a mechanism is built of: bodies, particles, joints, frames, points, coordinates.
+//! Structure of a mechanism: bodies, particles, joints, frames, points, coordinates.
 
 use super::{Expr, Name};
 use crate::language::JointKind;
@@ -6,114 +6,114 @@ use crate::language::JointKind;
 /// A generalized coordinate that belongs to no joint.
 #[derive(Clone, Debug)]
 pub struct FreeCoordinate {
-    /// Its name.
+    /// Name of the coordinate.
     pub name: Name,
-    /// How many joints are declared before it.
+    /// Number of joints declared before it.
     pub joints_before: usize,
 }
 
-/// A frame: axes without a place.
+/// A frame: axes without a position.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Its name.
+    /// Name of the frame.
     pub name: Name,
-    /// The body or frame whose axes it starts with.
+    /// Body or frame whose axes are rotated.
     pub start: Expr,
-    /// Rotations about carried axes.
+    /// Successive rotations about rotated axes.
     pub rotations: Vec<Expr>,
 }
 
 /// A point.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its name.
+    /// Name of the point.
     pub name: Name,
-    /// What it is fixed in or measured from: a body or another point; the ground if absent.
+    /// Body or point relative to which it is fixed; the ground if absent.
     pub on: Option<Expr>,
-    /// Its place there.
+    /// Position in that body.
     pub at: Option<Expr>,
 }
 
 /// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Its name, which also names its frame.
+    /// Name of the body and of its frame.
     pub name: Name,
     /// Mass; zero if absent.
     pub mass: Option<Expr>,
-    /// Centre of mass, in body axes from the body's origin; the origin if absent.
+    /// Centre of mass, in body axes relative to the body's origin; the origin if absent.
     pub com: Option<Expr>,
     /// Inertia in body axes; zero if absent.
     pub inertia: Option<Expr>,
-    /// The point that the inertia is about, in body axes from the body's origin; the centre of mass if
+    /// Reference point of the inertia, in body axes relative to the body's origin; the centre of mass if
     /// absent.
     pub about: Option<Expr>,
-    /// Where its origin is, for a body placed by expressions.
+    /// Position of the origin, for a body placed by expressions.
     pub at: Option<Expr>,
-    /// The frame whose axes it has, for a body placed by expressions.
+    /// Frame with the axes of the body, for a body placed by expressions.
     pub frame: Option<Expr>,
 }
 
 /// A particle: mass at a point.
 #[derive(Clone, Debug)]
 pub struct Particle {
-    /// Its name, which also names its frame (axes of the body that carries it).
+    /// Name of the particle and of its frame, whose axes are those of its carrier.
     pub name: Name,
     /// Mass.
     pub mass: Expr,
-    /// `body.at(vector)`; absent for a particle that is itself the end of a joint.
+    /// Position `body.at(vector)`; absent for a particle that is the child of a joint.
     pub at: Option<Expr>,
 }
 
 /// A joint from a parent to a child.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name; it names the coordinate of a joint with one degree of freedom.
+    /// Name of the joint, and of its coordinate if it has one degree of freedom.
     pub name: Name,
-    /// Which joint.
+    /// Kind of the joint.
     pub kind: JointKind,
-    /// Parent body, with the joint's place on it.
+    /// Parent body, with the joint's frame on it.
     pub parent: Endpoint,
-    /// Child body, with the joint's place on it.
+    /// Child body, with the joint's frame on it.
     pub child: Endpoint,
-    /// Rotation axes, in the joint's frame on the parent (a later one in the carried frame).
+    /// Rotation axes, in the joint's frame on the parent (a later axis in the rotated frame).
     pub about: Vec<Expr>,
     /// Translation axes, in the joint's frame on the parent.
     pub along: Vec<Expr>,
-    /// Screw: advance per radian.
+    /// Advance per radian of a screw.
     pub pitch: Option<Expr>,
-    /// Screw: advance per turn.
+    /// Advance per revolution of a screw.
     pub lead: Option<Expr>,
-    /// The axis need not be of unit length (URDF): it is normalised, and only zero is a mistake.
+    /// Whether the axis is normalised (URDF); only a zero axis is then an error.
     pub normalise_axis: bool,
-    /// A joint that closes a loop: which of the two solutions of a loop that is solved in closed form.
+    /// Assembly mode of a loop that is solved in closed form, for its closing joint.
     pub branch: Option<Expr>,
-    /// The coordinate follows another joint's.
+    /// Joint that the coordinate follows.
     pub mimic: Option<Mimic>,
     /// Viscous damping on the coordinate (URDF).
     pub damping: Option<Expr>,
     /// Coulomb friction on the coordinate (URDF).
     pub friction: Option<Expr>,
-    /// The joint's coordinate is an input of its own (URDF: the joint's motor).
+    /// Whether the joint has an input of its own (URDF: the joint's motor).
     pub driven: bool,
 }
 
 /// One end of a joint: `body.at(position).rotated(rotation, …)`.
 #[derive(Clone, Debug)]
 pub struct Endpoint {
-    /// The body (or `ground`).
+    /// Body (or `ground`).
     pub body: Name,
-    /// The joint's place on it, in body axes; its origin if absent.
+    /// Position of the joint on the body, in body axes; the body's origin if absent.
     pub at: Option<Expr>,
-    /// Rotations about carried axes, from the body's axes to the joint's: `z(a)`, `eigenaxis(n, a)`, or a
-    /// 3×3 matrix whose columns are the joint's axes.
+    /// Rotations about rotated axes, from the body's axes to the joint's: `z(a)`, `eigenaxis(n, a)`, or a 3×3
+    /// matrix whose columns are the joint's axes.
     pub rotated: Vec<Expr>,
 }
 
-/// `coordinate = multiplier × other + offset`.
+/// The relation `coordinate = multiplier × other + offset`.
 #[derive(Clone, Debug)]
 pub struct Mimic {
-    /// The joint that is followed.
+    /// Joint that is followed.
     pub joint: Name,
     /// Factor.
     pub multiplier: f64,

@@ -1,21 +1,21 @@
-//! The tables: what is said → what is meant.
+//! Tables of synonyms with their meanings.
 
 use crate::language::Words;
 use crate::language::elements::words::RATIO;
 
-const ONE_SIDED: &str =
+const ONE_SIDED_HELP: &str =
     "what only pulls is a `Spring` given by its energy: `energy = k / 2 * pow(max(stretch, 0), 2)`";
-const END_STOP: &str = "a rigid end stop is a `Limit` with `restitution`: `#[limit(on = joint, from = a, to = b, restitution = 0)]`; a soft one is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
-const CONTROL: &str = "what a controller decides is an input, `Force`, `Torque` or `Input`; the controller itself is Rust of your own";
-const SHAPE: &str =
+const END_STOP_HELP: &str = "a rigid end stop is a `Limit` with `restitution`: `#[limit(on = joint, from = a, to = b, restitution = 0)]`; a soft one is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
+const CONTROL_HELP: &str = "what a controller decides is an input, `Force`, `Torque` or `Input`; the controller itself is Rust of your own";
+const SHAPE_HELP: &str =
     "shapes are not drawn: a body has a mass and an inertia, as in `inertia = cuboid(m, a, b, c)`";
-const GROUND: &str = "`ground` is there already: a joint from it holds a body, as in `ground -> body`";
-const SEEN: &str = "what is computed for you is a `Scalar` or `Vector` with `#[output(…)]`";
-const TOUCH: &str = "surfaces that may part are a `Contact`: `#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`; those that stay in touch are `Rolling` or `Slipping`";
-const TIME: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
-const CONSTRAINT: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
+const GROUND_HELP: &str = "`ground` is there already: a joint from it holds a body, as in `ground -> body`";
+const OUTPUT_HELP: &str = "what is computed for you is a `Scalar` or `Vector` with `#[output(…)]`";
+const CONTACT_HELP: &str = "surfaces that may part are a `Contact`: `#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`; those that stay in touch are `Rolling` or `Slipping`";
+const TIME_HELP: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
+const CONSTRAINT_HELP: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
-/// Types of fields, without the word `joint`.
+/// Types of fields, without the suffix `joint`.
 pub const ELEMENTS: Words = &[
     ("mass", "a mass is a `Body` if it has a size or turns, `Particle` if it is a point"),
     (
@@ -30,43 +30,43 @@ pub const ELEMENTS: Words = &[
         "expression definition define",
         "a name for an expression is a `Scalar` or `Vector` with `#[define(…)]`",
     ),
-    ("output outputs sensor measurement probe observer", SEEN),
-    ("constraint constraints", CONSTRAINT),
+    ("output outputs sensor measurement probe observer", OUTPUT_HELP),
+    ("constraint constraints", CONSTRAINT_HELP),
     ("gear gears gearbox belt pulley transmission differential coupler mimic rackandpinion", RATIO),
-    ("rope cable tendon string chain wire muscle thread", ONE_SIDED),
-    ("stop endstop bumper hardstop", END_STOP),
-    ("contact contacts collision collider impact terrain heightfield heightmap hfield", TOUCH),
+    ("rope cable tendon string chain wire muscle thread", ONE_SIDED_HELP),
+    ("stop endstop bumper hardstop", END_STOP_HELP),
+    ("contact contacts collision collider impact terrain heightfield heightmap hfield", CONTACT_HELP),
     (
         "wheel roller tire tyre",
         "a wheel is a `Body` on a joint, and a `Rolling`: `#[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]`",
     ),
-    ("controller pid regulator", CONTROL),
-    ("geom geometry visual mesh shape collisionshape", SHAPE),
-    ("ground world base earth inertialframe newtonianframe", GROUND),
+    ("controller pid regulator", CONTROL_HELP),
+    ("geom geometry visual mesh shape collisionshape", SHAPE_HELP),
+    ("ground world base earth inertialframe newtonianframe", GROUND_HELP),
     (
         "lagrangian hamiltonian lagrange kane",
         "equations follow from bodies, joints and forces; an energy of your own is a `Potential`",
     ),
-    ("time", TIME),
+    ("time", TIME_HELP),
     ("real float double number param parameter parameters constant const length angle f16 f128 f80 t", "f64"),
 ];
 
-const INTEGRATION: &str = "the equations are solved where they are used: `linkwork::integrate` and `linkwork::simulate` hold the methods";
-const FORMATS: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`, `sdf = \"path/to/robot.sdf\"`";
-const RUN_XACRO: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the result: `urdf = \"path/to/robot.urdf\"`";
+const INTEGRATION_HELP: &str = "the equations are solved where they are used: `linkwork::integrate` and `linkwork::simulate` hold the methods";
+const FORMAT_HELP: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`, `sdf = \"path/to/robot.sdf\"`";
+const XACRO_HELP: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the result: `urdf = \"path/to/robot.urdf\"`";
 
 /// Arguments of `#[mechanism]`.
 pub const OPTIONS: Words = &[
     ("g grav gravitation gravityvector", "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`"),
     ("file path model robot filename source", "urdf"),
-    ("xml usd dae", FORMATS),
+    ("xml usd dae", FORMAT_HELP),
     ("sdformat gazebo", "sdf"),
     ("mujoco mjb", "mjcf"),
-    ("xacro", RUN_XACRO),
+    ("xacro", XACRO_HELP),
     ("precision type float real dtype", "scalar"),
     ("floatingbase freebase floating freeflyer rootjoint", "did you mean `base = free`?"),
     ("fixedbase", "did you mean `base = fixed`?"),
-    ("solver integrator method dt step timestep stepsize", INTEGRATION),
+    ("solver integrator method dt step timestep stepsize", INTEGRATION_HELP),
     ("unit units", "all quantities are in SI units, angles in radians"),
     ("name", "the struct's name is that of the mechanism"),
     ("damping friction passivejoints", "passive"),
@@ -77,7 +77,7 @@ pub const OPTIONS: Words = &[
     ("trustinertia", "did you mean `inertia = trust`?"),
 ];
 
-/// Words of `#[mechanism]` that stand alone.
+/// Options of `#[mechanism]` without a value.
 pub const REQUESTS: Words = &[
     (
         "derivative jacobian jacobians gradient gradients linearize linearise linearization linear sensitivity autodiff diff",
@@ -102,13 +102,13 @@ pub const REQUESTS: Words = &[
     ),
 ];
 
-/// Ways to keep constraints.
+/// Formulations of constrained motion.
 pub const FORMULATIONS: Words = &[
     ("lagrange lagrangian lagrangemultipliers dae multiplier", "multipliers"),
     ("kane independent minimal reduced speed ode", "speeds"),
 ];
 
-/// Functions of expressions.
+/// Functions in expressions.
 pub const FUNCTIONS: Words = &[
     ("arctan", "atan"),
     ("arcsin", "asin"),
@@ -141,8 +141,8 @@ pub const FUNCTIONS: Words = &[
     ("ifelse where when piecewise pieces select", "a law in pieces is written `if a < b { … } else { … }`"),
 ];
 
-const SI: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`; a parameter is a field of this name, of type `f64`";
-const VALUE: &str = "a value is a number, a parameter, a coordinate or an expression of them";
+const SI_HELP: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`; a parameter is a field of this name, of type `f64`";
+const VALUE_HELP: &str = "a value is a number, a parameter, a coordinate or an expression of them";
 
 /// Names in expressions.
 pub const NAMES: Words = &[
@@ -151,9 +151,9 @@ pub const NAMES: Words = &[
     ("tau twopi", "write `2 * pi`"),
     ("deg degree degrees °", "write `degrees(90)` for an angle in degrees"),
     ("rad radians", "angles are in radians as they stand: remove it"),
-    ("kg m meter metre meters s sec n nm mm cm gram newton si", SI),
-    ("true false", VALUE),
-    ("inf infinity nan none null", VALUE),
+    ("kg m meter metre meters s sec n nm mm cm gram newton si", SI_HELP),
+    ("true false", VALUE_HELP),
+    ("inf infinity nan none null", VALUE_HELP),
     ("ex e1 xhat ux unitx xaxis", "x"),
     ("ey e2 yhat uy unity yaxis", "y"),
     ("ez e3 zhat uz unitz zaxis", "z"),
@@ -171,7 +171,7 @@ pub const NAMES: Words = &[
     ),
 ];
 
-/// Greek letters, for names that spell them.
+/// Greek letters, with the names that replace them.
 pub const GREEK: &[(&str, &str)] = &[
     ("α", "alpha"),
     ("β", "beta"),
@@ -202,7 +202,7 @@ pub const SOLIDS: Words = &[
     ("matrix tensor full", "write the matrix itself, `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`"),
 ];
 
-/// What stands behind the dot of a body.
+/// Methods of a body.
 pub const METHODS: Words = &[
     ("pos position point offset translate translated from shift origin", "at"),
     ("rotate rot rotation turned turn tilted rpy", "rotated"),
@@ -220,7 +220,7 @@ pub const MEMBERS: Words = &[
     ),
 ];
 
-/// Words for the body at hand.
+/// Words for the current body.
 pub const OWN: Words = &[("body this own local frame me", "the axes at hand are `x`, `y` and `z` alone")];
 
 /// Methods of numbers and coordinates.

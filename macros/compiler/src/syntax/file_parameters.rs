@@ -1,5 +1,5 @@
-//! `parameters = inertial("trunk")`: which figures of a file are parameters of the mechanism, and the fields
-//! that hold them.
+//! The option `parameters = inertial("trunk")`: values of a file that are parameters of the mechanism, and
+//! the fields that hold them.
 
 use super::Name;
 use super::expression::parse_name;
@@ -8,18 +8,18 @@ use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
 use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
 
-/// Figures of one kind, as they are asked for.
+/// Requested parameters of one kind.
 #[derive(Clone, Debug)]
-pub struct FileFigures {
-    /// Their kind, as it is written.
+pub struct FileParameters {
+    /// Kind, as written.
     pub word: Name,
-    /// Links or joints by name; all of them if absent.
+    /// Names of links or joints; all of them if absent.
     pub of: Option<Vec<Name>>,
 }
 
-/// The kinds of figures.
+/// Mass properties of links.
 pub const INERTIAL: &str = "inertial";
-/// Places of joints.
+/// Positions and orientations of joints.
 pub const PLACEMENT: &str = "placement";
 /// Viscous friction of joints.
 pub const DAMPING: &str = "damping";
@@ -28,36 +28,36 @@ pub const FRICTION: &str = "friction";
 
 const WORDS: [&str; 4] = [INERTIAL, PLACEMENT, DAMPING, FRICTION];
 
-/// What a field is.
+/// Type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFieldKind {
-    /// The runtime's `Inertial`: a link's mass properties.
+    /// `Inertial` of the runtime: the mass properties of a link.
     Inertial,
-    /// The runtime's `Placement`: where a joint stands on its parent.
+    /// `Placement` of the runtime: the pose of a joint on its parent.
     Placement,
-    /// A number.
+    /// Scalar.
     Number,
 }
 
-/// A field that holds figures of a file.
+/// A field that holds values of a file.
 #[derive(Clone, Debug)]
 pub struct FileField {
-    /// Its name in Rust.
+    /// Name of the field in Rust.
     pub ident: String,
-    /// What it is.
+    /// Type of the field.
     pub kind: FileFieldKind,
-    /// The link or joint that it belongs to.
+    /// Link or joint to which it belongs.
     pub of: String,
-    /// Its documentation.
+    /// Documentation of the field.
     pub about: String,
-    /// The file's figures, in the order of [`members`](Self::members).
+    /// Values in the file, in the order of [`members`](Self::members).
     pub values: Vec<f64>,
-    /// Their units.
+    /// Units of the values.
     pub units: Vec<&'static str>,
 }
 
 impl FileField {
-    /// How each figure is written behind a mechanism: `trunk.mass`.
+    /// Returns the member access of each value relative to a mechanism: `trunk.mass`.
     pub fn members(&self) -> Vec<String> {
         let members: &[&str] = match self.kind {
             FileFieldKind::Inertial => {
@@ -70,17 +70,19 @@ impl FileField {
     }
 }
 
-/// Parses one kind or a list of them.
-pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileFigures>> {
+/// Parses one kind or a list of kinds.
+pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileParameters>> {
     if !input.peek(token::Bracket) {
         return Ok(vec![parse_one(input)?]);
     }
     let list;
     bracketed!(list in input);
-    Ok(Punctuated::<FileFigures, Token![,]>::parse_terminated_with(&list, parse_one)?.into_iter().collect())
+    Ok(Punctuated::<FileParameters, Token![,]>::parse_terminated_with(&list, parse_one)?
+        .into_iter()
+        .collect())
 }
 
-fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
+fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());
@@ -92,7 +94,7 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
     }
     let word = parse_name(input)?;
     if !input.peek(token::Paren) {
-        return Ok(FileFigures { word, of: None });
+        return Ok(FileParameters { word, of: None });
     }
     let list;
     parenthesized!(list in input);
@@ -109,13 +111,13 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileFigures> {
         Ok(Name { text: text.value(), place: text.span().into() })
     };
     let names = Punctuated::<Name, Token![,]>::parse_terminated_with(&list, name)?;
-    Ok(FileFigures { word, of: Some(names.into_iter().collect()) })
+    Ok(FileParameters { word, of: Some(names.into_iter().collect()) })
 }
 
-/// Those kinds that there are, each once; reports the others.
-pub fn check(asked: Vec<FileFigures>, cx: &mut Diagnostics) -> Vec<FileFigures> {
-    let mut good: Vec<FileFigures> = Vec::new();
-    for figures in asked {
+/// Returns the known kinds, each once; reports unknown ones and duplicates.
+pub fn check(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
+    let mut good: Vec<FileParameters> = Vec::new();
+    for figures in requested {
         let word = &figures.word;
         if !WORDS.contains(&word.text.as_str()) {
             let words = WORDS.map(|word| format!("`{word}`"));

@@ -1,16 +1,16 @@
-//! Slips in the grammar of arguments, and what is most likely meant.
+//! Common errors in the grammar of arguments, with their corrections.
 
-use super::{Arguments, Value};
+use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, one_of, syn_error};
-use crate::syntax::expression::{parse_expr, quoted, unexpected};
+use crate::syntax::expression::{parse_expr, quoted, unexpected_token_error};
 use crate::syntax::{Expr, ExprKind, words};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
 
-/// Reports an expression that stands where `name = value` should.
-pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
+/// Reports an expression in the place of `name = value`.
+pub fn report_unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     if let Some(word) = e.name().filter(|word| known.contains(word)) {
         cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
         return;
@@ -18,10 +18,10 @@ pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     let error = cx.error(e.place.clone(), "expected `name = value`");
     match (&e.kind, known) {
         (ExprKind::Call(word, value), _) if known.contains(&word.text.as_str()) && value.len() == 1 => {
-            error.help(format!("write `{} = {}`", word.text, value[0].spelt()))
+            error.help(format!("write `{} = {}`", word.text, value[0].to_source()))
         }
         (_, []) => error.help(format!("write `{example}`")),
-        (_, [one]) => error.help(format!("write `{one} = {}`", e.spelt())),
+        (_, [one]) => error.help(format!("write `{one} = {}`", e.to_source())),
         (_, [.., _]) if known.len() <= 8 => {
             let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
             error.help(format!("expected {}", one_of(&list)))
@@ -30,8 +30,8 @@ pub fn unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     };
 }
 
-/// The error where an argument should end: most likely a comma is missing.
-pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
+/// Error for input after an argument; most likely a comma is missing.
+pub fn missing_comma_error(input: ParseStream<'_>) -> syn::Error {
     if input.peek(Token![;]) {
         return syn_error(input.span(), "expected `,`", "arguments are separated by `,`");
     }
@@ -45,12 +45,12 @@ pub fn no_comma(input: ParseStream<'_>) -> syn::Error {
             let help = format!("arguments are separated by `,`: write `…, {word}`");
             syn_error(input.span(), "expected `,`", &help)
         }
-        _ => unexpected(input),
+        _ => unexpected_token_error(input),
     }
 }
 
-/// The error at a text that stands alone.
-pub fn text_alone(text: &LitStr) -> syn::Error {
+/// Error for a string without a key.
+pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let value = text.value();
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
     if is_file {
@@ -60,9 +60,12 @@ pub fn text_alone(text: &LitStr) -> syn::Error {
     syn_error(text.span(), "expected an expression, found a text", "write it without quotes")
 }
 
-/// The error at what stands in the place of the arrow of a joint, or of the sign behind the name of an
-/// argument.
-pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> Option<syn::Error> {
+/// Error for a missing `->` of a joint, or a missing `=` after an argument name, at the token found instead.
+pub fn missing_arrow_error(
+    input: ParseStream<'_>,
+    first: &Expr,
+    arguments: &Arguments,
+) -> Option<syn::Error> {
     let is_place =
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
     let is_arrow = input.peek(Token![->]);
@@ -76,7 +79,10 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
     while let Ok(sign) = ahead.call(syn::parse::ParseBuffer::parse::<proc_macro2::Punct>) {
         signs.push(sign.as_char());
     }
-    if arguments.form == super::Form::Joint && arguments.relation.is_none() && arguments.named.is_empty() {
+    if arguments.grammar == super::Grammar::Joint
+        && arguments.relation.is_none()
+        && arguments.named.is_empty()
+    {
         if signs.is_empty() && ahead.peek2(Ident::peek_any) {
             ahead.call(Ident::parse_any).ok()?;
         }
@@ -85,25 +91,25 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
         if equation || (signs.is_empty() && second.is_none()) {
             return None;
         }
-        let child = second.map_or("child".to_string(), |e| e.spelt());
-        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.spelt())));
+        let child = second.map_or("child".to_string(), |e| e.to_source());
+        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.to_source())));
     }
     if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
-        let help = format!("write `{} = …`", first.spelt());
+        let help = format!("write `{} = …`", first.to_source());
         return first.name().map(|_| syn_error(span, "expected `=`", &help));
     }
     None
 }
 
-/// True for `->>`.
+/// Whether the next tokens are `->>`.
 fn is_double(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
 
-/// The error at a number with a decimal comma: the value of an argument ends in a whole number, and another
-/// one follows.
-pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
+/// Error for a number with a decimal comma: the value of an argument ends in an integer, and another one
+/// follows.
+pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
     let is = |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
@@ -124,12 +130,12 @@ pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
     None
 }
 
-/// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.
-pub fn names_without_brackets_or_quotes(value: &Value) -> Option<String> {
+/// Returns the elements of a list of strings, quoted, for a string or names without brackets or quotes.
+pub fn quoted_names(value: &ArgumentValue) -> Option<String> {
     match value {
-        Value::Text(text) => Some(quoted(&text.value())),
-        Value::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
-        Value::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
+        ArgumentValue::Text(text) => Some(quoted(&text.value())),
+        ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
+        ArgumentValue::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
             let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
             names.map(|names| names.join(", "))
         }

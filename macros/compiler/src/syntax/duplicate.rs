@@ -1,26 +1,26 @@
-//! Two structs of one name in one module: rustc reports the name once, but also each function that both have.
-//! So the second struct gets no functions.
+//! Two structs with one name in one module: the Rust compiler reports the name once, but also each function
+//! that both define. The second struct therefore gets no functions.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{Attribute, Item, ItemStruct, Stmt};
 
-/// Returns the bare struct if the source file defines its name in the same scope before the attribute's line,
-/// counted from one.
+/// Returns the struct without fields if the source file defines its name in the same scope before the
+/// attribute's line, counted from one.
 pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
-    let named = |ident: &str| {
+    let definitions_of = |ident: &str| {
         let definition = format!("struct {ident}");
         let is_whole =
             |end: usize| text[end..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '_');
         let found = text.match_indices(&definition).map(|(at, word)| (at, at + word.len()));
         found.filter(|(_, end)| is_whole(*end)).map(|(at, _)| at).collect::<Vec<_>>()
     };
-    // Cheap first: there is only one in nearly every file.
+    // Cheap test first: nearly every file has only one such struct.
     let ItemStruct { vis, ident, .. } = match text.matches("struct ").count() {
         0 | 1 => return None,
         _ => syn::parse2(item.clone()).ok()?,
     };
-    let found = named(&ident.to_string());
+    let found = definitions_of(&ident.to_string());
     let first = found.first().map(|at| 1 + text[..*at].matches('\n').count())?;
     if found.len() < 2 || first >= line {
         return None;
@@ -48,7 +48,7 @@ pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<
     None
 }
 
-/// True for an attribute that may leave the struct out.
+/// Whether an attribute may remove the struct.
 fn is_conditional(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") || attribute.path().is_ident("cfg_attr")
 }

@@ -1,5 +1,5 @@
-//! What is most likely meant by an expression that has no value: angles in degrees, members and methods of
-//! other languages, arrays that are no matrices.
+//! Corrections for common errors in expressions: angles in degrees, members and methods of other languages,
+//! arrays that are not matrices.
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -8,16 +8,16 @@ use crate::language::{Callable, Rotation};
 use crate::syntax::{self, Callee, ExprKind, Member, Name, words};
 
 impl Scope<'_, '_> {
-    /// Says what to write for a method, which expressions do not have.
+    /// Reports a method, which expressions do not have, with the correct syntax.
     pub fn report_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
         let text = method.text.as_str();
         let base = match &e.kind {
-            ExprKind::Method(base, ..) => base.spelt(),
+            ExprKind::Method(base, ..) => base.to_source(),
             _ => String::new(),
         };
         let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
         let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
-        if is_coordinate && let Some(meant) = words::meant(words::RATES, text, &[]) {
+        if is_coordinate && let Some(meant) = words::meaning(words::RATES, text, &[]) {
             error.help(meant.replace("NAME", &base));
         } else if Callable::is_function(text) {
             error.help(format!("write `{text}(…)`"));
@@ -30,7 +30,8 @@ impl Scope<'_, '_> {
         }
     }
 
-    /// Says what to write for a member that a joint does not have.
+    /// Reports a member that a joint does not have, with the correct syntax. Returns false if the name is not
+    /// a joint.
     pub fn report_joint_member(
         &self,
         joint: &str,
@@ -63,19 +64,21 @@ impl Scope<'_, '_> {
     }
 }
 
-/// What a vector looks like.
-pub const VECTOR: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
+/// Syntax of a vector.
+pub const VECTOR_SYNTAX: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
 
-/// What a matrix looks like.
-pub const MATRIX: &str = "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
+/// Syntax of a matrix.
+pub const MATRIX_SYNTAX: &str =
+    "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
 
-/// Why a function has no value at a number.
-pub const DOMAIN: &str = "its argument is a number here: mend that";
+/// Help for a function that is undefined at a number.
+pub const DOMAIN_HELP: &str = "its argument is a number here: mend that";
 
-/// Largest plain number that is taken for an angle, rad: a full turn, with room for the digits of 2 π.
+/// Maximum plain number that is accepted as an angle, rad: a full revolution with room for the digits of 2 π.
 const FULL_TURN: f64 = 6.3;
 
-/// An angle given in degrees, rad. Right angles are exact: 90/180 is, and so is its product with π.
+/// Converts an angle from degrees to radians. Right angles are exact: 90/180 is exact, and so is its product
+/// with π.
 pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
     match angle.value() {
         Some(n) => angle.num(n / 180.0 * std::f64::consts::PI),
@@ -83,7 +86,8 @@ pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
     }
 }
 
-/// Reports a plain number beyond a full turn where an angle stands. Those of files are not written by hand.
+/// Reports a plain number beyond a full revolution as an angle. Returns false then. Numbers of files are
+/// exempt, because they are not written by hand.
 pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
     let Some(n) = e.literal().filter(|n| n.abs() > FULL_TURN && e.place.file.is_none()) else { return true };
     cx.error(e.place.clone(), format!("an angle of {n} rad is more than a full turn")).help(format!(
@@ -92,7 +96,7 @@ pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
     false
 }
 
-/// True for what may be a rotation: a call, or a matrix.
+/// Whether an expression may be a rotation: a call or a matrix.
 pub fn is_rotation(step: &syntax::Expr) -> bool {
     match &step.kind {
         ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
@@ -104,7 +108,7 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
     }
 }
 
-/// Reports what is no rotation.
+/// Reports an expression that is not a rotation.
 pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.error(step.place.clone(), "expected a rotation");
     if let ExprKind::Call(word, _) = &step.kind {
@@ -116,10 +120,10 @@ pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     );
 }
 
-/// Reports an array that is no matrix.
+/// Reports an array that is not a matrix.
 pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let ExprKind::Array(items) = &e.kind else {
-        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX);
+        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX_SYNTAX);
         return;
     };
     let is_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
@@ -128,8 +132,8 @@ pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
     match (what, items.as_slice()) {
         ("numbers", [a, b, c]) => {
-            error.help(format!("write `diagonal({}, {}, {})`", a.spelt(), b.spelt(), c.spelt()))
+            error.help(format!("write `diagonal({}, {}, {})`", a.to_source(), b.to_source(), c.to_source()))
         }
-        _ => error.help(MATRIX),
+        _ => error.help(MATRIX_SYNTAX),
     };
 }

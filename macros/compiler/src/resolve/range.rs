@@ -1,0 +1,53 @@
+//! Range checks of masses, moments and lengths: products of two values and reciprocals must remain finite.
+
+use crate::diag::{Diagnostics, Place};
+use crate::expr::Expr;
+use crate::syntax::ScalarType;
+
+/// Range of values whose products and reciprocals are finite.
+#[derive(Clone, Copy, Debug)]
+pub struct ValueRange {
+    /// Maximum mass and moment; their squares are finite.
+    pub max: f64,
+    /// Maximum length; with a mass of one its moment is within the range.
+    pub length: f64,
+    /// Minimum nonzero mass and moment; its reciprocal is finite.
+    pub min_nonzero: f64,
+    /// Name of the scalar type.
+    pub name: &'static str,
+}
+
+impl ValueRange {
+    /// Returns the range of a scalar type; a type parameter has the range of `f64`.
+    pub fn of_scalar(scalar: &ScalarType) -> ValueRange {
+        match scalar {
+            ScalarType::F32 => ValueRange { max: 1e18, length: 1e9, min_nonzero: 1e-36, name: "f32" },
+            _ => ValueRange { max: 1e150, length: 1e75, min_nonzero: 1e-300, name: "f64" },
+        }
+    }
+
+    /// Reports a constant mass or moment outside the range. Returns false then.
+    pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+        let Some(n) = e.value().filter(|n| *n != 0.0) else { return true };
+        if n.abs() > self.max {
+            cx.error(place.clone(), format!("this figure is too large for `{}`: {n:e}", self.name))
+                .help(format!("products of it are not finite; figures up to {:e} leave room", self.max));
+            return false;
+        }
+        if n.abs() < self.min_nonzero {
+            cx.error(place.clone(), format!("this figure is too small for `{}`: {n:e}", self.name)).help(
+                format!("what is divided by it is not finite; write 0, or more than {:e}", self.min_nonzero),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// Reports a constant length outside the range. Returns false then.
+    pub fn check_length(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+        let Some(n) = e.value().filter(|n| n.abs() > self.length) else { return true };
+        cx.error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))
+            .help(format!("its square is not finite; lengths up to {:e} m leave room", self.length));
+        false
+    }
+}

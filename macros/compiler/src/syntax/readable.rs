@@ -1,0 +1,157 @@
+//! Parts of a mechanism that can be checked in spite of errors of grammar: everything that does not depend on
+//! them. Their errors are independent of the corrections, so that all errors are reported at once.
+
+use super::{Body, Description, Formulation, Name, RATE_OF_STATE};
+use crate::diag::nearest;
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
+use std::collections::BTreeSet;
+use syn::Field;
+
+/// Options of `#[mechanism]` with which fields are checked.
+const GLOBAL_OPTIONS: [&str; 2] = ["urdf", "inertia"];
+
+/// Words in the attributes of one field.
+struct FieldWords {
+    name: Name,
+    words: BTreeSet<String>,
+    /// Whether it is a body placed by joints; its name is then known in spite of errors in its attribute.
+    body: bool,
+    has_errors: bool,
+}
+
+/// Words of the attribute and of every field, and which of them could be read.
+#[derive(Default)]
+pub struct Reading {
+    fields: Vec<FieldWords>,
+    unreadable: bool,
+}
+
+impl Reading {
+    /// Records a field.
+    pub fn record_field(&mut self, field: &Field) {
+        let mut words = BTreeSet::new();
+        for attribute in &field.attrs {
+            collect(attribute.to_token_stream(), &mut words);
+        }
+        let placed = ["at", "frame", "massive"].iter().any(|word| words.contains(*word));
+        let body = field.ty.to_token_stream().to_string() == "Body" && !placed;
+        let name = field.ident.as_ref().map(super::expression::name);
+        self.fields.extend(name.map(|name| FieldWords { name, words, body, has_errors: false }));
+    }
+
+    /// Marks the whole mechanism as unreadable.
+    pub fn mark_unreadable(&mut self) {
+        self.unreadable = true;
+    }
+
+    /// Marks the last field as unreadable.
+    pub fn mark_last_field(&mut self) {
+        if let Some(field) = self.fields.last_mut() {
+            field.has_errors = true;
+        }
+    }
+
+    /// Marks fields with an ambiguous name as unreadable.
+    pub fn mark_name(&mut self, name: &str) {
+        for field in self.fields.iter_mut().filter(|field| field.name.text == name) {
+            (field.has_errors, field.body) = (true, false);
+        }
+    }
+
+    /// Marks the mechanism as unreadable if the arguments of the attribute, which could not be read, contain
+    /// an option with which fields are checked.
+    pub fn mark_arguments(&mut self, arguments: TokenStream) {
+        let mut words = BTreeSet::new();
+        collect(arguments, &mut words);
+        self.unreadable |= words
+            .iter()
+            .any(|word| nearest(word, &GLOBAL_OPTIONS).is_some() || GLOBAL_OPTIONS.contains(&word.as_str()));
+    }
+
+    /// Returns the description without unreadable fields and without those that depend on them. `None` if
+    /// nothing remains.
+    pub fn readable_part(&self, whole: &Description) -> Option<Description> {
+        if self.unreadable {
+            return None;
+        }
+        let (unreadable, bodies) = self.unreadable_names();
+        let is_readable = |name: &Name| !unreadable.contains(name.text.as_str());
+        let is_resolvable =
+            |e: &super::Expr| e.parts().iter().all(|e| e.name().is_none_or(|n| !unreadable.contains(n)));
+        let mut d = whole.clone();
+        d.partial = true;
+        d.formulation = Formulation::default();
+        d.gravity = d.gravity.filter(is_resolvable);
+        d.friction_speed = d.friction_speed.filter(is_resolvable);
+        d.bodies.retain(|b| is_readable(&b.name) && bodies.iter().all(|name| name.text != b.name.text));
+        d.bodies.extend(bodies.into_iter().map(massless));
+        d.particles.retain(|p| is_readable(&p.name));
+        d.joints.retain(|j| is_readable(&j.name));
+        d.actions.retain(|a| is_readable(&a.name));
+        d.limits.retain(|l| is_readable(&l.name));
+        d.equilibria.retain(|e| is_readable(&e.name));
+        d.coordinates.retain(|c| is_readable(&c.name));
+        d.inputs.retain(is_readable);
+        d.frames.retain(|f| is_readable(&f.name));
+        d.points.retain(|p| is_readable(&p.name));
+        d.definitions.retain(|d| is_readable(&d.name));
+        // Speeds replace velocities only all together.
+        if d.speeds.iter().any(|name| !is_readable(name)) {
+            d.speeds.clear();
+        }
+        // Rates of states are among the outputs.
+        let is_unreadable_rate =
+            |name: &str| name.strip_suffix(RATE_OF_STATE).is_some_and(|state| unreadable.contains(state));
+        d.outputs.retain(|d| is_readable(&d.name) && !is_unreadable_rate(&d.name.text));
+        d.states.retain(|(name, _)| is_readable(name));
+        d.energies.retain(|(name, _)| is_readable(name));
+        d.dissipations.retain(|(name, _)| is_readable(name));
+        d.constraints.retain(|c| is_readable(&c.name));
+        d.contacts.retain(|c| is_readable(&c.name));
+        (!d.bodies.is_empty() || !d.particles.is_empty()).then_some(d)
+    }
+
+    /// Returns the names of unreadable fields and of all fields that depend on them; and bodies of which only
+    /// the name is known.
+    fn unreadable_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
+        let mut unreadable = BTreeSet::new();
+        let mut bodies: Vec<&Name> = Vec::new();
+        let mut more = true;
+        while more {
+            more = false;
+            for field in &self.fields {
+                let name = field.name.text.as_str();
+                let known = unreadable.contains(name) || bodies.iter().any(|body| body.text == name);
+                if known
+                    || !(field.has_errors
+                        || field.words.iter().any(|word| unreadable.contains(word.as_str())))
+                {
+                    continue;
+                }
+                more = true;
+                match field.body {
+                    true => bodies.push(&field.name),
+                    false => _ = unreadable.insert(name),
+                }
+            }
+        }
+        (unreadable, bodies)
+    }
+}
+
+/// Returns a body without mass and inertia.
+fn massless(name: &Name) -> Body {
+    Body { name: name.clone(), mass: None, com: None, inertia: None, about: None, at: None, frame: None }
+}
+
+/// Collects all identifiers among tokens.
+fn collect(tokens: TokenStream, words: &mut BTreeSet<String>) {
+    for token in tokens {
+        match token {
+            TokenTree::Ident(word) => _ = words.insert(word.to_string()),
+            TokenTree::Group(group) => collect(group.stream(), words),
+            _ => {}
+        }
+    }
+}
