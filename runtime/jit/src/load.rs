@@ -4,16 +4,17 @@ use crate::constrained::Constrained;
 use crate::error::Error;
 use crate::frames::Frames;
 use crate::functions::Maker;
+use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::robot::Robot;
-use crate::shared::{Quantity, Requirement, Shared, Sizes};
+use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
 use crate::space::Space;
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
-use linkwork_compiler::syntax::Printed;
+use linkwork_compiler::syntax::{Printed, RATE_OF_STATE};
 use linkwork_compiler::{DeclaredStruct, Source, compile_with, declarations, derive_above, import, read};
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -236,11 +237,17 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     let entries = maker.entries;
     let index: HashMap<String, usize> =
         entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
-    let methods = METHODS.iter().map(|name| index.get(*name).copied()).collect();
+    let find = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
+    let (methods, internal) = (find(METHODS), find(INTERNAL));
     let quantities = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
         let unit = |k: usize| units.get(k).cloned().unwrap_or_default();
         names.enumerate().map(|(k, name)| Quantity { name: name.clone(), unit: unit(k) }).collect::<Vec<_>>()
     };
+    let states = source.mechanism.description.states.iter().map(|(name, parameter)| FirstOrder {
+        parameter: *parameter,
+        rate: index.get(&format!("{}{RATE_OF_STATE}", name.text)).copied(),
+    });
+    let states = states.collect();
     let mut defaults = vec![f64::NAN; model.parameters.len()];
     for (_, k) in &source.mechanism.description.states {
         defaults[*k] = 0.0;
@@ -262,27 +269,54 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         requirements: model.requirements.iter().map(|r| requirement(model, r)).collect(),
         equations: output.equations.plain.clone(),
         time: model.time,
-        obstacle: obstacle(source, model),
+        kinematic: model.kinematic,
+        has_speeds: model.speeds.is_some(),
+        has_feedback: !model.acceleration_forces.is_empty(),
+        constraints: constraints(model),
+        contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
+        contacts: contacts(model),
+        states,
         charts: output.charts.clone(),
         frames,
         entries,
         index,
         methods,
+        internal,
     }
 }
 
-/// Returns the reason why the runtime cannot integrate a loaded mechanism, if there is one.
-fn obstacle(source: &Source, model: &Model<'_>) -> Option<&'static str> {
-    let reasons = [
-        (model.kinematic, "it has no inertia"),
-        (!model.constraints.is_empty(), "it has constraints"),
-        (!model.contacts.is_empty(), "it has contacts"),
-        (model.speeds.is_some(), "it has generalized speeds"),
-        (!model.acceleration_forces.is_empty(), "its forces depend on accelerations"),
-        (!source.mechanism.description.states.is_empty(), "it has states of first order"),
-        (model.time, "it depends on time"),
-    ];
-    reasons.into_iter().find_map(|(is_so, reason)| is_so.then_some(reason))
+fn constraints(model: &Model<'_>) -> Constraints {
+    let those = |is: fn(&mechanism::Constraint<'_>) -> bool| {
+        let all = model.constraints.iter().enumerate();
+        all.filter(|(_, constraint)| is(constraint)).map(|(k, _)| k).collect()
+    };
+    Constraints {
+        names: model.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
+        holonomic: model.holonomic(),
+        groups: model.constraints.iter().map(|constraint| constraint.group).collect(),
+        slipping: those(|constraint| !constraint.friction.is_empty()),
+        determining: those(|constraint| constraint.determines),
+        rank: model.nv().saturating_sub(model.freedom.velocities),
+        freedom: [model.freedom.coordinates, model.freedom.velocities],
+        overdetermined: model.is_overdetermined(),
+        independent: model.dependent.is_some(),
+        angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
+    }
+}
+
+fn contacts(model: &Model<'_>) -> Vec<Contact> {
+    let mut first = 0;
+    let contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
+        let count = contact.rates.len();
+        first += count;
+        Contact {
+            name: contact.name.clone(),
+            rows: [first - count, count],
+            pressed_by: contact.pressed_by.unwrap_or(k),
+            of_impulses: contact.of_impulses,
+        }
+    };
+    model.contacts.iter().enumerate().map(contact).collect()
 }
 
 fn requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {

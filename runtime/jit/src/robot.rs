@@ -104,12 +104,16 @@ pub struct Limit {
 /// State, accelerations, forces and inputs of a call of a function by its index.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct State<'a> {
+    /// Time; that of the robot if absent.
+    pub t: Option<f64>,
     pub q: &'a [f64],
     pub v: &'a [f64],
+    /// States of first order; those among the parameters if empty.
+    pub x: &'a [f64],
     pub a: &'a [f64],
     pub tau: &'a [f64],
     pub u: &'a [f64],
-    pub other: [&'a [f64]; 2],
+    pub other: [&'a [f64]; 3],
 }
 
 thread_local! {
@@ -388,13 +392,20 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         match Arc::ptr_eq(&self.shared, &f.shared) {
-            true => self.call(f.index, count, arguments, out),
+            true => self.call(&self.parameters, f.index, count, arguments, out),
             false => Err(Error::OtherMechanism(f.name().to_string())),
         }
     }
 
     /// Evaluates a function by its index; see [`evaluate_many_into`](Self::evaluate_many_into).
-    fn call(&self, index: usize, count: usize, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+    fn call(
+        &self,
+        parameters: &[f64],
+        index: usize,
+        count: usize,
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
         self.check_values()?;
         let entry = &self.shared.entries[index];
         if arguments.len() != entry.arguments.len() {
@@ -418,7 +429,7 @@ impl Robot {
                 work.resize(entry.work, 0.0);
             }
             let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-            inputs[0] = &self.parameters;
+            inputs[0] = parameters;
             for k in 0..count {
                 for ((input, list), length) in inputs[1..].iter_mut().zip(arguments).zip(&lengths) {
                     let first = if list.len() == *length { 0 } else { k * length };
@@ -444,7 +455,7 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         let entry = &self.shared.entries[index];
-        let time = [self.time];
+        let time = [state.t.unwrap_or(self.time)];
         let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
         let mut others = state.other.into_iter();
         for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
@@ -458,7 +469,15 @@ impl Robot {
                 _ => others.next().unwrap_or(&[]),
             };
         }
-        self.call(index, 1, &arguments[..entry.arguments.len()], out)
+        let arguments = &arguments[..entry.arguments.len()];
+        if state.x.is_empty() {
+            return self.call(&self.parameters, index, 1, arguments, out);
+        }
+        let mut parameters = self.parameters.clone();
+        for (value, one) in state.x.iter().zip(&self.shared.states) {
+            parameters[one.parameter] = *value;
+        }
+        self.call(&parameters, index, 1, arguments, out)
     }
 
     pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {
