@@ -1,6 +1,6 @@
 //! Functions of a loaded mechanism: their signatures, and how results follow from programs.
 
-use crate::constrained::Constrained;
+use crate::constrained::Kind;
 use crate::frames::Access;
 use crate::inverse::Inverse;
 use crate::kernels::{self, Columns};
@@ -76,7 +76,8 @@ pub(crate) enum Plan {
         m: usize,
     },
     Space(Space),
-    Constrained(Box<Constrained>),
+    /// A function of a mechanism with constraints, which the runtime evaluates.
+    Constrained(Kind),
 }
 
 /// Derivatives of forward dynamics that call other functions.
@@ -105,8 +106,7 @@ impl Plan {
             | Plan::Linear { routine, .. }
             | Plan::CalledLinear { routine, .. } => vec![routine],
             Plan::CalledForward(called) => vec![&called.accelerations, &called.known],
-            Plan::Space(_) => Vec::new(),
-            Plan::Constrained(constrained) => vec![&constrained.elimination],
+            Plan::Space(_) | Plan::Constrained(_) => Vec::new(),
         }
     }
 
@@ -116,7 +116,6 @@ impl Plan {
             Plan::CalledForward(called) => vec![called.forces],
             Plan::CalledLinear { derivatives, .. } => vec![*derivatives],
             Plan::Space(space) => space.calls(),
-            Plan::Constrained(constrained) => constrained.calls(),
             _ => Vec::new(),
         }
     }
@@ -173,7 +172,8 @@ impl Entry {
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
             Plan::Space(space) => space.run(shared, values, &self.arguments, out, work),
-            Plan::Constrained(constrained) => constrained.run(shared, values, &self.arguments, out, work),
+            // The robot calls these functions itself.
+            Plan::Constrained(_) => out.fill(f64::NAN),
         }
     }
 }

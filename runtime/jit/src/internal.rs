@@ -17,7 +17,6 @@ internal! {
     Neutral = "neutral",
     Integrate = "integrate",
     Difference = "difference",
-    TangentRate = "tangent_rate",
     DisplacementRate = "displacement_rate",
     RatesOfSpeeds = "rates_of_speeds",
     SpeedsOfRates = "speeds_of_rates",

@@ -5,6 +5,8 @@ mod code;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[path = "no_code.rs"]
 mod code;
+mod assemble;
+mod capacity;
 mod constrained;
 mod error;
 mod frames;
@@ -21,13 +23,17 @@ mod padded;
 mod robot;
 mod routine;
 mod shared;
+mod simulate;
 mod space;
 mod table;
 
 pub use error::Error;
 pub use functions::Matrix;
+#[doc(hidden)]
+pub use load::{compiled, without_rust};
 pub use load::{Loader, declare, load};
 pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;
+pub use simulate::{Controller, Inputs, Method, Run, Sample, Simulation};
 pub use table::AnyTable;

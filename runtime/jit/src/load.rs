@@ -1,6 +1,6 @@
 //! Files and texts to mechanisms.
 
-use crate::constrained::Constrained;
+use crate::constrained;
 use crate::error::Error;
 use crate::frames::Frames;
 use crate::functions::Maker;
@@ -134,9 +134,9 @@ impl Loader {
         let DeclaredStruct { arguments, item, .. } = declaration;
         let source = read(arguments, item, &folder, cx);
         let Some(mut source) = source.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
+        without_rust(&mut source);
         let requests = &mut source.mechanism.requests;
-        // Options of generated Rust.
-        (requests.prepare, requests.batch, requests.drawing, requests.packed) = (false, false, false, false);
+        requests.drawing = false;
         if requests.equations == Printed::Readable {
             requests.equations = Printed::Structure;
         }
@@ -226,13 +226,27 @@ fn text_of(path: &Path) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".to_string()))
 }
 
+/// Returns the robot of a compiled mechanism, for the command `linkwork`.
+#[doc(hidden)]
+#[must_use]
+pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::derive::Output) -> Robot {
+    Robot::new(Arc::new(shared(source, model, output)), false)
+}
+
+/// Removes the options that only generated Rust has.
+#[doc(hidden)]
+pub fn without_rust(source: &mut Source) {
+    let requests = &mut source.mechanism.requests;
+    (requests.prepare, requests.batch, requests.packed) = (false, false, false);
+}
+
 /// Takes what remains of a mechanism after its compilation.
 fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::derive::Output) -> Shared {
     let frames = Frames::new(model, &mut output);
     let mut maker = Maker { model, output: &output, entries: Vec::new() };
     maker.add_derived();
     Space::add(&mut maker);
-    Constrained::add(&mut maker);
+    constrained::add(&mut maker);
     maker.entries.extend(frames.entries(model.time));
     let entries = maker.entries;
     let index: HashMap<String, usize> =
@@ -272,7 +286,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         kinematic: model.kinematic,
         has_speeds: model.speeds.is_some(),
         has_feedback: !model.acceleration_forces.is_empty(),
-        constraints: constraints(model),
+        constraints: constraints_of(model),
         contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
         contacts: contacts(model),
         states,
@@ -285,7 +299,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     }
 }
 
-fn constraints(model: &Model<'_>) -> Constraints {
+fn constraints_of(model: &Model<'_>) -> Constraints {
     let those = |is: fn(&mechanism::Constraint<'_>) -> bool| {
         let all = model.constraints.iter().enumerate();
         all.filter(|(_, constraint)| is(constraint)).map(|(k, _)| k).collect()
@@ -297,7 +311,6 @@ fn constraints(model: &Model<'_>) -> Constraints {
         slipping: those(|constraint| !constraint.friction.is_empty()),
         determining: those(|constraint| constraint.determines),
         rank: model.nv().saturating_sub(model.freedom.velocities),
-        freedom: [model.freedom.coordinates, model.freedom.velocities],
         overdetermined: model.is_overdetermined(),
         independent: model.dependent.is_some(),
         angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),

@@ -73,6 +73,7 @@ impl Robot {
             let name = self.name();
             return Err(Error::Value(format!("`{name}` has contacts: call `padded_contacts` instead")));
         }
+        self.validate()?;
         Padded::new(self.clone())
     }
 }
@@ -91,7 +92,6 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         ] {
             own.check_length(name, own_count, own_count.min(capacity))?;
         }
-        own.validate()?;
         match own.shared.kinematic {
             true => Err(Error::Value(format!(
                 "`{}` has no masses (`inertia = none`), so that nothing determines how it moves",

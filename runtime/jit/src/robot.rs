@@ -2,7 +2,7 @@
 
 use crate::AnyTable;
 use crate::error::Error;
-use crate::functions::Matrix;
+use crate::functions::{Matrix, Plan};
 use crate::layout::Layout;
 use crate::routine::Values;
 use crate::shared::{Quantity, Shared};
@@ -316,8 +316,11 @@ impl Robot {
             let figure = Figure { rule: requirement.rule, name: "", parameters: &[] };
             validate(&[figure], own).map_err(|error| {
                 let parameters = requirement.parameters.join("`, `");
-                let names =
-                    if parameters.is_empty() { String::new() } else { format!(" (by `{parameters}`)") };
+                let names = match requirement.parameters.len() {
+                    0 => String::new(),
+                    1 => format!(" (by the parameter `{parameters}`)"),
+                    _ => format!(" (by the parameters `{parameters}`)"),
+                };
                 Error::Value(format!("{}{error}{names}", requirement.figure))
             })?;
         }
@@ -423,6 +426,19 @@ impl Robot {
         if out.len() != entry.length * count {
             let (of, name) = (entry.name.clone(), "the result".to_string());
             return Err(Error::Length { of, name, expected: entry.length * count, found: out.len() });
+        }
+        if let Plan::Constrained(kind) = entry.plan {
+            let lists = |k: usize| {
+                let mut own: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+                for ((own, list), length) in own.iter_mut().zip(arguments).zip(&lengths) {
+                    let first = if list.len() == *length { 0 } else { k * length };
+                    *own = &list[first..first + length];
+                }
+                own
+            };
+            return (0..count).zip(out.chunks_exact_mut(entry.length.max(1))).try_for_each(|(k, out)| {
+                self.call_constrained(kind, &lists(k)[..arguments.len()], out)
+            });
         }
         WORK.with_borrow_mut(|work| {
             if work.len() < entry.work {

@@ -54,8 +54,6 @@ pub(crate) struct Constraints {
     pub determining: Vec<usize>,
     /// Number of independent constraints in regular configurations.
     pub rank: usize,
-    /// Numbers of independent coordinates and velocities.
-    pub freedom: [usize; 2],
     /// Whether some constraints follow from others everywhere.
     pub overdetermined: bool,
     /// Whether accelerations are eliminated by pivots that are chosen in advance.

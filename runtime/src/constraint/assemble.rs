@@ -141,7 +141,8 @@ fn unwind<
 }
 
 /// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
-fn descend<
+#[doc(hidden)]
+pub fn descend<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
     J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,

@@ -44,6 +44,7 @@ impl Robot {
     >(
         &self,
     ) -> Result<PaddedContacts<NQ, NV, NU, NK, NR>, Error> {
+        self.validate()?;
         PaddedContacts::new(self.clone())
     }
 }

@@ -116,7 +116,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         self.vector(f, state, self.robot().nv(), *v)
     }
 
-    fn speed_matrix(&self, f: Internal, q: &SVector<f64, NQ>) -> Square<NV> {
+    pub(crate) fn speed_matrix(&self, f: Internal, q: &SVector<f64, NQ>) -> Square<NV> {
         let n = self.robot().nv();
         let state = State { q: self.configuration(q), ..State::default() };
         self.matrix(f, state, (n, n), Square::identity())
