@@ -25,7 +25,7 @@ mod span;
 mod stabilized;
 
 #[doc(hidden)]
-pub use assemble::{Loops, assemble, assembly_mode, descend};
+pub use assemble::{Loops, assemble, assembly_mode, least_violation};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};

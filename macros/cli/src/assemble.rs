@@ -10,8 +10,10 @@ use std::ops::Range;
 const STEPS: u8 = 40;
 /// Maximum difference of an angle from half a revolution that rounding explains, rad.
 const ROUNDING: f64 = 1e-12;
-/// Maximum residual of a configuration after whole revolutions were subtracted from its angles, m and rad.
-const UNWOUND: f64 = 1e-10;
+/// Maximum residual of a configuration that satisfies the constraints, m and rad.
+const SATISFIED: f64 = 1e-10;
+/// Number of perturbed initial configurations from which a mechanism is assembled.
+const ASSEMBLIES: u8 = 50;
 
 /// Constraints of a mechanism, by joint velocities.
 pub struct Assembly<'a, 'g> {
@@ -22,6 +24,11 @@ pub struct Assembly<'a, 'g> {
 /// Returns the indices of marked entries.
 fn indices(marks: &[bool]) -> Vec<usize> {
     (0..marks.len()).filter(|k| marks[*k]).collect()
+}
+
+/// Returns a number from −1 to 1 of a sequence that does not repeat (multiples of irrational fractions).
+fn beside(attempt: u8, k: usize) -> f64 {
+    2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }
 
 impl Assembly<'_, '_> {
@@ -79,7 +86,7 @@ impl Assembly<'_, '_> {
         let n = self.model.nv();
         let mut unreached = [vec![true; n], vec![true; n]];
         for size in [0.0, 0.1] {
-            let dv: Vec<f64> = (0..n).map(|k| size * ((0.618 + k as f64 * 0.755).fract() - 0.5)).collect();
+            let dv: Vec<f64> = (0..n).map(|k| size * beside(1, k)).collect();
             let Ok(beside) = self.robot.integrate(q, &dv) else { continue };
             let beside = beside.as_slice();
             let Some(jacobian) = self.evaluated("constraint_jacobian", &[("q", beside)]) else { continue };
@@ -119,7 +126,7 @@ impl Assembly<'_, '_> {
             if crate::motion::normalise(self.model, &mut at).is_err() {
                 return Ok(q.to_vec());
             }
-            if let Ok(found) = self.robot.descend(&at, &held) {
+            if let Ok(found) = self.robot.least_violation(&at, &held) {
                 at = found.as_slice().to_vec();
             }
         }
@@ -127,13 +134,24 @@ impl Assembly<'_, '_> {
     }
 
     /// Returns a configuration on the constraints near `q`, without a change of the coordinates whose velocities
-    /// are held. A result whose angles are within half a revolution of the guess is preferred.
+    /// are held. The search starts from `q`, then from increasingly perturbed values of the other entries. The
+    /// first result whose angles are within half a revolution of the guess is preferred.
     pub fn assembled(&self, q: &[f64], guess: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let held = indices(held);
+        let (given, held) = (self.entries(held), indices(held));
         let mut far = None;
-        for from in [q, guess] {
-            let Ok(found) = self.robot.assemble(from, &held) else { continue };
-            let found = self.unwound(guess, found.as_slice().to_vec());
+        let nearby = (0..=ASSEMBLIES).filter_map(|attempt| {
+            let mut from = q.to_vec();
+            let size = 0.02 * f64::from(attempt);
+            for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
+                *x += size * beside(attempt, k);
+            }
+            crate::motion::normalise(self.model, &mut from).ok()?;
+            let found = self.robot.least_violation(&from, &held).ok()?.as_slice().to_vec();
+            self.holds(&found).then_some(found)
+        });
+        let further = std::iter::once_with(|| self.robot.assemble(q, &held)).flatten();
+        for found in nearby.chain(further.map(|found| found.as_slice().to_vec())) {
+            let found = self.unwound(guess, found);
             if self.angles().all(|k| (found[k] - guess[k]).abs() <= PI + ROUNDING) {
                 return Some(found);
             }
@@ -155,18 +173,20 @@ impl Assembly<'_, '_> {
             q[k] -= 2.0 * PI * ((q[k] - guess[k]) / (2.0 * PI)).round();
             q
         };
-        let holds = |q: &[f64]| {
-            let left = self.evaluated("constraint_residuals", &[("q", q)]);
-            left.is_some_and(|left| left.iter().all(|x| x.abs() <= UNWOUND))
-        };
         let all = self.angles().fold(q.clone(), without);
-        if all == q || holds(&all) {
+        if all == q || self.holds(&all) {
             return all;
         }
         self.angles().fold(q, |q, k| {
             let next = without(q.clone(), k);
-            if holds(&next) { next } else { q }
+            if self.holds(&next) { next } else { q }
         })
+    }
+
+    /// Whether a configuration satisfies the constraints.
+    fn holds(&self, q: &[f64]) -> bool {
+        let left = self.evaluated("constraint_residuals", &[("q", q)]);
+        left.is_some_and(|left| left.iter().all(|x| x.abs() <= SATISFIED))
     }
 
     /// Returns the velocity with the held entries of `v` that satisfies the constraints; `None` if the held

@@ -250,7 +250,10 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         let mut samples = Vec::new();
         let ended = begun(&q, &state, duration, &mut samples);
-        if let Some(first) = samples.first().filter(|_| !self.robot.is_constrained()) {
+        if let Some(first) = samples.first_mut().filter(|_| self.robot.is_constrained()) {
+            // The projection of the start changes rounding alone.
+            (first.q, first.v) = (q.clone(), v.clone());
+        } else if let Some(first) = samples.first() {
             let moved = self.moves(&first.q, &first.v);
             if !moved.is_empty() && !self.model.contacts.is_empty() {
                 crate::note!("linkwork: surfaces overlap at the beginning; the motion begins near it, at {moved}");
@@ -268,7 +271,7 @@ impl<'a, 'g> Start<'a, 'g> {
                 let mut near = || {
                     let (_, from) = last.as_ref()?;
                     let t = failure(&error)?;
-                    let to = from + (t - from) * (1.0 - 1e-12);
+                    let to = from + (t - from) * (1.0 - 1e-3);
                     let _ = begun(&q, &state, to, &mut before);
                     before.pop()
                 };

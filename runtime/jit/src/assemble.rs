@@ -11,7 +11,7 @@ use linkwork::{Constrained, ConstraintError, integrate};
 /// A question about constraints.
 enum Question<'a> {
     Assemble(Option<i8>),
-    Descend,
+    LeastViolation,
     Mode,
     Project,
     Velocity(&'a [f64]),
@@ -40,7 +40,7 @@ impl Visitor for Asked<'_> {
         let q = vector(self.q);
         match self.question {
             Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration),
-            Question::Descend => linkwork::__private::descend(&m.loops(t), &q, held).map(configuration),
+            Question::LeastViolation => linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration),
             Question::Mode => Ok((Vec::new(), m.mode(t, &q, held))),
             Question::Project => {
                 Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration)
@@ -97,15 +97,15 @@ impl Robot {
         Ok(self.ask(Question::Assemble(Some(mode)), q, held)?.0)
     }
 
-    /// Returns the configuration that satisfies the constraints to which steps of bounded length lead from `q`,
-    /// without other starts than `q` itself; see [`assemble`](Self::assemble).
+    /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of the
+    /// constraints, whether it satisfies them or not; see [`assemble`](Self::assemble).
     ///
     /// # Errors
     ///
     /// As [`assemble`](Self::assemble).
     #[doc(hidden)]
-    pub fn descend(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::Descend, q, held)?.0)
+    pub fn least_violation(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::LeastViolation, q, held)?.0)
     }
 
     /// Returns the heights of terrain at a place, for drawings.

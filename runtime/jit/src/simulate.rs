@@ -586,7 +586,11 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
 type Reached<const N: usize> = (State<N>, Result<(), Error>);
 
 /// Maximum number of steps of an explicit method before an implicit one is tried.
-const MOST_STEPS: u64 = 1_000_000;
+const MOST_STEPS: u64 = 200_000;
+/// Maximum number of steps of an implicit method in the comparison.
+const MOST_IMPLICIT_STEPS: u64 = 20_000;
+/// Shortest step of an explicit method, s.
+const SHORTEST: f64 = 1e-10;
 /// Number of evaluations of the dynamics after which an implicit method is tried for the first time.
 const OBSERVED: u64 = 2000;
 
@@ -701,7 +705,8 @@ impl Driver<'_, '_, '_> {
         start: State<N>,
         tolerance: f64,
     ) -> Result<(), Error> {
-        let explicit = DormandPrince::new().tolerance(tolerance, tolerance).max_steps(MOST_STEPS);
+        let explicit = DormandPrince::new().tolerance(tolerance, tolerance);
+        let explicit = explicit.max_steps(MOST_STEPS).min_step(SHORTEST);
         let implicit = Rodas::new().tolerance(tolerance, tolerance);
         let mut budget = OBSERVED;
         self.sections(start, |driver, section| {
@@ -764,7 +769,7 @@ impl Driver<'_, '_, '_> {
             .start_at(from.t)
             .from(from.q, from.v)
             .duration(until - from.t)
-            .method(method.max_steps((most / 5).min(MOST_STEPS)))
+            .method(method.max_steps((most / 5).min(MOST_IMPLICIT_STEPS)))
             .with_inputs(feed);
         run.finish().is_ok() && evaluations.get() <= most
     }

@@ -140,9 +140,30 @@ fn unwind<
     })
 }
 
+/// Returns the configuration to which [`least_violation`] leads, if it satisfies the constraints.
+fn descend<
+    T: Real,
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+    J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
+    I: Fn(&SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NQ>,
+    const NQ: usize,
+    const NV: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    loops: &Loops<'_, R, J, I, NV, NC>,
+    q: &SVector<T, NQ>,
+    held: &[usize],
+) -> Result<SVector<T, NQ>, ConstraintError> {
+    let q = least_violation(loops, q, held)?;
+    let (worst, size) = largest(&(loops.residuals)(&q))?;
+    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+}
+
 /// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
+/// Returns the configuration, in which the constraints need not be satisfied.
 #[doc(hidden)]
-pub fn descend<
+pub fn least_violation<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
     J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
@@ -189,8 +210,7 @@ pub fn descend<
             break;
         }
     }
-    let (worst, size) = largest(&residuals)?;
-    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+    Ok(q)
 }
 
 /// Returns the step, scaled such that no angle changes by more than [`LONGEST`].
