@@ -33,7 +33,7 @@ mod implicit_midpoint;
 mod local;
 mod path;
 mod rk4;
-pub(crate) mod rodas;
+mod rodas;
 mod rosenbrock;
 mod semi_implicit_euler;
 mod stages;

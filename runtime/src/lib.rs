@@ -231,10 +231,6 @@ pub mod __private {
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };
-    /// Coefficients of RODAS, which the command `linkwork` integrates with as well.
-    pub mod rodas {
-        pub use crate::integrate::rodas::{ADDED, GAMMA, IN_TIME, STARTS, TIMES};
-    }
 }
 
 #[cfg(test)]

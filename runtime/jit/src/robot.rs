@@ -152,6 +152,12 @@ impl Robot {
         self.shared.sizes.nu
     }
 
+    /// Returns the number of states of first order, which are parameters as well.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        self.shared.states.len()
+    }
+
     /// Returns name and unit of each coordinate.
     #[must_use]
     pub fn configuration(&self) -> &[Quantity] {
