@@ -25,7 +25,7 @@ mod span;
 mod stabilized;
 
 #[doc(hidden)]
-pub use assemble::{Loops, assemble, assembly_mode};
+pub use assemble::{Loops, assemble, assembly_mode, least_violation};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
@@ -199,8 +199,9 @@ macro_rules! loops {
     ($mechanism:ident, $t:ident) => {
         Loops {
             names: Self::CONSTRAINTS,
-            angles: Self::ANGLES,
-            turns: core::array::from_fn(|k| Self::VELOCITY_UNITS.get(k) == Some(&"rad/s")),
+            angles: $mechanism.angles(),
+            turns: $mechanism.rotations(),
+            sizes: [$mechanism.holonomic(), $mechanism.features().dimensions[1]],
             residuals: |q: &_| $mechanism.constraint_residuals($t, q),
             jacobian: |q: &_| $mechanism.constraint_jacobian($t, q),
             integrate: |q: &_, dv: &_| $mechanism.integrate(q, dv),
@@ -229,6 +230,28 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 
     /// Indices of the entries of `q` that are angles, rad: coordinates of pins and of other rotations.
     const ANGLES: &'static [usize] = &[];
+
+    /// Returns the number of constraints that restrict configurations: `NH`, unless the mechanism is loaded at
+    /// run time and further rows are padding.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn holonomic(&self) -> usize {
+        NH
+    }
+
+    /// Returns [`ANGLES`](Self::ANGLES), from which a mechanism that is loaded at run time differs.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn angles(&self) -> &[usize] {
+        Self::ANGLES
+    }
+
+    /// Whether each velocity is that of a rotation.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn rotations(&self) -> [bool; NV] {
+        core::array::from_fn(|k| Self::VELOCITY_UNITS.get(k) == Some(&"rad/s"))
+    }
 
     /// Returns the residuals `φ(t, q)`, m and rad, which are zero if the constraints are satisfied.
     fn constraint_residuals(
@@ -317,8 +340,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ) -> SVector<Self::Scalar, NV> {
         let half = h * constant(0.5);
         let way = crate::speeds::way_of(self, q, v, half);
-        let within = if NC > NH { self.integrate(q, &way) } else { *q };
-        let mut gap = if NC > NH || h == nalgebra::zero() {
+        let holonomic = self.holonomic();
+        let within = if NC > holonomic { self.integrate(q, &way) } else { *q };
+        let mut gap = if NC > holonomic || h == nalgebra::zero() {
             self.constraint_rates(t + half, &within, v)
         } else {
             SVector::zeros()
@@ -326,7 +350,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         if h != nalgebra::zero() {
             let residuals =
                 self.constraint_residuals(t + h, &self.integrate(q, &(way * constant::<Self::Scalar>(2.0))));
-            gap.iter_mut().zip(residuals.iter()).for_each(|(gap, residual)| *gap = *residual / h);
+            gap.iter_mut().zip(residuals.iter()).take(holonomic).for_each(|(gap, residual)| *gap = *residual / h);
         }
         self.constraint_response(t, q, p, &gap)
     }

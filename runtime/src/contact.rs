@@ -80,6 +80,8 @@ pub use lawful::{Law, Restitution};
 use layout::Layout;
 #[doc(hidden)]
 pub use overlap::start;
+#[doc(hidden)]
+pub use response::responses;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::{Equations, Problem, entry};
@@ -132,6 +134,14 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     /// and rolling. These follow their contact, as `foot.spin` and `foot.roll` follow `foot`, have its gap,
     /// and rates of turning alone.
     const PRESSED_BY: [usize; NK] = layout::own();
+
+    /// Returns [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY), from which a
+    /// mechanism that is loaded at run time differs: a contact without rows is padding.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
+        (Self::CONTACT_ROWS, Self::PRESSED_BY)
+    }
 
     /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they
     /// overlap.
@@ -413,7 +423,7 @@ where
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let h = epsilon::<T>().sqrt();
     let mut free = mechanism.contact_rates(t, q, v);
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     for (_, first) in layout.gaps() {
         if let Some(rate) = free.get_mut(first) {
             *rate = rate.max(T::zero());
@@ -512,7 +522,7 @@ where
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let problem = &mut acted.problem;
     problem.select(layout, &laws, closed, &after);
     if laws.iter().any(|law| law.stiction > law.friction) {

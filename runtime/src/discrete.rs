@@ -217,7 +217,7 @@ where
         );
     }
     method.check()?;
-    if M::CONSTRAINED {
+    if mechanism.features().constrained {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
         *into = mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))?;
     } else {

@@ -1,7 +1,7 @@
 //! Mechanisms at an instant: those whose equations contain time, with the time fixed.
 
 use crate::forward::{constants, each_function};
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::{Mechanism, Real, Scleronomic};
 
 /// Mechanism at a fixed time. The argument `t` of its functions is ignored.
@@ -45,6 +45,11 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        self.mechanism.features()
+    }
 
     each_function!(methods, [T] at Hooks, self => self.mechanism);
 

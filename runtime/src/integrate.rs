@@ -33,7 +33,7 @@ mod implicit_midpoint;
 mod local;
 mod path;
 mod rk4;
-pub(crate) mod rodas;
+mod rodas;
 mod rosenbrock;
 mod semi_implicit_euler;
 mod stages;
@@ -45,7 +45,7 @@ pub use eighth::DormandPrince8;
 pub use error::Error;
 pub use event_driven::{EventDriven, EventMemory, Section};
 #[doc(hidden)]
-pub use hooks::Hooks;
+pub use hooks::{Features, Hooks};
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use path::{Path, Step};
 pub use rk4::Rk4;

@@ -199,7 +199,7 @@ pub mod __private {
     pub use crate::constraint::{
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
         Structure, assemble, assembly_mode, careful_dynamics, careful_response, constrained_derivatives,
-        constrained_second_derivatives, independent_solution, least_solution, nearly_singular,
+        constrained_second_derivatives, independent_solution, least_violation, least_solution, nearly_singular,
         pressing_solution, regular_solution, slipping_response, slipping_solution, stabilized_derivatives,
         with_curvature,
     };
@@ -231,10 +231,6 @@ pub mod __private {
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };
-    /// Coefficients of RODAS, which the command `linkwork` integrates with as well.
-    pub mod rodas {
-        pub use crate::integrate::rodas::{ADDED, GAMMA, IN_TIME, STARTS, TIMES};
-    }
 }
 
 #[cfg(test)]

@@ -399,7 +399,9 @@ where
         Self { progress: None, over: false, ..self }
     }
 
-    fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
+    /// Sets inputs of any type.
+    #[doc(hidden)]
+    pub fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
         let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let system = System::new(system.mechanism, inputs);
         Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }

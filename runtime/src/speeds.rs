@@ -52,7 +52,7 @@ where
     T: Real,
     M: Mechanism<NQ, NV, NU, Scalar = T> + ?Sized,
 {
-    if M::SPEEDS { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
+    if m.features().speeds { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
 }
 
 /// Returns the velocity of the midpoint of a displacement that takes `2 s` seconds, given the mean rate of
@@ -67,7 +67,7 @@ where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    if !M::SPEEDS {
+    if !m.features().speeds {
         return mean;
     }
     // The rate of a displacement is linear in the velocity.
@@ -90,7 +90,7 @@ where
 {
     let two = constant::<T>(2.0);
     let way = way_of(m, q, v, s);
-    if !M::SPEEDS {
+    if !m.features().speeds {
         return [m.integrate_derivatives(&way), m.integrate_derivatives(&(v * (s * two)))];
     }
     // δξ = s (∂ξ̇/∂q δq + ∂ξ̇/∂ξ δξ + ∂ξ̇/∂v δv)

@@ -1,5 +1,6 @@
 //! Definition of the command line.
 
+use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
 
@@ -70,6 +71,8 @@ fn view() -> Command {
             "every",
             "guess",
             "inputs",
+            "method",
+            "step",
             "tolerance",
             "without-contacts",
         ]),
@@ -214,7 +217,22 @@ fn with_motion(command: Command) -> Command {
         .arg(number("duration", "SECONDS", "Duration of the motion [default: 10]"))
         .arg(number("every", "SECONDS", "Time between samples [default: 1/60]"))
         .arg(number("tolerance", "NUMBER", "Relative and absolute error of a step [default: 1e-8]"))
+        .arg(
+            text(
+                "method",
+                "NAME",
+                "Method of integration [default: automatic: Dormand–Prince, from where it is stiff RODAS, with contacts time stepping]",
+            )
+            .value_parser(methods()),
+        )
+        .arg(number("step", "SECONDS", "Step of methods with fixed steps [default: 1e-3]"))
         .arg(switch("without-contacts", "Ignores contacts: bodies pass through each other"))
+}
+
+/// Names of the methods of integration.
+fn methods() -> PossibleValuesParser {
+    let names = linkwork_jit::Method::NAMES.iter();
+    PossibleValuesParser::new(names.map(|(name, ..)| -> &'static str { name.replace('_', "-").leak() }))
 }
 
 fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {

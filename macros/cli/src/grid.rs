@@ -5,7 +5,7 @@ use crate::Stop;
 use crate::table::text_of;
 use clap::ArgMatches;
 use linkwork::{Table, TableError};
-use linkwork_compiler::expr::Lookup;
+use linkwork_jit::AnyTable;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -20,29 +20,6 @@ pub struct Grid {
     pub smooth: bool,
     /// Whether the table is extrapolated beyond its grid.
     pub extrapolated: bool,
-}
-
-/// Table for interpolation.
-#[derive(Clone, Copy)]
-pub enum Looked {
-    /// Table of one variable.
-    One(Table<1>),
-    /// Table of two variables.
-    Two(Table<2>),
-    /// Table of three variables.
-    Three(Table<3>),
-}
-
-impl Looked {
-    /// Returns the derivative of the orders that a lookup specifies.
-    pub fn value(self, lookup: Lookup, x: [f64; 3]) -> f64 {
-        let order = |k: usize| lookup.order(k) as u8;
-        match self {
-            Looked::One(table) => table.derivative([x[0]], [order(0)]),
-            Looked::Two(table) => table.derivative([x[0], x[1]], [order(0), order(1)]),
-            Looked::Three(table) => table.derivative(x, [order(0), order(1), order(2)]),
-        }
-    }
 }
 
 impl Grid {
@@ -102,14 +79,14 @@ impl Grid {
     }
 
     /// Returns the table for interpolation; its values are leaked and live as long as the process.
-    pub fn looked(&self) -> Result<Looked, TableError> {
+    pub fn looked(&self) -> Result<AnyTable, TableError> {
         let kept = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
         let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| kept(axis)).collect();
         let values = kept(&self.values);
         match axes[..] {
-            [a] => Table::new([a], values).map(|table| Looked::One(self.shaped(table))),
-            [a, b] => Table::new([a, b], values).map(|table| Looked::Two(self.shaped(table))),
-            [a, b, c] => Table::new([a, b, c], values).map(|table| Looked::Three(self.shaped(table))),
+            [a] => Table::new([a], values).map(|table| self.shaped(table).into()),
+            [a, b] => Table::new([a, b], values).map(|table| self.shaped(table).into()),
+            [a, b, c] => Table::new([a, b, c], values).map(|table| self.shaped(table).into()),
             _ => Err(TableError::Size { expected: 3, found: axes.len() }),
         }
     }

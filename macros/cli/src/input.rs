@@ -8,7 +8,11 @@ use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
-use linkwork_compiler::{DeclaredStruct, Source, compile, declarations, derive_above, read};
+use linkwork_compiler::passes::Passes;
+use linkwork_compiler::{
+    DeclaredStruct, Source, compile, compile_with, declarations, derive_above, read,
+};
+use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -33,6 +37,16 @@ pub struct Compiled<'g> {
     pub model: Model<'g>,
     /// Generated functions.
     pub output: Output,
+}
+
+/// Mechanism with machine code.
+pub struct Loaded<'g> {
+    /// Parsed source.
+    pub source: Source,
+    /// Resolved model of the mechanism.
+    pub model: Model<'g>,
+    /// Functions of the mechanism.
+    pub robot: Robot,
 }
 
 impl Input {
@@ -108,6 +122,17 @@ impl Input {
         let source = self.checked(self.read(cx), cx)?;
         let (model, output) = self.checked(compile(&source, graph, cx), cx)?;
         Ok(Compiled { source, model, output })
+    }
+
+    /// Returns the model of the mechanism, and the mechanism with machine code; otherwise prints the errors.
+    pub fn loaded<'g>(&self, graph: &'g Graph) -> Result<Loaded<'g>, Stop> {
+        let cx = &mut Diagnostics::new();
+        let mut source = self.checked(self.read(cx), cx)?;
+        linkwork_jit::without_rust(&mut source);
+        let passes = Passes { lanes: false, ..Passes::default() };
+        let (model, output) = self.checked(compile_with(&source, graph, passes, cx), cx)?;
+        let robot = linkwork_jit::compiled(&source, &model, output);
+        Ok(Loaded { source, model, robot })
     }
 
     /// Converts a diagnostic to an error message with its location.

@@ -3,13 +3,10 @@
 mod assemble;
 mod check;
 mod commands;
-mod constrained;
 mod convert;
-mod evaluate;
 mod export;
 mod grid;
 mod input;
-mod integrate;
 mod library;
 mod motion;
 mod names;

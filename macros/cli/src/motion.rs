@@ -1,15 +1,19 @@
 //! Initial state of a motion, and its simulation.
 
 use crate::Stop;
-use crate::evaluate::{Evaluated, Values};
-use crate::grid::{self, Grid, Looked};
-use crate::integrate::{Integrator, System};
+use crate::assemble::Assembly;
+use crate::grid;
+use crate::input::Loaded;
 use crate::table::Table;
 use clap::ArgMatches;
-use linkwork_compiler::Source;
-use linkwork_compiler::derive::Output;
+use linkwork::integrate;
+use linkwork::nalgebra::IsometryMatrix3;
+use linkwork::simulate::Overlaps;
 use linkwork_compiler::diag::nearest;
-use linkwork_compiler::mechanism::Model;
+use linkwork_compiler::expr::Expr;
+use linkwork_compiler::expr::eval::eval_one;
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+use linkwork_jit::{Error, Inputs, Method, Robot};
 use std::path::PathBuf;
 
 /// State at one instant of a motion.
@@ -29,7 +33,11 @@ pub struct Sample {
 /// Mechanism with its parameters, initial state and initial inputs.
 pub struct Start<'a, 'g> {
     /// Mechanism with its parameters.
-    pub mechanism: Evaluated<'a, 'g>,
+    pub robot: Robot,
+    /// Model of the mechanism.
+    pub model: &'a Model<'g>,
+    /// Names of the states of first order.
+    pub states: Vec<String>,
     /// Configuration.
     pub q: Vec<f64>,
     v: Vec<f64>,
@@ -54,14 +62,25 @@ const FAR: f64 = 0.05;
 /// Maximum number of samples of a motion.
 const MAX_SAMPLES: f64 = 1e7;
 
+/// Normalises quaternions; a zero quaternion is an error.
+pub fn normalise(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
+    for first in model.charts.iter().filter_map(Chart::quaternion) {
+        let quaternion = &mut q[first.and_next(4)];
+        let size = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if size < 1e-9 || !size.is_finite() {
+            let names = model.configuration[first.and_next(4)].join(", ");
+            return Err(Stop::Failure(format!("the quaternion {names} is zero")));
+        }
+        quaternion.iter_mut().for_each(|x| *x /= size);
+    }
+    Ok(())
+}
+
 impl<'a, 'g> Start<'a, 'g> {
     /// Reads the parameters, the initial state and the inputs from `--set`, `--guess` and `--table`.
-    pub fn new(
-        source: &Source,
-        model: &'a Model<'g>,
-        output: &'a Output,
-        matches: &ArgMatches,
-    ) -> Result<Start<'a, 'g>, Stop> {
+    pub fn new(loaded: &'a Loaded<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
+        let Loaded { source, model, robot } = loaded;
+        let mut robot = robot.clone();
         let names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
             list.iter().map(|(name, _)| format!("v.{name}")).collect()
         };
@@ -74,8 +93,8 @@ impl<'a, 'g> Start<'a, 'g> {
         // States of first order are zero by default, as coordinates are.
         states.iter().for_each(|(_, k)| parameters[*k] = Some(0.0));
         let of_states: Vec<String> = states.iter().map(|(name, _)| format!("x.{name}")).collect();
-        let empty = Evaluated::new(model, output, Vec::new(), Vec::new(), states.clone());
-        let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
+        let mut q = neutral(model);
+        let (mut v, mut u) = (vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for (name, value) in values("set", matches)? {
             let place = |list: &[String]| list.iter().position(|known| known == name);
@@ -118,23 +137,86 @@ impl<'a, 'g> Start<'a, 'g> {
         if !missing.is_empty() {
             return Err(Stop::Failure(format!("parameters without a value: {}", missing.join(" "))));
         }
-        let tables: Result<Vec<Looked>, _> =
-            grid::given(matches, &source.tables())?.iter().map(Grid::looked).collect();
+        for ((name, _), grid) in source.tables().iter().zip(grid::given(matches, &source.tables())?) {
+            robot.set_table(name, grid.looked()?)?;
+        }
         let parameters: Vec<f64> = parameters.into_iter().flatten().collect();
         let x = states.iter().map(|(_, k)| parameters[*k]).collect();
-        let mechanism = Evaluated::new(model, output, parameters, tables?, states);
-        mechanism.validate()?;
-        mechanism.normalise(&mut q)?;
-        Ok(Start { mechanism, q, v, x, u, given: known, is_guessed })
+        robot.set_parameters(&parameters)?;
+        robot.validate()?;
+        normalise(model, &mut q)?;
+        let states = states.into_iter().map(|(name, _)| name).collect();
+        Ok(Start { robot, model, states, q, v, x, u, given: known, is_guessed })
+    }
+
+    /// Returns the reason why the mechanism has no motion, if any.
+    pub fn obstacle(&self) -> Option<&'static str> {
+        self.model.kinematic.then_some("it has no masses (`inertia = none`), so nothing tells how it moves")
+    }
+
+    /// Returns the placement of every frame for a time, a configuration and states of first order.
+    ///
+    /// # Errors
+    ///
+    /// An internal error.
+    pub fn placements(&self, t: f64, q: &[f64], x: &[f64]) -> Result<Vec<IsometryMatrix3<f64>>, Stop> {
+        let mut robot = self.robot.clone();
+        robot.set_time(t);
+        for (name, value) in self.states.iter().zip(x) {
+            robot.set_parameter(name, *value)?;
+        }
+        let placed = robot.frames().iter().map(|frame| robot.frame_placement(frame, q));
+        let rotations = |placement: linkwork::nalgebra::Isometry3<f64>| {
+            let rotation = placement.rotation.to_rotation_matrix();
+            IsometryMatrix3::from_parts(placement.translation, rotation)
+        };
+        Ok(placed.map(|placement| placement.map(rotations)).collect::<Result<_, _>>()?)
+    }
+
+    /// Evaluates an expression of the parameters.
+    pub fn value(&self, e: Expr<'_>) -> f64 {
+        let parameters = self.robot.parameter_values();
+        eval_one(e, &|symbol| match Quantity::of(symbol) {
+            Quantity::Parameter(k) => parameters.get(k).copied().unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        })
+    }
+
+    /// Returns the method of integration.
+    fn method(&self, matches: &ArgMatches, without_contacts: bool) -> Result<Method, Stop> {
+        let positive = |name: &str| match matches.get_one::<f64>(name) {
+            Some(x) if !(*x > 0.0 && x.is_finite()) => {
+                Err(Stop::Failure(format!("`--{name}`: expected a number above zero, found {x}")))
+            }
+            given => Ok(given.copied()),
+        };
+        let (tolerance, step) = (positive("tolerance")?, positive("step")?);
+        let has_contacts = !self.model.contacts.is_empty() && !without_contacts;
+        let name = match matches.get_one::<String>("method").map(|name| name.replace('-', "_")) {
+            None if has_contacts => "time_stepping".to_string(),
+            name => name.unwrap_or_else(|| "automatic".to_string()),
+        };
+        let found = Method::NAMES.iter().find(|(known, ..)| *known == name);
+        let (_, has_step, treats_contacts) = found.copied().unwrap_or(("automatic", false, true));
+        if has_contacts && !treats_contacts {
+            return Err(Stop::Failure(format!(
+                "`{}` has contacts: `--method` time-stepping, time-stepping-midpoint or event-driven; or `--without-contacts` lets bodies pass through each other",
+                self.model.name
+            )));
+        }
+        if step.is_some() && !has_step && name != "automatic" {
+            let method = name.replace('_', "-");
+            return Err(Stop::Failure(format!("`--step`: the method {method} chooses its steps (`--tolerance`)")));
+        }
+        let setting = if has_step { step } else { Some(tolerance.unwrap_or(1e-8).max(1e-13)) };
+        Ok(Method::named(&name, setting)?)
     }
 
     /// Simulates the motion and returns its samples.
     pub fn run(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
-        if let Some(why) = self.mechanism.obstacle(matches.get_flag("without-contacts")) {
-            return Err(Stop::Failure(format!(
-                "`{}` cannot be simulated here: {why}",
-                self.mechanism.model.name
-            )));
+        let name = &self.model.name;
+        if let Some(why) = self.obstacle() {
+            return Err(Stop::Failure(format!("`{name}` cannot be simulated: {why}")));
         }
         let positive = |name: &str, usual: f64| match matches.get_one::<f64>(name) {
             Some(x) if !(*x > 0.0 && x.is_finite()) => {
@@ -143,129 +225,119 @@ impl<'a, 'g> Start<'a, 'g> {
             given => Ok(given.copied().unwrap_or(usual)),
         };
         let (duration, every) = (positive("duration", 10.0)?, positive("every", 1.0 / 60.0)?);
-        let tolerance = positive("tolerance", 1e-8)?.max(1e-13);
         if duration / every > MAX_SAMPLES {
             return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
-        let inputs = self.inputs(matches)?;
-        // Inputs at a time. At a jump, the limit before or after it.
-        let given = |t: f64, is_before: bool| -> Vec<f64> {
-            let at = |k: usize| match inputs
-                .as_ref()
-                .and_then(|(table, columns)| Some((table, columns[k].as_ref()?)))
-            {
-                Some((table, values)) if is_before => table.before(values, t),
-                Some((table, values)) => table.at(values, t),
-                None => self.u[k],
-            };
-            (0..self.u.len()).map(at).collect()
-        };
-        self.mechanism.require_dynamics()?;
-        let (nq, nv) = (self.q.len(), self.v.len());
-        let begin = match self.mechanism.is_constrained() {
+        let without_contacts = matches.get_flag("without-contacts");
+        let method = self.method(matches, without_contacts)?;
+        let (times, values) = self.inputs(matches)?;
+        let (q, v) = match self.robot.is_constrained() {
             true => self.begin()?,
-            false => [self.q.clone(), self.v.clone()].concat(),
+            false => (self.q.clone(), self.v.clone()),
         };
-        let mut y = [begin, self.x.clone()].concat();
-        let count = (duration / every * (1.0 + 1e-12)).floor() as usize;
-        let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
-        if times[count] < duration * (1.0 - 1e-9) {
-            times.push(duration);
-        }
-        // Steps end at kinks and jumps of the inputs.
-        let mut kinks = inputs.iter().flat_map(|(table, _)| &table.times).copied().peekable();
-        let settle = |t: f64, y: &mut Vec<f64>| {
-            let (mut q, mut v) = (y[..nq].to_vec(), y[nq..nq + nv].to_vec());
-            let is_there = self.mechanism.settle(t, &mut q, &mut v).is_some();
-            *y = [q, v, y[nq + nv..].to_vec()].concat();
-            is_there
+        let state = [&v[..], &self.x].concat();
+        let inputs = || Inputs::Samples { times: &times, values: &values };
+        let begun = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
+            let run = self.robot.simulate().from(q, v).inputs(inputs()).method(method).duration(duration);
+            let run = run.sample_every(every).overlaps(Overlaps::Part);
+            let run = if without_contacts { run.without_contacts() } else { run };
+            let count = self.v.len();
+            run.each(&mut |sample| {
+                let (v, x) = sample.v.split_at(count);
+                let (v, x) = (v.to_vec(), x.to_vec());
+                samples.push(Sample { t: sample.t, q: sample.q, v, x, u: sample.u });
+            })
         };
-        let mut integrator = Integrator::new(every.min(1e-3), tolerance);
-        let (mut samples, mut at, mut is_told) = (Vec::with_capacity(times.len()), 0.0, false);
-        for t in times {
-            while at < t {
-                while kinks.next_if(|kink| *kink <= at).is_some() {}
-                let stop = kinks.peek().copied().filter(|kink| *kink < t).unwrap_or(t);
-                let rates = |t: f64, y: &[f64]| {
-                    let (q, v, x) = (&y[..nq], &y[nq..nq + nv], &y[nq + nv..]);
-                    let u = if t < stop { given(t, false) } else { given(stop, true) };
-                    let mut rates = self.mechanism.rates(q, v);
-                    let state = Values { t, q, v, x, u: &u, ..Values::default() };
-                    rates.extend(self.mechanism.accelerations(state));
-                    rates
-                };
-                let system = System { rates: &rates, settle: &settle };
-                integrator.advance(&system, (at, stop), &mut y).map_err(|t| {
-                    let why = match self.mechanism.has_singular_speeds(&y[..nq], NEARLY_SINGULAR) {
-                        true => "declared speeds are singular there",
-                        false => "it is singular there, or too stiff",
-                    };
-                    Stop::Failure(format!("the motion cannot be continued beyond {t} s: {why}"))
-                })?;
-                if let Some(t) = integrator.stiff_from.take_if(|_| !is_told) {
-                    is_told = true;
-                    crate::note!(
-                        "linkwork: the motion is stiff: from {t:.3} s on it is integrated by an implicit method (RODAS)"
-                    );
-                }
-                self.mechanism.normalise(&mut y[..nq])?;
-                at = stop;
+        let mut samples = Vec::new();
+        let ended = begun(&q, &state, duration, &mut samples);
+        if let Some(first) = samples.first_mut().filter(|_| self.robot.is_constrained()) {
+            // The projection of the start changes rounding alone.
+            (first.q, first.v) = (q.clone(), v.clone());
+        } else if let Some(first) = samples.first() {
+            let moved = self.moves(&first.q, &first.v);
+            if !moved.is_empty() && !self.model.contacts.is_empty() {
+                crate::note!("linkwork: surfaces overlap at the beginning; the motion begins near it, at {moved}");
             }
-            let (q, v, x) = (y[..nq].to_vec(), y[nq..nq + nv].to_vec(), y[nq + nv..].to_vec());
-            samples.push(Sample { t, q, v, x, u: given(t, false) });
+        }
+        match ended {
+            Ok(Some(t)) => crate::note!(
+                "linkwork: the motion is stiff: from {t:.3} s on it is integrated by an implicit method (RODAS)"
+            ),
+            Ok(None) => {}
+            Err(error) => {
+                // The state shortly before the failure.
+                let last = samples.last().map(|last| (last.q.clone(), last.t));
+                let mut before = Vec::new();
+                let mut near = || {
+                    let (_, from) = last.as_ref()?;
+                    let t = failure(&error)?;
+                    let to = from + (t - from) * (1.0 - 1e-3);
+                    let _ = begun(&q, &state, to, &mut before);
+                    before.pop()
+                };
+                return Err(self.ended(&error, near().map(|sample| sample.q)));
+            }
         }
         Ok(samples)
     }
 
+    /// Returns the message of a motion that cannot be continued.
+    fn ended(&self, error: &Error, q: Option<Vec<f64>>) -> Stop {
+        let Some(t) = failure(error) else { return Stop::Failure(error.to_string()) };
+        let is_singular = q.is_some_and(|q| self.robot.regularity_of_speeds(&q) <= NEARLY_SINGULAR);
+        let why = match is_singular {
+            true => "declared speeds are singular there",
+            false => "it is singular there, or too stiff",
+        };
+        Stop::Failure(format!("the motion cannot be continued beyond {t} s: {why}"))
+    }
+
     /// Returns an initial state that satisfies the constraints: with the specified entries unchanged if
     /// possible, otherwise the nearest one. Prints the changes.
-    fn begin(&self) -> Result<Vec<f64>, Stop> {
-        let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
-        if !m.has_inertia(&self.q) && !m.has_singular_speeds(&self.q, SINGULAR) {
+    fn begin(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+        let m = Assembly { robot: &self.robot, model: self.model };
+        let (name, [in_q, in_v]) = (&self.model.name, &self.given);
+        let is_singular = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
+        let has_inertia = self.robot.mass_matrix(&self.q)?.cholesky().is_some();
+        if !has_inertia && !is_singular(&self.q) {
             return Err(Stop::Failure(format!(
-                "the mass matrix of `{}` is singular at the beginning: with these parameters something that moves has no inertia",
-                m.model.name
+                "the mass matrix of `{name}` is singular at the beginning: with these parameters something that moves has no inertia"
             )));
         }
         // Entries that no constraint affects remain unchanged.
-        let [apart, still] = m.unreached(0.0, &self.q);
+        let [apart, still] = m.unreached(&self.q);
         let in_v: Vec<bool> = in_v.iter().zip(&still).map(|(given, still)| *given || *still).collect();
         let moving: Vec<bool> =
             m.moving(in_q).iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
         let near = match self.is_guessed {
             true => self.q.clone(),
-            false => m.led(0.0, &self.q, in_q, &apart, &moving),
+            false => m.led(&self.q, in_q, &apart, &moving)?,
         };
-        let from = (&near[..], &self.q[..]);
-        let held = m.assembled(0.0, from, &m.entries(&moving), &moving);
+        let held = m.assembled(&near, &self.q, &moving);
         let mut kept = held.is_some();
-        let q = held.or_else(|| m.assembled(0.0, from, &m.entries(&apart), &apart));
+        let q = held.or_else(|| m.assembled(&near, &self.q, &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
-                "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set` or `--guess q.NAME=VALUE`",
-                m.model.name
+                "`{name}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set` or `--guess q.NAME=VALUE`"
             ))
         })?;
-        if m.has_singular_speeds(&q, SINGULAR) {
-            let names: Vec<String> = m.model.configuration.iter().map(|name| format!("q.{name}")).collect();
+        if is_singular(&q) {
+            let names: Vec<String> = self.model.configuration.iter().map(|name| format!("q.{name}")).collect();
             return Err(Stop::Failure(format!(
-                "the speeds of `{}` are singular at the beginning: there they do not determine the rates of all coordinates; begin elsewhere (`--set` with {})",
-                m.model.name,
+                "the speeds of `{name}` are singular at the beginning: there they do not determine the rates of all coordinates; begin elsewhere (`--set` with {})",
                 names.join(", ")
             )));
         }
-        let mut v = self.v.clone();
-        if m.move_along(0.0, &q, &mut v, &in_v).is_none() {
+        let v = m.completed(&q, &self.v, &in_v).or_else(|| {
             kept = false;
-            v.clone_from(&self.v);
-            m.move_along(0.0, &q, &mut v, &still).ok_or_else(|| {
-                Stop::Failure(format!("`{}` has constraints that contradict each other", m.model.name))
-            })?;
-        }
-        let begins = [q, v].concat();
-        let moves = self.moves(&begins);
+            m.completed(&q, &self.v, &still)
+        });
+        let v = v.ok_or_else(|| {
+            Stop::Failure(format!("`{name}` has constraints that contradict each other"))
+        })?;
+        let moves = self.moves(&q, &v);
         let some = self.given.iter().flatten().any(|given| *given);
-        let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(&begins));
+        let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(q.iter().chain(&v)));
         let is_far = |(is_given, (wanted, is)): (&bool, (&f64, &f64))| *is_given && (wanted - is).abs() > FAR;
         if !kept && given.into_iter().any(is_far) {
             return Err(Stop::Failure(format!(
@@ -279,36 +351,35 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         if !moves.is_empty() {
             let held = if kept { &moving } else { &apart };
-            let mode = m.assembly_mode(0.0, &begins[..self.q.len()], held).map_or(String::new(), |mode| {
+            let mode = m.mode(&q, held).map_or(String::new(), |mode| {
                 format!(
                     "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another begins there"
                 )
             });
             crate::note!("linkwork: {why} at {moves}{mode}");
         }
-        Ok(begins)
+        Ok((q, v))
     }
 
     /// Formats the entries of the initial state that differ from the requested values.
-    fn moves(&self, begins: &[f64]) -> String {
+    fn moves(&self, q: &[f64], v: &[f64]) -> String {
         let wanted = self.q.iter().chain(&self.v);
-        let names = self.mechanism.model.configuration.iter().map(|name| format!("q.{name}"));
-        let names = names.chain(self.mechanism.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
+        let names = self.model.configuration.iter().map(|name| format!("q.{name}"));
+        let names = names.chain(self.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
         let moved: Vec<String> = names
-            .zip(wanted.zip(begins))
+            .zip(wanted.zip(q.iter().chain(v)))
             .filter(|(_, (wanted, is))| (*wanted - *is).abs() > TOLD * (1.0 + wanted.abs()))
             .map(|(name, (_, is))| format!("{name} = {is:.6}"))
             .collect();
         moved.join(", ")
     }
 
-    /// Returns the inputs of a file, by their indices.
-    #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
-    fn inputs(&self, matches: &ArgMatches) -> Result<Option<(Table, Vec<Option<Vec<f64>>>)>, Stop> {
-        let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok(None) };
+    /// Returns times, and the inputs at each of them.
+    fn inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+        let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok((vec![0.0], self.u.clone())) };
         let table = Table::read(path)?;
         let names: Vec<String> =
-            self.mechanism.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
+            self.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         // Other columns of a log are ignored.
         let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
         if let Some((name, _)) = unknown {
@@ -318,7 +389,7 @@ impl<'a, 'g> Start<'a, 'g> {
                 path.display()
             )));
         }
-        let columns: Vec<_> = names.iter().map(|name| table.column(name).map(<[f64]>::to_vec)).collect();
+        let columns: Vec<Option<&[f64]>> = names.iter().map(|name| table.column(name)).collect();
         let is_column =
             |(name, _): &(&str, f64)| names.iter().any(|n| n == name) && table.column(name).is_some();
         if let Some((name, _)) = values("set", matches)?.into_iter().find(is_column) {
@@ -327,12 +398,34 @@ impl<'a, 'g> Start<'a, 'g> {
         }
         if columns.iter().all(Option::is_none) {
             let expected = match names.is_empty() {
-                true => format!("`{}` has no inputs", self.mechanism.model.name),
+                true => format!("`{}` has no inputs", self.model.name),
                 false => format!("there is no column of an input: expected {}", names.join(", ")),
             };
             return Err(Stop::Failure(format!("{}: {expected}", path.display())));
         }
-        Ok(Some((table, columns)))
+        let row = |k: usize| (0..columns.len()).map(move |i| (i, k));
+        let value = |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
+        let values = (0..table.times.len()).flat_map(row).map(value).collect();
+        Ok((table.times.clone(), values))
+    }
+}
+
+/// Returns the neutral configuration.
+fn neutral(model: &Model<'_>) -> Vec<f64> {
+    let mut q = vec![0.0; model.nq()];
+    for first in model.charts.iter().filter_map(Chart::quaternion) {
+        q[first.0 + 3] = 1.0;
+    }
+    q
+}
+
+/// Returns the time at which a numerical error ended a motion.
+fn failure(error: &Error) -> Option<f64> {
+    use integrate::Error::{NotConverged, NotFinite, StepTooSmall, TooManySteps};
+    let Error::Motion { reason, .. } = error else { return None };
+    match *reason {
+        NotFinite { t } | StepTooSmall { t, .. } | TooManySteps { t } | NotConverged { t, .. } => Some(t),
+        _ => None,
     }
 }
 

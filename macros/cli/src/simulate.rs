@@ -2,23 +2,22 @@
 
 use crate::Stop;
 use crate::export::put;
-use crate::input::{Compiled, Input};
+use crate::input::Input;
 use crate::motion::{Sample, Start};
 use clap::ArgMatches;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::Model;
 use linkwork_view::{Instant, Names, mcap_of};
 use std::path::PathBuf;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let graph = Graph::new();
-    let Compiled { source, model, output } = input.compiled(&graph)?;
-    let start = Start::new(&source, &model, &output, matches)?;
+    let loaded = input.loaded(&graph)?;
+    let start = Start::new(&loaded, matches)?;
     let samples = start.run(matches)?;
     match matches.get_one::<PathBuf>("out") {
         Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) => {
-            let log = mcap(&model, &start, samples)?;
+            let log = mcap(&start, samples)?;
             std::fs::write(path, log)
                 .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
         }
@@ -27,29 +26,31 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Returns the MCAP log of a motion with the placements of all frames.
-fn mcap(model: &Model<'_>, start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+fn mcap(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+    let model = start.model;
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
     let velocities = model.velocities.iter().map(|(name, _)| name.as_str());
     // As in Rust, where states of first order are the last entries of the velocity of `extended()`.
-    let states = start.mechanism.states.iter().map(|(name, _)| name.as_str());
+    let states = start.states.iter().map(String::as_str);
     let velocities: Vec<&str> = velocities.chain(states).collect();
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let names =
         Names { frames: &frames, configuration: &configuration, velocities: &velocities, inputs: &inputs };
     let instant = |Sample { t, q, v, x, u }| {
-        let placements = start.mechanism.placements(t, &q, &x);
-        Instant { t, q, v: [v, x].concat(), u, placements }
+        let placements = start.placements(t, &q, &x)?;
+        Ok(Instant { t, q, v: [v, x].concat(), u, placements })
     };
-    Ok(mcap_of(&names, samples.into_iter().map(instant))?)
+    let instants = samples.into_iter().map(instant).collect::<Result<Vec<_>, Stop>>()?;
+    Ok(mcap_of(&names, instants.into_iter())?)
 }
 
 fn csv(start: &Start<'_, '_>, samples: &[Sample]) -> String {
-    let model = start.mechanism.model;
+    let model = start.model;
     let mut head = vec!["t".to_string()];
     head.extend(model.configuration.iter().map(|name| format!("q.{name}")));
     head.extend(model.velocities.iter().map(|(name, _)| format!("v.{name}")));
-    head.extend(start.mechanism.states.iter().map(|(name, _)| format!("x.{name}")));
+    head.extend(start.states.iter().map(|name| format!("x.{name}")));
     head.extend(model.inputs.iter().map(|(name, _)| format!("u.{name}")));
     let quoted = |name: &String| match name.contains([',', '"']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),

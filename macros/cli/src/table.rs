@@ -60,29 +60,6 @@ impl Table {
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
-
-    /// Returns the value of a column at a time, linear between the samples and constant before the first and
-    /// after the last one. At a jump it is the value after the jump.
-    pub fn at(&self, values: &[f64], t: f64) -> f64 {
-        self.behind(values, t, self.times.partition_point(|known| *known <= t))
-    }
-
-    /// Returns the limit of a column as time approaches `t` from below.
-    pub fn before(&self, values: &[f64], t: f64) -> f64 {
-        self.behind(values, t, self.times.partition_point(|known| *known < t))
-    }
-
-    /// Interpolates linearly between the row of this index and the previous one.
-    fn behind(&self, values: &[f64], t: f64, row: usize) -> f64 {
-        match row {
-            0 => values[0],
-            k if k == values.len() => values[k - 1],
-            k => {
-                let part = (t - self.times[k - 1]) / (self.times[k] - self.times[k - 1]);
-                values[k - 1] + part * (values[k] - values[k - 1])
-            }
-        }
-    }
 }
 
 /// Reads a text file. Byte order marks, which spreadsheets write, and no-break spaces count as blanks.
@@ -134,14 +111,6 @@ mod tests {
             );
         }
         let _ = std::fs::remove_file(&file);
-    }
-
-    #[test]
-    fn values_lie_on_straight_lines() {
-        let table = Table::parse("t,u.a\n0,1\n2,3\n2,5\n").unwrap_or_else(|why| panic!("{why}"));
-        let values = table.column("u.a").unwrap();
-        assert_eq!([-1.0, 0.5, 2.0, 9.0].map(|t| table.at(values, t)), [1.0, 1.5, 5.0, 5.0]);
-        assert_eq!([-1.0, 0.5, 2.0, 9.0].map(|t| table.before(values, t)), [1.0, 1.5, 3.0, 5.0]);
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! `linkwork view`: writes an HTML page that shows a motion.
 
 use crate::Stop;
-use crate::evaluate::Values;
-use crate::input::{Compiled, Input};
+use crate::input::{Input, Loaded};
 use crate::library::docs;
-use crate::motion::Start;
+use crate::motion::{Start, normalise};
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork::drawing::{Kind, Piece, Role};
@@ -26,11 +25,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         input.declaration.add(quote::quote!(drawing));
     }
     let graph = Graph::new();
-    let Compiled { source, model, output } = input.compiled(&graph)?;
-    let start = Start::new(&source, &model, &output, matches)?;
+    let loaded = input.loaded(&graph)?;
+    let Loaded { source, model, .. } = &loaded;
+    let start = Start::new(&loaded, matches)?;
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => from_log(path, &start)?,
-        None => match start.mechanism.obstacle(matches.get_flag("without-contacts")) {
+        None => match start.obstacle() {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
                 crate::note!("linkwork: the page shows one configuration: {why}");
                 vec![(0.0, start.q.clone(), start.x.clone(), Vec::new())]
@@ -38,7 +38,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             _ => start.run(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
         },
     };
-    let mut figure = figure(&start, &model);
+    let mut figure = figure(&start, model);
     let beside = input.file.parent().map(Path::to_path_buf);
     match matches.get_one::<PathBuf>("meshes") {
         Some(folder) => {
@@ -64,10 +64,10 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         );
     }
     let times = states.iter().map(|(t, ..)| *t).collect();
-    let placements = states.iter().map(|(t, q, x, _)| start.mechanism.placements(*t, q, x)).collect();
+    let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
+    let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
     let heights = |number: usize, place: [f64; 2]| {
-        let heights =
-            start.mechanism.called("__drawing_heights", Values { given: &place, ..Values::default() })?;
+        let heights = start.robot.terrain_heights(place)?;
         heights.get(number).copied()
     };
     let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
@@ -102,7 +102,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
         let found = table.column(&name);
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
-    let columns = start.mechanism.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
+    let columns = start.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
     // Inputs, and states, are used if the log has all of them; some of them alone are an error.
     let all_or_none = |names: Vec<String>| {
         let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column(name)).collect();
@@ -111,12 +111,12 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
             None => Ok(found.into_iter().collect::<Option<Vec<&[f64]>>>()),
         }
     };
-    let inputs = start.mechanism.model.inputs.iter().map(|(name, _)| format!("u.{name}"));
+    let inputs = start.model.inputs.iter().map(|(name, _)| format!("u.{name}"));
     let inputs = all_or_none(inputs.collect())?.unwrap_or_default();
-    let states = all_or_none(start.mechanism.states.iter().map(|(name, _)| format!("x.{name}")).collect())?;
+    let states = all_or_none(start.states.iter().map(|name| format!("x.{name}")).collect())?;
     let state = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
-        start.mechanism.normalise(&mut q)?;
+        normalise(start.model, &mut q)?;
         let u = inputs.iter().map(|column| column[k]).collect();
         let x = states
             .as_ref()
@@ -142,7 +142,7 @@ fn figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     for piece in &model.drawing {
         let (name, kind) = (&*piece.name.clone().leak(), kind(&piece.kind));
         pieces.push(Piece { name, role: role(piece.role), kind, frames: piece.frames, first: numbers.len() });
-        numbers.extend(piece.numbers.iter().map(|e| start.mechanism.value(*e)));
+        numbers.extend(piece.numbers.iter().map(|e| start.value(*e)));
     }
     let frames = model.frames.iter().map(|frame| frame.name.clone()).collect();
     Figure::from_pieces(frames, &pieces, &numbers)

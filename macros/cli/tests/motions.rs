@@ -315,21 +315,81 @@ pub struct Ball {
 }
 ";
 
-/// Checks that a mechanism with contacts is simulated only with `--without-contacts`; the ball then falls by
-/// `g t² / 2`.
+/// Checks that a ball falls, lands and rests on its floor, with the methods for contacts; that surfaces which
+/// overlap at the beginning are separated; and that without its contacts it falls by `g t² / 2`.
 #[test]
-fn contacts_are_no_free_fall() {
+fn contacts_carry_bodies() {
     let here = folder("contacts");
     std::fs::write(here.join("ball.rs"), BALL).unwrap();
-    let (status, out, stderr) = linkwork(&here, &["simulate", "ball.rs"]);
-    assert!(status == 2 && out.is_empty() && stderr.contains("it has contacts"), "{stderr}");
-    let (status, _, stderr) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1"]);
-    assert!(status == 0 && stderr.contains("one configuration: it has contacts"), "{stderr}");
-    assert!(std::fs::read_to_string(here.join("Ball.html")).unwrap().contains("\"count\":1,"));
+    let drop = ["simulate", "ball.rs", "--set", "q.pose.z=0.5905", "--duration", "1", "--every", "0.1"];
+    for method in ["automatic", "time-stepping", "time-stepping-midpoint", "event-driven"] {
+        let (status, log, stderr) = linkwork(&here, &[&drop[..], &["--method", method]].concat());
+        assert_eq!((status, stderr.as_str()), (0, ""), "{method}");
+        let rows = rows(&log);
+        assert_eq!(rows.len(), 11);
+        // It lands after 0.3162 s, without restitution.
+        for row in &rows {
+            let height = (0.5905 - 9.81 / 2.0 * row[0] * row[0]).max(0.1);
+            assert!((row[3] - height).abs() < 2e-3, "{method}: {row:?}");
+        }
+        assert!((rows[10][3] - 0.1).abs() < 1e-6 && rows[10][10].abs() < 1e-9, "{method}: {:?}", rows[10]);
+    }
+    let (status, log, stderr) = linkwork(&here, &["simulate", "ball.rs", "--duration", "0.1"]);
+    assert!(status == 0 && stderr.contains("surfaces overlap at the beginning"), "{stderr}");
+    assert!((rows(&log)[0][3] - 0.1).abs() < 1e-9);
+    let (status, _, stderr) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1", "--duration", "1"]);
+    assert_eq!((status, stderr.as_str()), (0, ""));
+    assert!(std::fs::read_to_string(here.join("Ball.html")).unwrap().contains("\"count\":61,"));
+    let (status, _, stderr) = linkwork(&here, &[&drop[..], &["--method", "rk4"]].concat());
+    assert!(status == 2 && stderr.contains("`Ball` has contacts"), "{stderr}");
+    let (status, _, stderr) = linkwork(&here, &[&drop[..], &["--method", "rk5"]].concat());
+    assert!(status == 2 && stderr.contains("possible values"), "{stderr}");
     let (_, log, _) = linkwork(&here, &["simulate", "ball.rs", "--without-contacts", "--duration", "2"]);
     for row in rows(&log) {
         assert!((row[3] + 9.81 / 2.0 * row[0] * row[0]).abs() < 1e-7, "{row:?}");
     }
+}
+
+/// Checks the methods of smooth motions on a pendulum of small amplitude, whose period is known, and steps.
+#[test]
+fn methods_and_steps_are_chosen() {
+    let here = folder("methods");
+    let pendulum = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Pendulum {
+    #[body(mass = 2, com = -y)]
+    bob: Body,
+    #[joint(ground -> bob, about = z)]
+    hinge: Pin,
+}
+";
+    std::fs::write(here.join("pendulum.rs"), pendulum).unwrap();
+    let swing = ["simulate", "pendulum.rs", "--set", "q.hinge=1e-4", "--duration", "2", "--every", "0.5"];
+    let frequency = 9.81_f64.sqrt();
+    for (method, tolerance) in [
+        ("dormand-prince", 1e-6),
+        ("dormand-prince8", 1e-6),
+        ("rodas", 1e-5),
+        ("rk4", 1e-6),
+        ("implicit-midpoint", 1e-4),
+        ("rosenbrock", 1e-4),
+        ("semi-implicit-euler", 1e-2),
+    ] {
+        let (status, log, stderr) = linkwork(&here, &[&swing[..], &["--method", method]].concat());
+        assert_eq!((status, stderr.as_str()), (0, ""), "{method}");
+        for row in rows(&log) {
+            let exact = 1e-4 * (frequency * row[0]).cos();
+            let tolerance: f64 = tolerance;
+            assert!((row[1] - exact).abs() < 1e-4 * tolerance + 2e-8, "{method}: {row:?}");
+        }
+    }
+    let (status, coarse, _) = linkwork(&here, &[&swing[..], &["--method", "rk4", "--step", "0.25"]].concat());
+    let end = rows(&coarse).pop().unwrap();
+    let off = (end[1] - 1e-4 * (2.0 * frequency).cos()).abs();
+    assert!(status == 0 && off > 1e-8 && off < 1e-5, "{off}");
+    let wrong = [&swing[..], &["--method", "rodas", "--step", "0.1"]].concat();
+    let (status, _, stderr) = linkwork(&here, &wrong);
+    assert!(status == 2 && stderr.contains("the method rodas chooses its steps"), "{stderr}");
 }
 
 const CLOSED: &str = "

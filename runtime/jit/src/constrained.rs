@@ -1,146 +1,113 @@
-//! Accelerations of mechanisms with constraints.
+//! Functions of mechanisms with constraints: the runtime solves for accelerations and multipliers.
 
+use crate::capacity::Visitor;
+use crate::error::Error;
 use crate::functions::{Entry, Maker, Matrix, Plan};
-use crate::routine::{Routine, Values};
-use crate::shared::Shared;
-use linkwork_compiler::catalogue::{Argument, Id, Record, Shape};
-use nalgebra::{DMatrix, DVector};
+use crate::padded::Padded;
+use crate::robot::Robot;
+use linkwork::nalgebra::SVector;
+use linkwork::{Constrained, Derivatives};
+use linkwork_compiler::catalogue::{Argument, Id};
 
-/// Accelerations and multipliers: by a program that eliminates the constraints if their pivots are safe, else by
-/// a decomposition that finds dependent constraints.
-pub(crate) struct Constrained {
-    pub elimination: Routine,
-    /// Whether the program eliminates all constraints; else constraints are redundant.
-    eliminates: bool,
-    /// Indices of `mass_matrix`, `bias_forces`, `constraint_jacobian` and `constraint_bias`.
-    functions: [usize; 4],
-    nv: usize,
-    nc: usize,
-    /// Whether the multipliers are results.
-    multipliers: bool,
+/// A function that the runtime evaluates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Accelerations.
+    Accelerations,
+    /// Accelerations and multipliers.
+    Dynamics,
+    /// Derivatives of accelerations.
+    Derivatives,
 }
 
-/// Singular values below this part of the greatest one are zero.
-const RANK: f64 = 1e-9;
-/// Accelerations that miss a constraint by this part contradict it.
-const CONTRADICTION: f64 = 1e-6;
-
-impl Constrained {
-    /// Adds the functions to those of a mechanism, if it has constraints and dynamics.
-    pub fn add(maker: &mut Maker<'_, '_>) {
-        let Some(f) = maker.output.functions.iter().find(|f| f.id == Id::ConstrainedDynamics) else { return };
-        // Friction of sliding contacts depends on the signs of multipliers.
-        if maker.model.constraints.iter().any(|constraint| !constraint.friction.is_empty()) {
-            return;
-        }
-        let eliminates = matches!(f.shape, Shape::Record(Record::Elimination(..)));
-        let names = ["mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"];
-        let [Some(a), Some(b), Some(c), Some(d)] = names.map(|name| maker.index(name)) else { return };
-        let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
-        let time = maker.model.time.then_some(Argument::T);
-        let arguments: Vec<Argument> =
-            time.into_iter().chain([Argument::Q, Argument::V, Argument::Tau]).collect();
-        let program = maker.whole(&f.program);
-        let outputs = program.outputs.len();
-        let called = [a, b, c, d].map(|k| maker.entries[k].work).into_iter().max().unwrap_or_default();
-        let accelerations = Matrix { name: "result", rows: nv, columns: 1 };
-        let both = [
-            Matrix { name: "accelerations", rows: nv, columns: 1 },
-            Matrix { name: "multipliers", rows: nc, columns: 1 },
-        ];
-        for (name, documentation, results) in [
-            (
-                "forward_dynamics",
-                "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where the constraints contradict each other.",
-                vec![accelerations],
-            ),
-            (
-                "constrained_dynamics",
-                "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
-                both.to_vec(),
-            ),
-        ] {
-            let Some(elimination) = Routine::new(program.clone(), &arguments, outputs) else { continue };
-            let plan = Plan::Constrained(Box::new(Constrained {
-                elimination,
-                eliminates,
-                functions: [a, b, c, d],
-                nv,
-                nc,
-                multipliers: results.len() > 1,
-            }));
-            let entry = Entry::new(name, documentation.to_string(), arguments.clone(), results, plan);
-            maker.entries.push(Entry { work: outputs + called, ..entry });
+/// Adds the functions to those of a mechanism, if it has constraints and dynamics.
+pub(crate) fn add(maker: &mut Maker<'_, '_>) {
+    let has = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
+    if !has(Id::ConstrainedDynamics) {
+        return;
+    }
+    let has_derivatives = has(Id::MotionDerivatives);
+    let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
+    let time = maker.model.time.then_some(Argument::T);
+    let arguments: Vec<Argument> =
+        time.into_iter().chain([Argument::Q, Argument::V, Argument::Tau]).collect();
+    let matrix = |name, rows, columns| Matrix { name, rows, columns };
+    let functions = [
+        (
+            Kind::Accelerations,
+            "forward_dynamics",
+            "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where friction jams.",
+            vec![matrix("result", nv, 1)],
+        ),
+        (
+            Kind::Dynamics,
+            "constrained_dynamics",
+            "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
+            vec![matrix("accelerations", nv, 1), matrix("multipliers", nc, 1)],
+        ),
+        (
+            Kind::Derivatives,
+            "forward_dynamics_derivatives",
+            "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
+            vec![matrix("by_q", nv, nv), matrix("by_v", nv, nv), matrix("by_tau", nv, nv)],
+        ),
+    ];
+    for (kind, name, documentation, results) in functions {
+        if kind != Kind::Derivatives || has_derivatives {
+            let plan = Plan::Constrained(kind);
+            maker.entries.push(Entry::new(name, documentation.to_string(), arguments.clone(), results, plan));
         }
     }
+}
 
-    /// Returns the indices of the functions that are called.
-    pub fn calls(&self) -> Vec<usize> {
-        self.functions.to_vec()
-    }
-
-    /// Evaluates the function.
-    pub fn run(
+impl Robot {
+    /// Evaluates a function with the arguments `t` (if the mechanism depends on it), `q`, `v` and `tau`.
+    pub(crate) fn call_constrained(
         &self,
-        shared: &Shared,
-        values: Values<'_>,
-        arguments: &[Argument],
+        kind: Kind,
+        arguments: &[&[f64]],
         out: &mut [f64],
-        work: &mut [f64],
-    ) {
-        let (nv, nc) = (self.nv, self.nc);
-        if self.eliminates {
-            let found = &mut work[..nv + 3 * nc];
-            self.elimination.run(values, found, &mut []);
-            let (pivots, before) = found[nv + nc..].split_at(nc);
-            let least = f64::EPSILON.sqrt().sqrt();
-            if pivots.iter().zip(before).all(|(pivot, before)| *pivot > least * before) {
-                let length = out.len();
-                out.copy_from_slice(&found[..length]);
-                return;
-            }
+    ) -> Result<(), Error> {
+        let [time @ .., q, v, tau] = arguments else { return Ok(()) };
+        let t = time.first().and_then(|t| t.first()).copied().unwrap_or_default();
+        self.visit(Call { kind, t, q, v, tau, out })
+    }
+}
+
+/// A call of a function.
+struct Call<'a> {
+    kind: Kind,
+    t: f64,
+    q: &'a [f64],
+    v: &'a [f64],
+    tau: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl Visitor for Call<'_> {
+    type Output = ();
+
+    fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) {
+        let robot = m.robot();
+        let vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        let (q, mut v, tau) = (vector(self.q), vector(self.v), vector(self.tau));
+        let n = robot.nv();
+        for (k, one) in robot.shared.states.iter().enumerate() {
+            v[n + k] = robot.parameter_values()[one.parameter];
         }
-        let found = self.solve(shared, values, arguments, work);
-        match found {
-            Some((a, lambda)) => {
-                out[..nv].copy_from_slice(a.as_slice());
-                if self.multipliers {
-                    out[nv..].copy_from_slice(lambda.as_slice());
+        if self.kind == Kind::Derivatives {
+            let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(self.t, &q, &v, &tau);
+            for (to, from) in self.out.chunks_exact_mut(n * n).zip([by_q, by_v, by_tau]) {
+                for (to, from) in to.chunks_exact_mut(n).zip(from.column_iter()) {
+                    to.copy_from_slice(&from.as_slice()[..n]);
                 }
             }
-            None => out.fill(f64::NAN),
+            return;
         }
-    }
-
-    /// Solves for the accelerations that satisfy the constraints and are nearest to the free ones, in the
-    /// metric of the mass matrix.
-    fn solve(
-        &self,
-        shared: &Shared,
-        values: Values<'_>,
-        arguments: &[Argument],
-        work: &mut [f64],
-    ) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (nv, nc) = (self.nv, self.nc);
-        let mut called = |function: usize, rows, columns| {
-            let mut matrix = DMatrix::zeros(rows, columns);
-            shared.call(function, values, arguments, &[], matrix.as_mut_slice(), work);
-            matrix
-        };
-        let [mass, bias, jacobian, target] = self.functions;
-        let mass = called(mass, nv, nv).cholesky()?;
-        let (bias, jacobian, target) = (called(bias, nv, 1), called(jacobian, nc, nv), called(target, nc, 1));
-        let at = arguments.iter().position(|argument| *argument == Argument::Tau)?;
-        let force = DVector::from_column_slice(values.inputs[1 + at]) - bias.column(0);
-        let free = mass.solve(&force);
-        let response = mass.solve(&jacobian.transpose());
-        let missing = -target.column(0) - &jacobian * &free;
-        let decomposed = (&jacobian * &response).svd(true, true);
-        let greatest = decomposed.singular_values.max();
-        let lambda = decomposed.solve(&missing, RANK * greatest).ok()?;
-        let a = free + response * &lambda;
-        let miss = (&jacobian * &a + target.column(0)).amax();
-        let scale = target.amax().max(a.amax()).max(1.0);
-        (miss <= CONTRADICTION * scale).then_some((a, lambda))
+        let (a, lambda) = Constrained::<N, N, N, N, N>::constrained_dynamics(m, self.t, &q, &v, &tau);
+        let (accelerations, multipliers) = self.out.split_at_mut(n);
+        accelerations.copy_from_slice(&a.as_slice()[..n]);
+        let count = multipliers.len();
+        multipliers.copy_from_slice(&lambda.as_slice()[..count]);
     }
 }

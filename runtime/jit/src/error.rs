@@ -1,5 +1,7 @@
 //! Errors of loading and of calls.
 
+use crate::robot::Robot;
+use linkwork::integrate;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -54,6 +56,13 @@ pub enum Error {
     Value(String),
     /// The function belongs to another mechanism.
     OtherMechanism(String),
+    /// A motion cannot be simulated or continued, or no state satisfies the constraints.
+    Motion {
+        /// Reason; the names that it contains are numbers, which the message replaces by names.
+        reason: integrate::Error,
+        /// Message.
+        message: String,
+    },
     /// An internal error of Linkwork.
     Internal(String),
 }
@@ -75,7 +84,7 @@ impl fmt::Display for Error {
             Error::Missing(names) => {
                 write!(f, "no value for {}: set it before the first call", names.join(", "))
             }
-            Error::Value(message) => f.write_str(message),
+            Error::Value(message) | Error::Motion { message, .. } => f.write_str(message),
             Error::OtherMechanism(name) => write!(f, "`{name}` is a function of another mechanism"),
             Error::Internal(message) => {
                 write!(f, "internal error of Linkwork, please report it with the file: {message}")
@@ -100,5 +109,19 @@ impl Error {
             None => format!("known are {}", known.join(", ")),
         };
         Error::Unknown { kind, name: name.to_string(), help }
+    }
+}
+
+impl Error {
+    /// Whether the limit on the number of steps was reached, which an implicit method may avoid.
+    pub(crate) fn is_too_long(&self) -> bool {
+        matches!(self, Error::Motion { reason: integrate::Error::TooManySteps { .. }, .. })
+    }
+}
+
+impl Robot {
+    /// Returns the error of a simulation.
+    pub(crate) fn motion_error(&self, reason: integrate::Error) -> Error {
+        Error::Motion { message: self.shared.with_names(&reason.to_string()), reason }
     }
 }

@@ -1,6 +1,6 @@
 //! Functions of a loaded mechanism: their signatures, and how results follow from programs.
 
-use crate::constrained::Constrained;
+use crate::constrained::Kind;
 use crate::frames::Access;
 use crate::inverse::Inverse;
 use crate::kernels::{self, Columns};
@@ -12,6 +12,7 @@ use linkwork_compiler::catalogue::{Argument, CONTACT_FORCES, Called, Id, REACTIO
 use linkwork_compiler::derive::{self, Output};
 use linkwork_compiler::lower::{Operand, Program};
 use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::syntax::RATE_OF_STATE;
 
 /// A result of a function: a matrix, stored by columns behind the results before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +76,8 @@ pub(crate) enum Plan {
         m: usize,
     },
     Space(Space),
-    Constrained(Box<Constrained>),
+    /// A function of a mechanism with constraints, which the runtime evaluates.
+    Constrained(Kind),
 }
 
 /// Derivatives of forward dynamics that call other functions.
@@ -104,8 +106,7 @@ impl Plan {
             | Plan::Linear { routine, .. }
             | Plan::CalledLinear { routine, .. } => vec![routine],
             Plan::CalledForward(called) => vec![&called.accelerations, &called.known],
-            Plan::Space(_) => Vec::new(),
-            Plan::Constrained(constrained) => vec![&constrained.elimination],
+            Plan::Space(_) | Plan::Constrained(_) => Vec::new(),
         }
     }
 
@@ -115,7 +116,6 @@ impl Plan {
             Plan::CalledForward(called) => vec![called.forces],
             Plan::CalledLinear { derivatives, .. } => vec![*derivatives],
             Plan::Space(space) => space.calls(),
-            Plan::Constrained(constrained) => constrained.calls(),
             _ => Vec::new(),
         }
     }
@@ -172,7 +172,8 @@ impl Entry {
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
             Plan::Space(space) => space.run(shared, values, &self.arguments, out, work),
-            Plan::Constrained(constrained) => constrained.run(shared, values, &self.arguments, out, work),
+            // The robot calls these functions itself.
+            Plan::Constrained(_) => out.fill(f64::NAN),
         }
     }
 }
@@ -259,7 +260,7 @@ impl Maker<'_, '_> {
     }
 
     fn entry(&self, f: &derive::Function) -> Option<Entry> {
-        let hidden = matches!(f.id, Id::Limits | Id::Figures);
+        let hidden = is_internal(f.id);
         let has_dynamics = self.find(Id::ForwardDynamics).is_some();
         let name = match f.id {
             Id::InputDerivatives => "generalized_forces_derivatives",
@@ -269,7 +270,9 @@ impl Maker<'_, '_> {
             // Variants that write to several matrices: here all functions do.
             Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => return None,
             Id::Neutral => "neutral",
-            _ if hidden => f.name.trim_start_matches('_'),
+            Id::Limits | Id::Figures => f.name.trim_start_matches('_'),
+            _ if hidden => &f.name,
+            _ if f.is_hidden() && f.name.ends_with(RATE_OF_STATE) => &f.name,
             _ if f.is_hidden() || f.name.starts_with("__") => return None,
             _ => &f.name,
         };
@@ -342,7 +345,6 @@ impl Maker<'_, '_> {
                 let program = program.clone().with_outputs(&(n..outputs).collect::<Vec<_>>());
                 (Plan::Program(Routine::new(program, &arguments, outputs - n)?), 0)
             }
-            Shape::Record(_) => return None,
             _ => (Plan::Program(all(outputs)?), 0),
         };
         let results = results(f.shape, outputs);
@@ -438,6 +440,26 @@ fn results(shape: Shape, outputs: usize) -> Vec<Matrix> {
         true => vec![Matrix { name: "result", rows: outputs, columns: 1 }],
         false => arrays.into_iter().map(|(name, rows, columns)| Matrix { name, rows, columns }).collect(),
     }
+}
+
+/// Whether the runtime alone calls a function.
+fn is_internal(id: Id) -> bool {
+    matches!(
+        id,
+        Id::Limits
+            | Id::Figures
+            | Id::ConstrainedDynamics
+            | Id::ConstraintResponse
+            | Id::SlippingResponse
+            | Id::MotionDerivatives
+            | Id::ContactLaws
+            | Id::ContactResponses
+            | Id::RateMatrix
+            | Id::SpeedMatrix
+            | Id::RateChanges
+            | Id::Turning
+            | Id::Heights
+    )
 }
 
 /// Whether callers pass the argument.

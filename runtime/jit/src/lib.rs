@@ -5,27 +5,35 @@ mod code;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[path = "no_code.rs"]
 mod code;
+mod assemble;
+mod capacity;
 mod constrained;
 mod error;
 mod frames;
 mod functions;
+mod internal;
 mod inverse;
 mod kernels;
 mod layout;
 mod load;
 mod merge;
 mod methods;
+mod names;
 mod padded;
 mod robot;
 mod routine;
 mod shared;
+mod simulate;
 mod space;
 mod table;
 
 pub use error::Error;
 pub use functions::Matrix;
+#[doc(hidden)]
+pub use load::{compiled, without_rust};
 pub use load::{Loader, declare, load};
-pub use padded::Padded;
+pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;
+pub use simulate::{Controller, Inputs, Method, Run, Sample, Simulation};
 pub use table::AnyTable;

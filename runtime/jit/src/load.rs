@@ -1,19 +1,20 @@
 //! Files and texts to mechanisms.
 
-use crate::constrained::Constrained;
+use crate::constrained;
 use crate::error::Error;
 use crate::frames::Frames;
 use crate::functions::Maker;
+use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::robot::Robot;
-use crate::shared::{Quantity, Requirement, Shared, Sizes};
+use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
 use crate::space::Space;
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
-use linkwork_compiler::syntax::Printed;
+use linkwork_compiler::syntax::{Printed, RATE_OF_STATE};
 use linkwork_compiler::{DeclaredStruct, Source, compile_with, declarations, derive_above, import, read};
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -133,9 +134,9 @@ impl Loader {
         let DeclaredStruct { arguments, item, .. } = declaration;
         let source = read(arguments, item, &folder, cx);
         let Some(mut source) = source.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
+        without_rust(&mut source);
         let requests = &mut source.mechanism.requests;
-        // Options of generated Rust.
-        (requests.prepare, requests.batch, requests.drawing, requests.packed) = (false, false, false, false);
+        requests.drawing = false;
         if requests.equations == Printed::Readable {
             requests.equations = Printed::Structure;
         }
@@ -225,22 +226,42 @@ fn text_of(path: &Path) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".to_string()))
 }
 
+/// Returns the robot of a compiled mechanism, for the command `linkwork`.
+#[doc(hidden)]
+#[must_use]
+pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::derive::Output) -> Robot {
+    Robot::new(Arc::new(shared(source, model, output)), false)
+}
+
+/// Removes the options that only generated Rust has.
+#[doc(hidden)]
+pub fn without_rust(source: &mut Source) {
+    let requests = &mut source.mechanism.requests;
+    (requests.prepare, requests.batch, requests.packed) = (false, false, false);
+}
+
 /// Takes what remains of a mechanism after its compilation.
 fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::derive::Output) -> Shared {
     let frames = Frames::new(model, &mut output);
     let mut maker = Maker { model, output: &output, entries: Vec::new() };
     maker.add_derived();
     Space::add(&mut maker);
-    Constrained::add(&mut maker);
+    constrained::add(&mut maker);
     maker.entries.extend(frames.entries(model.time));
     let entries = maker.entries;
     let index: HashMap<String, usize> =
         entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
-    let methods = METHODS.iter().map(|name| index.get(*name).copied()).collect();
+    let find = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
+    let (methods, internal) = (find(METHODS), find(INTERNAL));
     let quantities = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
         let unit = |k: usize| units.get(k).cloned().unwrap_or_default();
         names.enumerate().map(|(k, name)| Quantity { name: name.clone(), unit: unit(k) }).collect::<Vec<_>>()
     };
+    let states = source.mechanism.description.states.iter().map(|(name, parameter)| FirstOrder {
+        parameter: *parameter,
+        rate: index.get(&format!("{}{RATE_OF_STATE}", name.text)).copied(),
+    });
+    let states = states.collect();
     let mut defaults = vec![f64::NAN; model.parameters.len()];
     for (_, k) in &source.mechanism.description.states {
         defaults[*k] = 0.0;
@@ -262,27 +283,53 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         requirements: model.requirements.iter().map(|r| requirement(model, r)).collect(),
         equations: output.equations.plain.clone(),
         time: model.time,
-        obstacle: obstacle(source, model),
+        kinematic: model.kinematic,
+        has_speeds: model.speeds.is_some(),
+        has_feedback: !model.acceleration_forces.is_empty(),
+        constraints: constraints_of(model),
+        contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
+        contacts: contacts(model),
+        states,
         charts: output.charts.clone(),
         frames,
         entries,
         index,
         methods,
+        internal,
     }
 }
 
-/// Returns the reason why the runtime cannot integrate a loaded mechanism, if there is one.
-fn obstacle(source: &Source, model: &Model<'_>) -> Option<&'static str> {
-    let reasons = [
-        (model.kinematic, "it has no inertia"),
-        (!model.constraints.is_empty(), "it has constraints"),
-        (!model.contacts.is_empty(), "it has contacts"),
-        (model.speeds.is_some(), "it has generalized speeds"),
-        (!model.acceleration_forces.is_empty(), "its forces depend on accelerations"),
-        (!source.mechanism.description.states.is_empty(), "it has states of first order"),
-        (model.time, "it depends on time"),
-    ];
-    reasons.into_iter().find_map(|(is_so, reason)| is_so.then_some(reason))
+fn constraints_of(model: &Model<'_>) -> Constraints {
+    let those = |is: fn(&mechanism::Constraint<'_>) -> bool| {
+        let all = model.constraints.iter().enumerate();
+        all.filter(|(_, constraint)| is(constraint)).map(|(k, _)| k).collect()
+    };
+    Constraints {
+        names: model.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
+        holonomic: model.holonomic(),
+        groups: model.constraints.iter().map(|constraint| constraint.group).collect(),
+        slipping: those(|constraint| !constraint.friction.is_empty()),
+        determining: those(|constraint| constraint.determines),
+        rank: model.nv().saturating_sub(model.freedom.velocities),
+        overdetermined: model.is_overdetermined(),
+        independent: model.dependent.is_some(),
+        angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
+    }
+}
+
+fn contacts(model: &Model<'_>) -> Vec<Contact> {
+    let mut first = 0;
+    let contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
+        let count = contact.rates.len();
+        first += count;
+        Contact {
+            name: contact.name.clone(),
+            rows: [first - count, count],
+            pressed_by: contact.pressed_by.unwrap_or(k),
+            of_impulses: contact.of_impulses,
+        }
+    };
+    model.contacts.iter().enumerate().map(contact).collect()
 }
 
 fn requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {

@@ -210,9 +210,9 @@ others! {
     /// Returns the configuration with all coordinates zero and identity quaternions.
     neutral neutral_into() State::default();
     /// Returns the configuration that is reached from `q` in one unit of time with the constant velocity `dv`.
-    integrate integrate_into(q, dv) State { q, other: [dv, &[]], ..State::default() };
+    integrate integrate_into(q, dv) State { q, other: [dv, &[], &[]], ..State::default() };
     /// Returns the velocity that leads from one configuration to another in one unit of time.
-    difference difference_into(from, to) State { other: [from, to], ..State::default() };
+    difference difference_into(from, to) State { other: [from, to, &[]], ..State::default() };
     /// Returns the rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.
-    tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[]], ..State::default() };
+    tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[], &[]], ..State::default() };
 }

@@ -1,20 +1,35 @@
-//! Loaded mechanisms for the runtime's integrators.
+//! Loaded mechanisms for the runtime's integrators and all other code for any mechanism.
+
+mod constraints;
+mod contacts;
+mod derivatives;
+
+pub use contacts::PaddedContacts;
 
 use crate::error::Error;
-use crate::robot::Robot;
-use linkwork::integrate::Hooks;
+use crate::internal::Internal;
+use crate::names::{List, numbers};
+use crate::robot::{Robot, State};
+use linkwork::constraint::Projected;
+use linkwork::integrate::{Features, Hooks};
 use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork::{Mechanism, Scleronomic};
+use linkwork::{ByMotion, Constrained, ConstraintError, Mechanism};
+use std::borrow::Borrow;
 
 /// A robot as a [`Mechanism`] of constant dimensions, for integrators and all other code for any mechanism.
 ///
 /// The dimensions are at least those of the robot. Further coordinates have unit inertia, and only generalized
-/// forces act on them; further inputs have no effect. With equal dimensions nothing is padded.
+/// forces act on them; further inputs have no effect. With equal dimensions nothing is padded. States of first
+/// order are the last velocities, as in [`Extended`](linkwork::Extended). Constraints are those of
+/// [`Constrained`], of which a robot has `NV` at most; further ones are always satisfied.
+///
+/// Derivatives are those of the option `derivatives`; without it they are NaN. Contacts are those of
+/// [`PaddedContacts`].
 ///
 /// Two designs were weighed: dimensions as associated types of the traits, so that loaded mechanisms have dynamic
 /// vectors, and this one, a capacity. Associated types change every signature of the runtime, and dynamic vectors
-/// allocate in every stage of an integrator. A capacity needs no change of the runtime, so that mechanisms of the
-/// attribute lose nothing; its costs are additional entries of the vectors of a stage, not of the generated code.
+/// allocate in every stage of an integrator. With a capacity, mechanisms of the attribute lose nothing; its
+/// costs are additional entries of the vectors of a stage, not of the generated code.
 ///
 /// ```
 /// use linkwork::prelude::simulate;
@@ -35,13 +50,13 @@ use linkwork::{Mechanism, Scleronomic};
 /// let end = simulate(&exact).from([0.5], [0.0]).duration(1.0).finish()?;
 /// let q = [0.5, 0.0, 0.0, 0.0];
 /// let same = simulate(&padded).from(q, [0.0; 4]).duration(1.0).finish()?;
-/// assert!((end.q[0] - same.q[0]).abs() < 1e-6 && same.q[1] == 0.0);
+/// assert!(end.q[0] == same.q[0] && same.q[1] == 0.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Padded<const NQ: usize, const NV: usize, const NU: usize> {
-    robot: Robot,
+pub struct Padded<const NQ: usize, const NV: usize, const NU: usize, R = Robot> {
+    robot: R,
 }
 
 impl Robot {
@@ -49,165 +64,402 @@ impl Robot {
     ///
     /// # Errors
     ///
-    /// A dimension is smaller than that of the robot, a parameter has no value, or the robot has constraints,
-    /// contacts or generalized speeds, or depends on time.
+    /// A dimension is smaller than that of the robot, a parameter has no value, or the robot has no inertia, or
+    /// contacts ([`padded_contacts`](Self::padded_contacts)).
     pub fn padded<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
     ) -> Result<Padded<NQ, NV, NU>, Error> {
-        for (name, own, capacity) in [("NQ", self.nq(), NQ), ("NV", self.nv(), NV), ("NU", self.nu(), NU)] {
-            self.check_length(name, own, own.min(capacity))?;
-        }
-        let further = (NQ - self.nq(), NV - self.nv());
-        if further.0 != further.1 {
-            let (name, expected) = ("NQ - NV", self.nq() - self.nv());
-            self.check_length(name, expected, NQ.saturating_sub(NV))?;
+        if !self.shared.contacts.is_empty() {
+            let name = self.name();
+            return Err(Error::Value(format!("`{name}` has contacts: call `padded_contacts` instead")));
         }
         self.validate()?;
-        match self.shared.obstacle {
-            Some(reason) => Err(Error::Value(format!("`{}` cannot be integrated: {reason}", self.name()))),
-            None => Ok(Padded { robot: self.clone() }),
-        }
+        Padded::new(self.clone())
     }
 }
 
-impl<const NQ: usize, const NV: usize, const NU: usize> Padded<NQ, NV, NU> {
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
+    /// Checks the dimensions, and whether the robot can move. Contacts have no effect.
+    pub(crate) fn new(robot: R) -> Result<Self, Error> {
+        let own: &Robot = robot.borrow();
+        let velocities = own.nv() + own.shared.states.len();
+        let rows = own.shared.constraints.names.len();
+        for (name, own_count, capacity) in [
+            ("NQ", own.nq(), NQ),
+            ("NV", velocities, NV),
+            ("NU", own.nu(), NU),
+            ("NV for the constraints", rows, NV),
+        ] {
+            own.check_length(name, own_count, own_count.min(capacity))?;
+        }
+        match own.shared.kinematic {
+            true => Err(Error::Value(format!(
+                "`{}` has no masses (`inertia = none`), so that nothing determines how it moves",
+                own.name()
+            ))),
+            false => Ok(Padded { robot }),
+        }
+    }
+
     /// Returns the robot.
     #[must_use]
     pub fn robot(&self) -> &Robot {
-        &self.robot
+        self.robot.borrow()
     }
 
-    fn q<'a>(&self, q: &'a SVector<f64, NQ>) -> &'a [f64] {
-        &q.as_slice()[..self.robot.nq()]
+    /// Number of velocities, and number of velocities and states of first order.
+    fn velocities(&self) -> [usize; 2] {
+        let robot = self.robot();
+        [robot.nv(), robot.nv() + robot.shared.states.len()]
     }
 
-    fn v<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
-        &v.as_slice()[..self.robot.nv()]
+    fn configuration<'a>(&self, q: &'a SVector<f64, NQ>) -> &'a [f64] {
+        &q.as_slice()[..self.robot().nq()]
     }
 
-    /// Fills the entries of the robot, and NaN after an error, which lengths cannot cause here.
-    fn fill<const N: usize>(
+    fn own<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
+        &v.as_slice()[..self.robot().nv()]
+    }
+
+    fn at<'a>(&self, t: f64, q: &'a SVector<f64, NQ>) -> State<'a> {
+        State { t: Some(t), q: self.configuration(q), ..State::default() }
+    }
+
+    fn state<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
+        let [n, all] = self.velocities();
+        State { v: self.own(v), x: &v.as_slice()[n..all], ..self.at(t, q) }
+    }
+
+    /// Whether the robot has a function.
+    fn has(&self, f: Internal) -> bool {
+        self.robot().shared.internal[f as usize].is_some()
+    }
+
+    /// Evaluates a function. The results are NaN after an error, such as that of a function that is absent.
+    fn call(&self, f: Internal, state: State<'_>, out: &mut [f64]) {
+        let robot = self.robot();
+        let index = robot.shared.internal[f as usize];
+        if index.is_none_or(|index| robot.state_call_into(index, state, out).is_err()) {
+            out.fill(f64::NAN);
+        }
+    }
+
+    /// Fills the first entries of a vector.
+    fn vector<const N: usize>(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        count: usize,
         mut all: SVector<f64, N>,
-        n: usize,
-        fill: impl FnOnce(&mut [f64]) -> Result<(), Error>,
     ) -> SVector<f64, N> {
-        let own = &mut all.as_mut_slice()[..n];
-        if fill(own).is_err() {
-            own.fill(f64::NAN);
+        self.call(f, state, &mut all.as_mut_slice()[..count]);
+        all
+    }
+
+    /// Fills the first rows and columns of a matrix.
+    fn matrix<const N: usize, const M: usize>(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        (rows, columns): (usize, usize),
+        mut all: SMatrix<f64, N, M>,
+    ) -> SMatrix<f64, N, M> {
+        if rows == N {
+            self.call(f, state, &mut all.as_mut_slice()[..rows * columns]);
+        } else {
+            let mut found = SMatrix::<f64, N, M>::zeros();
+            let found = &mut found.as_mut_slice()[..rows * columns];
+            self.call(f, state, found);
+            put(&mut all, rows, found);
         }
         all
     }
+
+    /// Adds the rates of the states of first order, for inputs, to the entries behind the velocities.
+    fn add_state_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
+        let robot = self.robot();
+        let n = robot.nv();
+        for (k, one) in robot.shared.states.iter().enumerate() {
+            let mut rate = [f64::NAN];
+            if let Some(index) = one.rate {
+                let _ = robot.state_call_into(index, state, &mut rate);
+            }
+            to[n + k] += factor * rate[0];
+        }
+    }
+
+    /// Adds the rates of the states of first order without inputs.
+    fn add_free_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
+        if !self.robot().shared.states.is_empty() {
+            let u = SVector::<f64, NU>::zeros();
+            self.add_state_rates(State { u: self.inputs(&u), ..state }, factor, to);
+        }
+    }
+
+    fn inputs<'a>(&self, u: &'a SVector<f64, NU>) -> &'a [f64] {
+        &u.as_slice()[..self.robot().nu()]
+    }
 }
 
-impl<const NQ: usize, const NV: usize, const NU: usize> Scleronomic for Padded<NQ, NV, NU> {}
+/// Writes the columns of a block with these rows to the first rows and columns of a matrix.
+fn put<const N: usize, const M: usize>(all: &mut SMatrix<f64, N, M>, rows: usize, block: &[f64]) {
+    for (j, column) in block.chunks_exact(rows.max(1)).enumerate() {
+        all.as_mut_slice()[j * N..j * N + rows].copy_from_slice(column);
+    }
+}
 
-impl<const NQ: usize, const NV: usize, const NU: usize> Hooks<f64, NQ, NV, NU> for Padded<NQ, NV, NU> {}
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<f64, NQ, NV, NU>
+    for Padded<NQ, NV, NU, R>
+{
+    #[inline]
+    fn features(&self) -> Features {
+        let (robot, [_, velocities]) = (self.robot(), self.velocities());
+        let shared = &robot.shared;
+        Features {
+            constrained: !shared.constraints.names.is_empty(),
+            slipping: !shared.constraints.slipping.is_empty(),
+            feedback: shared.has_feedback,
+            speeds: shared.has_speeds,
+            dimensions: [robot.nq(), velocities],
+        }
+    }
 
-impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for Padded<NQ, NV, NU> {
+    fn project(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+    ) -> Result<Projected<f64, NQ, NV>, ConstraintError> {
+        match self.is_constrained() {
+            true => Constrained::<NQ, NV, NU, NV, NV>::project_state(self, t, q, v),
+            false => Ok((*q, *v)),
+        }
+    }
+
+    fn impulse(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        h: f64,
+        p: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        match self.is_constrained() {
+            true => Constrained::<NQ, NV, NU, NV, NV>::constrained_impulse(self, t, q, v, h, p),
+            false => self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p)),
+        }
+    }
+
+    fn is_nearly_singular(&self, t: f64, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> bool {
+        self.is_constrained() && self.constraints_nearly_singular(t, q, dv)
+    }
+
+    fn acceleration_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        u: &SVector<f64, NU>,
+    ) -> Option<ByMotion<f64, NV, NU>> {
+        let available = self.robot().shared.states.is_empty() && self.has_derivatives();
+        available.then(|| linkwork::__private::acceleration_derivatives(self, t, q, v, u)).flatten()
+    }
+
+    fn carry(
+        &self,
+        _t: f64,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+        v: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        let charts = &self.robot().shared.charts;
+        let mut out = *v;
+        if !self.robot().shared.has_speeds {
+            crate::space::carry(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
+            return out;
+        }
+        let n = self.robot().nv();
+        let at = State { q: self.configuration(q), ..State::default() };
+        let rates = |state: State<'_>, v: &SVector<f64, NV>| {
+            self.vector(Internal::RatesOfSpeeds, State { v: self.own(v), ..state }, n, *v)
+        };
+        let way = rates(at, dv);
+        let mut there = *q;
+        crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
+        crate::space::carry(charts, way.as_slice(), rates(at, v).as_slice(), out.as_mut_slice());
+        let at = State { q: self.configuration(&there), ..State::default() };
+        self.vector(Internal::SpeedsOfRates, State { v: self.own(&out), ..at }, n, out)
+    }
+}
+
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechanism<NQ, NV, NU>
+    for Padded<NQ, NV, NU, R>
+{
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = [""; NQ];
-    const VELOCITIES: [&'static str; NV] = [""; NV];
-    const INPUTS: [&'static str; NU] = [""; NU];
+    const CONFIGURATION: [&'static str; NQ] = numbers(List::Configuration);
+    const VELOCITIES: [&'static str; NV] = numbers(List::Velocities);
+    const INPUTS: [&'static str; NU] = numbers(List::Inputs);
 
     fn neutral(&self) -> SVector<f64, NQ> {
-        Self::fill(SVector::zeros(), self.robot.nq(), |to| self.robot.neutral_into(to))
+        self.vector(Internal::Neutral, State::default(), self.robot().nq(), SVector::zeros())
     }
 
     fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        let (nq, nv) = (self.robot.nq(), self.robot.nv());
+        let (nq, [_, nv]) = (self.robot().nq(), self.velocities());
         let mut all = *q;
         for (to, by) in all.iter_mut().skip(nq).zip(dv.iter().skip(nv)) {
             *to += by;
         }
-        Self::fill(all, nq, |to| self.robot.integrate_into(self.q(q), self.v(dv), to))
+        if !self.robot().shared.has_speeds {
+            let charts = &self.robot().shared.charts;
+            crate::space::integrate(charts, q.as_slice(), dv.as_slice(), all.as_mut_slice());
+            return all;
+        }
+        let state = State {
+            q: self.configuration(q),
+            v: self.own(dv),
+            other: [self.own(dv), &[], &[]],
+            ..State::default()
+        };
+        self.vector(Internal::Integrate, state, nq, all)
     }
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        let (nq, nv) = (self.robot.nq(), self.robot.nv());
+        let (nq, [n, nv]) = (self.robot().nq(), self.velocities());
         let mut all = SVector::<f64, NV>::zeros();
-        for (k, entry) in all.iter_mut().enumerate().skip(nv) {
-            *entry = to[k - nv + nq] - from[k - nv + nq];
+        for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
+            *entry = to - from;
         }
-        Self::fill(all, nv, |out| self.robot.difference_into(self.q(from), self.q(to), out))
+        let other = [self.configuration(from), self.configuration(to), &[]];
+        self.vector(Internal::Difference, State { other, ..State::default() }, n, all)
     }
 
     fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        Self::fill(*v, self.robot.nv(), |to| self.robot.tangent_rate_into(self.v(dv), self.v(v), to))
-    }
-
-    fn mass_matrix(&self, _t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
-        let n = self.robot.nv();
-        let mut all = SMatrix::<f64, NV, NV>::identity();
-        if n == NV {
-            if self.robot.mass_matrix_into(self.q(q), all.as_mut_slice()).is_err() {
-                all.fill(f64::NAN);
+        let mut all = *v;
+        match self.robot().shared.has_speeds {
+            true => all.fill(f64::NAN),
+            false => {
+                let charts = &self.robot().shared.charts;
+                crate::space::tangent_rate(charts, dv.as_slice(), v.as_slice(), all.as_mut_slice());
             }
-        } else if let Ok(own) = self.robot.mass_matrix(self.q(q)) {
-            all.view_mut((0, 0), (n, n)).copy_from(&own);
         }
         all
     }
 
-    fn bias_forces(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        Self::fill(SVector::zeros(), self.robot.nv(), |to| {
-            self.robot.bias_forces_into(self.q(q), self.v(v), to)
-        })
+    fn displacement_rate(
+        &self,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+        v: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        if !self.robot().shared.has_speeds {
+            return self.tangent_rate(dv, v);
+        }
+        let state = State {
+            q: self.configuration(q),
+            v: self.own(v),
+            other: [self.own(dv), &[], &[]],
+            ..State::default()
+        };
+        self.vector(Internal::DisplacementRate, state, self.robot().nv(), *v)
+    }
+
+    fn mass_matrix(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
+        let n = self.robot().nv();
+        self.matrix(Internal::MassMatrix, self.at(t, q), (n, n), SMatrix::identity())
+    }
+
+    fn bias_forces(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        let state = self.state(t, q, v);
+        let mut all = self.vector(Internal::BiasForces, state, self.robot().nv(), SVector::zeros());
+        self.add_free_rates(state, -1.0, &mut all);
+        all
     }
 
     fn inverse_dynamics(
         &self,
-        _t: f64,
+        t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        Self::fill(*a, self.robot.nv(), |to| {
-            self.robot.inverse_dynamics_into(self.q(q), self.v(v), self.v(a), to)
-        })
+        let state = State { a: self.own(a), ..self.state(t, q, v) };
+        let mut all = self.vector(Internal::InverseDynamics, state, self.robot().nv(), *a);
+        self.add_free_rates(state, -1.0, &mut all);
+        all
     }
 
     fn forward_dynamics(
         &self,
-        _t: f64,
+        t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        Self::fill(*tau, self.robot.nv(), |to| {
-            self.robot.forward_dynamics_into(self.q(q), self.v(v), self.v(tau), to)
-        })
+        if self.is_constrained() {
+            return Constrained::<NQ, NV, NU, NV, NV>::constrained_dynamics(self, t, q, v, tau).0;
+        }
+        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let mut all = self.vector(Internal::ForwardDynamics, state, self.robot().nv(), *tau);
+        self.add_free_rates(state, 1.0, &mut all);
+        all
+    }
+
+    fn try_forward_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> Result<SVector<f64, NV>, ConstraintError> {
+        match self.robot().shared.constraints.slipping.is_empty() {
+            true => Ok(self.forward_dynamics(t, q, v, tau)),
+            false => self.slipping_dynamics(t, q, v, tau).map(|(a, _)| a),
+        }
     }
 
     fn generalized_forces(
         &self,
-        _t: f64,
+        t: f64,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         u: &SVector<f64, NU>,
     ) -> SVector<f64, NV> {
-        let u = &u.as_slice()[..self.robot.nu()];
-        Self::fill(SVector::zeros(), self.robot.nv(), |to| {
-            self.robot.generalized_forces_into(self.q(q), self.v(v), u, to)
-        })
+        let mut all = SVector::zeros();
+        if self.robot().nu() == 0 {
+            return all;
+        }
+        let state = State { u: self.inputs(u), ..self.state(t, q, v) };
+        all = self.vector(Internal::GeneralizedForces, state, self.robot().nv(), all);
+        if !self.robot().shared.states.is_empty() {
+            self.add_state_rates(state, 1.0, &mut all);
+            self.add_free_rates(state, -1.0, &mut all);
+        }
+        all
     }
 
-    fn kinetic_energy(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
-        let further: f64 = v.iter().skip(self.robot.nv()).map(|v| 0.5 * v * v).sum();
-        self.robot.kinetic_energy(self.q(q), self.v(v)).unwrap_or(f64::NAN) + further
+    fn kinetic_energy(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
+        let further: f64 = v.iter().skip(self.velocities()[1]).map(|v| 0.5 * v * v).sum();
+        let mut energy = [f64::NAN];
+        self.call(Internal::KineticEnergy, self.state(t, q, v), &mut energy);
+        energy[0] + further
     }
 
-    fn potential_energy(&self, _t: f64, q: &SVector<f64, NQ>) -> f64 {
-        self.robot.potential_energy(self.q(q)).unwrap_or(f64::NAN)
+    fn potential_energy(&self, t: f64, q: &SVector<f64, NQ>) -> f64 {
+        let mut energy = [f64::NAN];
+        self.call(Internal::PotentialEnergy, self.at(t, q), &mut energy);
+        energy[0]
     }
 
-    fn generalized_momentum(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        Self::fill(*v, self.robot.nv(), |to| self.robot.generalized_momentum_into(self.q(q), self.v(v), to))
+    fn generalized_momentum(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        self.vector(Internal::GeneralizedMomentum, self.state(t, q, v), self.robot().nv(), *v)
     }
 
-    fn momentum_rate(&self, _t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        Self::fill(SVector::zeros(), self.robot.nv(), |to| {
-            self.robot.momentum_rate_into(self.q(q), self.v(v), to)
-        })
+    fn momentum_rate(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        let state = self.state(t, q, v);
+        let mut all = self.vector(Internal::MomentumRate, state, self.robot().nv(), SVector::zeros());
+        self.add_free_rates(state, 1.0, &mut all);
+        all
     }
 }

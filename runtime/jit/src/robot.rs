@@ -2,7 +2,7 @@
 
 use crate::AnyTable;
 use crate::error::Error;
-use crate::functions::Matrix;
+use crate::functions::{Matrix, Plan};
 use crate::layout::Layout;
 use crate::routine::Values;
 use crate::shared::{Quantity, Shared};
@@ -104,12 +104,16 @@ pub struct Limit {
 /// State, accelerations, forces and inputs of a call of a function by its index.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct State<'a> {
+    /// Time; that of the robot if absent.
+    pub t: Option<f64>,
     pub q: &'a [f64],
     pub v: &'a [f64],
+    /// States of first order; those among the parameters if empty.
+    pub x: &'a [f64],
     pub a: &'a [f64],
     pub tau: &'a [f64],
     pub u: &'a [f64],
-    pub other: [&'a [f64]; 2],
+    pub other: [&'a [f64]; 3],
 }
 
 thread_local! {
@@ -146,6 +150,12 @@ impl Robot {
     #[must_use]
     pub fn nu(&self) -> usize {
         self.shared.sizes.nu
+    }
+
+    /// Returns the number of states of first order, which are parameters as well.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        self.shared.states.len()
     }
 
     /// Returns name and unit of each coordinate.
@@ -312,8 +322,11 @@ impl Robot {
             let figure = Figure { rule: requirement.rule, name: "", parameters: &[] };
             validate(&[figure], own).map_err(|error| {
                 let parameters = requirement.parameters.join("`, `");
-                let names =
-                    if parameters.is_empty() { String::new() } else { format!(" (by `{parameters}`)") };
+                let names = match requirement.parameters.len() {
+                    0 => String::new(),
+                    1 => format!(" (by the parameter `{parameters}`)"),
+                    _ => format!(" (by the parameters `{parameters}`)"),
+                };
                 Error::Value(format!("{}{error}{names}", requirement.figure))
             })?;
         }
@@ -388,13 +401,20 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         match Arc::ptr_eq(&self.shared, &f.shared) {
-            true => self.call(f.index, count, arguments, out),
+            true => self.call(&self.parameters, f.index, count, arguments, out),
             false => Err(Error::OtherMechanism(f.name().to_string())),
         }
     }
 
     /// Evaluates a function by its index; see [`evaluate_many_into`](Self::evaluate_many_into).
-    fn call(&self, index: usize, count: usize, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+    fn call(
+        &self,
+        parameters: &[f64],
+        index: usize,
+        count: usize,
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
         self.check_values()?;
         let entry = &self.shared.entries[index];
         if arguments.len() != entry.arguments.len() {
@@ -413,12 +433,25 @@ impl Robot {
             let (of, name) = (entry.name.clone(), "the result".to_string());
             return Err(Error::Length { of, name, expected: entry.length * count, found: out.len() });
         }
+        if let Plan::Constrained(kind) = entry.plan {
+            let lists = |k: usize| {
+                let mut own: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+                for ((own, list), length) in own.iter_mut().zip(arguments).zip(&lengths) {
+                    let first = if list.len() == *length { 0 } else { k * length };
+                    *own = &list[first..first + length];
+                }
+                own
+            };
+            return (0..count).zip(out.chunks_exact_mut(entry.length.max(1))).try_for_each(|(k, out)| {
+                self.call_constrained(kind, &lists(k)[..arguments.len()], out)
+            });
+        }
         WORK.with_borrow_mut(|work| {
             if work.len() < entry.work {
                 work.resize(entry.work, 0.0);
             }
             let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-            inputs[0] = &self.parameters;
+            inputs[0] = parameters;
             for k in 0..count {
                 for ((input, list), length) in inputs[1..].iter_mut().zip(arguments).zip(&lengths) {
                     let first = if list.len() == *length { 0 } else { k * length };
@@ -444,7 +477,7 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         let entry = &self.shared.entries[index];
-        let time = [self.time];
+        let time = [state.t.unwrap_or(self.time)];
         let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
         let mut others = state.other.into_iter();
         for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
@@ -458,7 +491,15 @@ impl Robot {
                 _ => others.next().unwrap_or(&[]),
             };
         }
-        self.call(index, 1, &arguments[..entry.arguments.len()], out)
+        let arguments = &arguments[..entry.arguments.len()];
+        if state.x.is_empty() {
+            return self.call(&self.parameters, index, 1, arguments, out);
+        }
+        let mut parameters = self.parameters.clone();
+        for (value, one) in state.x.iter().zip(&self.shared.states) {
+            parameters[one.parameter] = *value;
+        }
+        self.call(&parameters, index, 1, arguments, out)
     }
 
     pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {

@@ -40,6 +40,47 @@ pub(crate) struct Requirement {
     pub count: usize,
 }
 
+/// The scalar constraints of a mechanism.
+#[derive(Default)]
+pub(crate) struct Constraints {
+    pub names: Vec<String>,
+    /// Number of constraints on configurations, which come first.
+    pub holonomic: usize,
+    /// Group of each constraint; those of one group are components of one vector.
+    pub groups: Vec<usize>,
+    /// Indices of the constraints whose multipliers are normal forces of friction.
+    pub slipping: Vec<usize>,
+    /// Indices of the constraints that determine coordinates without inertia.
+    pub determining: Vec<usize>,
+    /// Number of independent constraints in regular configurations.
+    pub rank: usize,
+    /// Whether some constraints follow from others everywhere.
+    pub overdetermined: bool,
+    /// Whether accelerations are eliminated by pivots that are chosen in advance.
+    pub independent: bool,
+    /// Indices of the coordinates that are angles.
+    pub angles: Vec<usize>,
+}
+
+/// A contact that opens and closes.
+pub(crate) struct Contact {
+    pub name: String,
+    /// First row, and number of rows, in the contact velocities.
+    pub rows: [usize; 2],
+    /// Index of the contact whose normal force causes the friction: its own, except of friction moments.
+    pub pressed_by: usize,
+    /// Whether restitution is a ratio of impulses.
+    pub of_impulses: bool,
+}
+
+/// A state of first order.
+pub(crate) struct FirstOrder {
+    /// Index among the parameters.
+    pub parameter: usize,
+    /// Index of the function of its rate.
+    pub rate: Option<usize>,
+}
+
 /// A loaded mechanism.
 pub(crate) struct Shared {
     pub name: String,
@@ -57,14 +98,25 @@ pub(crate) struct Shared {
     pub requirements: Vec<Requirement>,
     pub equations: String,
     pub time: bool,
-    /// Reason why the runtime cannot integrate the mechanism.
-    pub obstacle: Option<&'static str>,
+    /// Whether it has no inertia.
+    pub kinematic: bool,
+    /// Whether generalized speeds are declared.
+    pub has_speeds: bool,
+    /// Whether forces depend on accelerations.
+    pub has_feedback: bool,
+    pub constraints: Constraints,
+    pub contacts: Vec<Contact>,
+    /// Number of contact velocities.
+    pub contact_rates: usize,
+    pub states: Vec<FirstOrder>,
     pub charts: Vec<Chart>,
     pub frames: Frames,
     pub entries: Vec<Entry>,
     pub index: HashMap<String, usize>,
     /// Indices of the functions with methods.
     pub methods: Vec<Option<usize>>,
+    /// Indices of the functions that the runtime calls.
+    pub internal: Vec<Option<usize>>,
 }
 
 impl Shared {

@@ -4,7 +4,8 @@ use crate::functions::{Entry, Maker, Matrix, Plan};
 use crate::routine::Values;
 use crate::shared::Shared;
 use linkwork::__private::{
-    ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate, free_tangent_rate,
+    ball_carry, ball_difference, ball_integrate, ball_tangent_rate, free_carry, free_difference,
+    free_integrate, free_tangent_rate,
 };
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::{Chart, InQ, InV};
@@ -59,7 +60,7 @@ fn difference(charts: &[Chart], from: &[f64], to: &[f64], out: &mut [f64]) {
     }
 }
 
-fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+pub(crate) fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(_, InV(v0)) => out[v0] = v[v0],
@@ -68,6 +69,21 @@ fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
             }
             Chart::Free(_, InV(v0)) => {
                 out[v0..v0 + 6].copy_from_slice(&free_tangent_rate(array(dv, v0), array(v, v0)));
+            }
+        }
+    }
+}
+
+/// Writes a velocity in the axes that ball and free joints have after a displacement.
+pub(crate) fn carry(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(_, InV(v0)) => out[v0] = v[v0],
+            Chart::Ball(_, InV(v0)) => {
+                out[v0..v0 + 3].copy_from_slice(&ball_carry(array(dv, v0), array(v, v0)));
+            }
+            Chart::Free(_, InV(v0)) => {
+                out[v0..v0 + 6].copy_from_slice(&free_carry(array(dv, v0), array(v, v0)));
             }
         }
     }

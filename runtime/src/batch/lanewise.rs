@@ -4,7 +4,7 @@ use super::{Batch, Column};
 use crate::blocks::zeros;
 use crate::contact::Touched;
 use crate::forward::constants;
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::lanes::{lane, lane_by_lane, set_lane};
 use crate::{ByMotion, ConstraintError, Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
@@ -96,6 +96,11 @@ where
     const CONTACTING: bool = M::CONTACTING;
     const LOCATABLE: bool = false;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        Features::of::<Self, Lanes<M::Scalar, L>, NQ, NV, NU>()
+    }
 
     /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
     fn project(

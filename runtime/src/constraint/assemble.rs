@@ -20,13 +20,15 @@ const FAR: f64 = 3.0;
 const ROUNDS: usize = 8;
 
 /// Constraints of a mechanism with or without inertia, for assembly.
-pub struct Loops<R, J, I, const NV: usize, const NC: usize> {
+pub struct Loops<'a, R, J, I, const NV: usize, const NC: usize> {
     /// Names of the constraints.
     pub names: [&'static str; NC],
     /// Indices of the entries of `q` that are angles.
-    pub angles: &'static [usize],
+    pub angles: &'a [usize],
     /// Whether each velocity is that of a rotation.
     pub turns: [bool; NV],
+    /// Numbers of holonomic constraints and of velocities; further rows and columns are padding.
+    pub sizes: [usize; 2],
     /// Function that returns the residuals of the holonomic constraints.
     pub residuals: R,
     /// Function that returns the derivatives of all constraint rates with respect to the velocities.
@@ -48,7 +50,7 @@ pub fn assemble<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NV, NC>,
+    loops: &Loops<'_, R, J, I, NV, NC>,
     q: &SVector<T, NQ>,
     held: &[usize],
     mode: Option<i8>,
@@ -113,7 +115,7 @@ fn unwind<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NV, NC>,
+    loops: &Loops<'_, R, J, I, NV, NC>,
     guess: &SVector<T, NQ>,
     q: SVector<T, NQ>,
 ) -> SVector<T, NQ> {
@@ -138,7 +140,7 @@ fn unwind<
     })
 }
 
-/// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
+/// Returns the configuration to which [`least_violation`] leads, if it satisfies the constraints.
 fn descend<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -149,7 +151,29 @@ fn descend<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NV, NC>,
+    loops: &Loops<'_, R, J, I, NV, NC>,
+    q: &SVector<T, NQ>,
+    held: &[usize],
+) -> Result<SVector<T, NQ>, ConstraintError> {
+    let q = least_violation(loops, q, held)?;
+    let (worst, size) = largest(&(loops.residuals)(&q))?;
+    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+}
+
+/// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
+/// Returns the configuration, in which the constraints need not be satisfied.
+#[doc(hidden)]
+pub fn least_violation<
+    T: Real,
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+    J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
+    I: Fn(&SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NQ>,
+    const NQ: usize,
+    const NV: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    loops: &Loops<'_, R, J, I, NV, NC>,
     q: &SVector<T, NQ>,
     held: &[usize],
 ) -> Result<SVector<T, NQ>, ConstraintError> {
@@ -186,8 +210,7 @@ fn descend<
             break;
         }
     }
-    let (worst, size) = largest(&residuals)?;
-    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+    Ok(q)
 }
 
 /// Returns the step, scaled such that no angle changes by more than [`LONGEST`].
@@ -221,15 +244,16 @@ pub fn assembly_mode<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NV, NC>,
+    loops: &Loops<'_, R, J, I, NV, NC>,
     q: &SVector<T, NQ>,
     held: &[usize],
 ) -> Option<i8>
 where
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
 {
-    let is_held = |k: usize| held.contains(&k);
-    if NH + (0..NV).filter(|k| is_held(*k)).count() != NV {
+    let [holonomic, velocities] = loops.sizes;
+    let is_held = |k: usize| held.contains(&k) || k >= velocities;
+    if holonomic + (0..NV).filter(|k| is_held(*k)).count() != NV {
         return None;
     }
     // One row per constraint, then one per held velocity.
@@ -237,7 +261,7 @@ where
     let mut rows = [[T::zero(); NV]; NV];
     let mut fixed = (0..NV).filter(|k| is_held(*k));
     for (i, row) in rows.iter_mut().enumerate() {
-        if i < NH {
+        if i < holonomic {
             *row = core::array::from_fn(|j| open[(i, j)]);
         } else if let Some(own) = fixed.next().and_then(|k| row.get_mut(k)) {
             *own = T::one();

@@ -12,11 +12,11 @@ use passing::size;
 
 /// Structure of a mechanism's constraints, which does not depend on the state.
 #[derive(Clone, Copy, Debug)]
-pub struct Structure<const NC: usize> {
+pub struct Structure<'a, const NC: usize> {
     /// Group of each constraint. Constraints of one group are components of one vector.
     pub groups: [usize; NC],
     /// Indices of the constraints that determine coordinates without inertia.
-    pub determining: &'static [usize],
+    pub determining: &'a [usize],
     /// Number of independent constraints in regular (nonsingular) configurations.
     pub rank: usize,
 }
@@ -41,7 +41,7 @@ pub fn careful_dynamics<
     const NC: usize,
 >(
     mechanism: &M,
-    structure: &Structure<NC>,
+    structure: &Structure<'_, NC>,
     t: T,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
@@ -97,7 +97,7 @@ pub fn careful_response<
     const NC: usize,
 >(
     mechanism: &M,
-    structure: &Structure<NC>,
+    structure: &Structure<'_, NC>,
     t: T,
     q: &SVector<T, NQ>,
     force: &[T; NV],
@@ -156,7 +156,7 @@ pub fn nearly_singular<
     const NC: usize,
 >(
     mechanism: &M,
-    structure: &Structure<NC>,
+    structure: &Structure<'_, NC>,
     t: T,
     q: &SVector<T, NQ>,
     dv: &SVector<T, NV>,
@@ -266,7 +266,7 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 
     /// Returns the solution, and whether the rows above the relative magnitude `clear` have the rank of
     /// regular configurations.
-    fn solve(&self, structure: &Structure<NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
+    fn solve(&self, structure: &Structure<'_, NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded(structure);
         let metric = Metric::of(&mass);
         let mut span = Span::of(&metric, &self.jacobian, &structure.groups);
@@ -307,7 +307,7 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 
     /// Returns mass matrix and forces, extended for coordinates without inertia. With the rows `J` that
     /// determine these, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
-    fn loaded(&self, structure: &Structure<NC>) -> ([[T; NV]; NV], [T; NV]) {
+    fn loaded(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
@@ -327,6 +327,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 /// Triangular factor `R` of the columns, relative to their lengths; `Rᵀ = U S` if not all columns are in the
 /// basis.
 struct Triangle<T, const NC: usize> {
+    /// Whether all rows but those of zeros are in the basis.
+    full: bool,
     base: [[T; NC]; NC],
     upper: [[T; NC]; NC],
 }
@@ -334,19 +336,20 @@ struct Triangle<T, const NC: usize> {
 impl<T: Real, const NC: usize> Triangle<T, NC> {
     fn of<const NV: usize>(span: &Span<T, NV, NC>) -> Self {
         let rank = span.rank;
-        if rank == NC {
-            return Self { base: [[T::zero(); NC]; NC], upper: [[T::zero(); NC]; NC] };
+        let full = span.columns.iter().all(|column| column.length == T::zero() || column.step.is_some());
+        if full {
+            return Self { full, base: [[T::zero(); NC]; NC], upper: [[T::zero(); NC]; NC] };
         }
         let mut base = core::array::from_fn(|j| span.columns.map(|c| at(&c.x, j) * c.length));
         let upper = orthogonal(&mut base, rank);
-        Self { base, upper }
+        Self { full, base, upper }
     }
 
     /// Solves `Rᵀ z = −b`, in the least-squares sense for a rank-deficient `R`.
     fn particular<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
         let rank = span.rank;
         let mut z = [T::zero(); NC];
-        if rank < NC {
+        if !self.full {
             for j in (0..NC).rev() {
                 if j >= rank {
                     continue;
@@ -375,7 +378,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         let rank = span.rank;
         let mut lambda = [T::zero(); NC];
         let mut rest = *lacking;
-        if rank < NC {
+        if !self.full {
             for j in 0..NC {
                 if j >= rank {
                     break;

@@ -208,6 +208,19 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     const CONSTRAINTS: [&'static str; NC] = M::CONSTRAINTS;
+    const ANGLES: &'static [usize] = M::ANGLES;
+
+    fn holonomic(&self) -> usize {
+        self.mechanism.holonomic()
+    }
+
+    fn angles(&self) -> &[usize] {
+        self.mechanism.angles()
+    }
+
+    fn rotations(&self) -> [bool; NV] {
+        self.mechanism.rotations()
+    }
 
     fn constraint_residuals(&self, _t: T, q: &SVector<T, NQ>) -> SVector<T, NH> {
         self.mechanism.constraint_residuals(self.t, q)

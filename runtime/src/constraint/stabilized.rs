@@ -5,7 +5,7 @@ use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
 use crate::forward::{constants, each_function};
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::private::constant;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -184,6 +184,11 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        Features { constrained: false, slipping: false, feedback: true, ..self.mechanism.features() }
+    }
 
     /// Returns the state unchanged, because it need not satisfy the constraints.
     fn project(

@@ -2,7 +2,7 @@
 
 use crate::Mechanism;
 use crate::forward::{constants, each_function};
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 
 /// Mechanism without its contacts, made by [`apart`].
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +41,11 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        self.mechanism.features()
+    }
 
     each_function!(methods, [M::Scalar] pass Hooks, self => self.mechanism);
 

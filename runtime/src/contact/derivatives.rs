@@ -277,7 +277,7 @@ where
         return Ok(());
     };
     let laws = mechanism.contact_laws();
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
     damp(&mut parts, &jacobian, layout, gains);
     // How friction turns with the slip while the normal forces stay.
@@ -308,7 +308,7 @@ where
     // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend
     // on the motion.
     let mut pushed = zeros();
-    match M::FEEDBACK {
+    match mechanism.features().feedback {
         true => add_product(&mut pushed, &jacobian, &found.by_tau),
         false => transpose_into(&responses.velocities, &mut pushed),
     }

@@ -115,7 +115,7 @@ where
     if closed.iter().all(|is_closed| !is_closed) {
         return Ok((Held { a, forces: SVector::zeros() }, None));
     }
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let mut free = moved + mechanism.contact_bias(t, q, v);
     if velocity != T::zero() {

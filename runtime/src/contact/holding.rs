@@ -6,7 +6,7 @@ use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, Derivatives, unknown};
 use crate::forward::{constants, each_function};
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::private::constant;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -212,6 +212,11 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        Features { constrained: false, feedback: true, ..self.mechanism.features() }
+    }
 
     /// Returns the state unchanged: it is projected onto neither contacts nor constraints.
     fn project(

@@ -80,7 +80,7 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let laws = lawful(mechanism)?;
     let mut problem = Problem::new(layout, &laws, &closed, &free);
     let responses = mechanism.contact_responses(t, q, &closed);

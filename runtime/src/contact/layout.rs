@@ -1,6 +1,7 @@
 //! Where the rates of contacts are, and whose normal force their friction answers to.
 
-use super::Rows;
+use super::{Contacts, Rows};
+use crate::Real;
 use core::ops::Range;
 
 /// The tables of a mechanism's contacts.
@@ -11,8 +12,16 @@ pub(super) struct Layout<const NK: usize> {
 }
 
 impl<const NK: usize> Layout<NK> {
-    /// From [`CONTACT_ROWS`](super::Contacts::CONTACT_ROWS) and [`PRESSED_BY`](super::Contacts::PRESSED_BY).
-    pub(super) const fn new(rows: [Rows; NK], pressed_by: [usize; NK]) -> Self {
+    /// Returns the tables of a mechanism.
+    #[inline(always)]
+    pub(super) fn of<M, T, const NQ: usize, const NV: usize, const NU: usize, const NR: usize>(
+        mechanism: &M,
+    ) -> Self
+    where
+        T: Real,
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let (rows, pressed_by) = mechanism.contact_tables();
         Self { rows, pressed_by }
     }
 

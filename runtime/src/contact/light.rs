@@ -38,7 +38,8 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    if M::CONSTRAINED || M::FEEDBACK || touches.contains(&Touch::Slips) {
+    let features = mechanism.features();
+    if features.constrained || features.feedback || touches.contains(&Touch::Slips) {
         return None;
     }
     let mass = mechanism.mass_matrix(t, q);
@@ -51,7 +52,7 @@ where
     if !is_graded {
         return None;
     }
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let (mut held, mut groups) = ([false; NR], [NK; NR]);
     for (k, (touch, law)) in touches.iter().zip(laws).enumerate() {
         let tangents = layout.tangents(k);

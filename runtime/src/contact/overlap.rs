@@ -98,7 +98,7 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let hypothesis = Restitution::Newton;
     let smooth = [Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis }; NK];
     let enough = near::<T>() * constant(1e-2);
@@ -130,7 +130,7 @@ where
         let all = problem.spread(&found);
         q = mechanism.integrate(&q, &(responses.velocities * (all - pushes)));
         pushes = all;
-        if M::CONSTRAINED {
+        if mechanism.features().constrained {
             q = mechanism.project(t, &q, &SVector::zeros())?.0;
         }
     }

@@ -9,7 +9,7 @@ use super::total::Total;
 use super::{Contacts, Law, Touch, impact, near};
 use crate::constraint::ConstraintError;
 use crate::forward::{constants, each_function};
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::private::{constant, epsilon};
 use crate::{Mechanism, Real};
 use core::ops::Range;
@@ -132,7 +132,7 @@ where
 {
     let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
     let (touching, still) = (touching(q), still(&rates));
-    let strikes = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY)
+    let strikes = Layout::of(mechanism)
         .gaps()
         .any(|(k, first)| entry(&gaps, k) <= touching && entry(&rates, first) < -still);
     if strikes { impact(mechanism, t, q, v).map(|solved| solved.v) } else { Ok(*v) }
@@ -156,7 +156,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
     {
         let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
         let (still, resting) = (still(&rates), resting(q));
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let layout = Layout::of(mechanism);
         let mut closed = [false; NK];
         for (k, (closed, gap)) in closed.iter_mut().zip(&gaps).enumerate() {
             *closed = *gap <= resting && entry(&rates, layout.pressing(k).1).abs() <= still;
@@ -284,7 +284,7 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let Self { mechanism, phase } = self;
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let layout = Layout::of(*mechanism);
         let along = phase.braked(&mechanism.contact_rates(t, q, v), layout);
         held(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2])).map(|(held, _)| held.a)
     }
@@ -304,6 +304,11 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        self.mechanism.features()
+    }
 
     each_function!(methods, [T] pass Hooks, self => self.mechanism);
 
@@ -337,7 +342,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let Self { s, t, q, v, tau } = *self;
         let Phased { mechanism, phase } = phased;
         let rates = mechanism.contact_rates(t, q, v);
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let layout = Layout::of(*mechanism);
         let along = phase.braked(&rates, layout);
         let past = -T::one();
         let along = (&along, [T::zero(); 2]);
@@ -426,7 +431,7 @@ where
         return (*q, *v);
     }
     let rates = mechanism.contact_rates(t, q, v);
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(*mechanism);
     let stops = still(&rates) * constant(2.0);
     let mut laws = mechanism.contact_laws();
     for (k, (law, touch)) in laws.iter_mut().zip(phase.touches).enumerate() {

@@ -5,7 +5,8 @@ use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// What impulses at contacts that are closed do; zeros of others.
-pub(super) fn responses<
+#[doc(hidden)]
+pub fn responses<
     M,
     T,
     const NQ: usize,
@@ -25,11 +26,12 @@ where
 {
     let jacobian = mechanism.contact_jacobian(t, q);
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
-    let factor = if M::CONSTRAINED || M::FEEDBACK { None } else { factor(mechanism.mass_matrix(t, q)) };
+    let features = mechanism.features();
+    let factor = if features.constrained || features.feedback { None } else { factor(mechanism.mass_matrix(t, q)) };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
-    let closed = M::CONTACT_ROWS.into_iter().zip(closed).filter(|(_, is_closed)| **is_closed);
+    let closed = mechanism.contact_tables().0.into_iter().zip(closed).filter(|(_, is_closed)| **is_closed);
     for row in closed.flat_map(|(Rows { first, count }, _)| first..first + count) {
         let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
         let Some(answer) = velocities.data.0.get_mut(row) else { continue };

@@ -90,7 +90,7 @@ where
         if !is_held && !touched {
             return Ok(closed.contains(&true).then_some(closed));
         }
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let layout = Layout::of(mechanism);
         let apart = match is_held {
             false => SVector::zeros(),
             // What is driven moves by itself.
@@ -245,7 +245,7 @@ where
     let driven = mechanism.contact_rates(t, q, &SVector::zeros());
     let (crept, slip) =
         (mechanism.contact_rates(t, q, &excess) - driven, mechanism.contact_rates(t, q, after));
-    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let layout = Layout::of(mechanism);
     let mut back = SVector::<T, NR>::zeros();
     for tangents in (0..NK).map(|k| layout.tangents(k)) {
         if tangents.clone().all(|i| entry(&slip, i).abs() <= near::<T>() * near()) {

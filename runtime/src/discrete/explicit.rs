@@ -82,7 +82,7 @@ where
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         let q = self.mechanism.integrate(self.q, &displacement.value);
-        if NQ == NV && !M::SPEEDS {
+        if self.mechanism.features().is_plain() {
             // In coordinates that are a vector space, displacements are added.
             let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
             return (q, Sensitive { by_q, ..*displacement });
@@ -193,7 +193,7 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     let displacement = step.v * h;
     step.q = mechanism.integrate(q, &displacement);
     // q ⊕ h v⁺; in coordinates that are a vector space, displacements are added.
-    let is_plain = NQ == NV && !M::SPEEDS;
+    let is_plain = mechanism.features().is_plain();
     let (by_q, by_displacement) = match is_plain {
         true => (SMatrix::identity(), SMatrix::identity()),
         false => mechanism.integrate_derivatives_at(q, &displacement),
@@ -290,7 +290,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
-        if NQ == NV && !M::SPEEDS {
+        if mechanism.features().is_plain() {
             return Ok(plain::runge_kutta(&start, v, h));
         }
         let v = Sensitive::velocity(v);
@@ -300,7 +300,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
                 mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
             let mut rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
-            if M::SPEEDS {
+            if mechanism.features().speeds {
                 rate.by_q += by_q;
             }
             (rate, start.acceleration(h, &start.moved(&displacement), &v))

@@ -28,7 +28,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     // With feedback the velocity replaces the momentum.
-    if M::FEEDBACK {
+    if m.features().feedback {
         return (SMatrix::zeros(), SMatrix::identity());
     }
     (m.generalized_momentum_derivatives(t, q, v), m.mass_matrix(t, q))
@@ -46,7 +46,7 @@ where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    if M::FEEDBACK {
+    if m.features().feedback {
         let motion = at(m, t).linear_motion(q, v, u);
         return (motion.by_q, motion.by_v, motion.by_u);
     }

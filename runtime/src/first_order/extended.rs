@@ -4,7 +4,7 @@ use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::ByMotion;
-use crate::integrate::Hooks;
+use crate::integrate::{Features, Hooks};
 use crate::private::put_block;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -244,6 +244,13 @@ where
     const LOCATABLE: bool = false;
     const FIRST_ORDER: usize = NX;
     const SPEEDS: bool = M::SPEEDS;
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        let inner = self.mechanism.features();
+        let [coordinates, velocities] = inner.dimensions;
+        Features { dimensions: [coordinates, velocities + NX], ..inner }
+    }
 
     fn project(
         &self,

@@ -152,7 +152,8 @@ impl<T: Real> Settings<T> {
         if !is_finite(&acceleration) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
-        let scale = Scale { relative: self.relative, absolute: self.absolute };
+        let dimensions = system.dimensions();
+        let scale = Scale { relative: self.relative, absolute: self.absolute, dimensions };
         let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
         let mut wanted = self.limited(chosen);
         let (mut rejected, mut finite) = (false, true);

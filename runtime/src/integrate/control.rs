@@ -6,23 +6,24 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Relative and absolute tolerance.
+/// Relative and absolute tolerance, and the numbers of coordinates and velocities in use.
 pub(super) struct Scale<T> {
     pub relative: T,
     pub absolute: T,
-}
-
-/// Returns the scale of every coordinate: its magnitude if configuration and tangent space have the same
-/// number of entries, otherwise 1.
-fn sizes<T: Real, const NQ: usize, const NV: usize>(q: &SVector<T, NQ>) -> SVector<T, NV> {
-    let mut sizes: SVector<T, NV> = SVector::repeat(T::one());
-    if NQ == NV {
-        sizes.iter_mut().zip(q.iter()).for_each(|(size, q)| *size = q.abs());
-    }
-    sizes
+    pub dimensions: [usize; 2],
 }
 
 impl<T: Real> Scale<T> {
+    /// Returns the scale of every coordinate: its magnitude if configuration and tangent space have the same
+    /// number of entries, otherwise 1.
+    fn sizes<const NQ: usize, const NV: usize>(&self, q: &SVector<T, NQ>) -> SVector<T, NV> {
+        let mut sizes: SVector<T, NV> = SVector::repeat(T::one());
+        if self.dimensions[0] == self.dimensions[1] {
+            sizes.iter_mut().zip(q.iter()).for_each(|(size, q)| *size = q.abs());
+        }
+        sizes
+    }
+
     /// Returns `Σ (x / (absolute + relative · size))²`.
     fn squares<const N: usize>(&self, x: &SVector<T, N>, size: &SVector<T, N>) -> T {
         x.iter().zip(size.iter()).fold(T::zero(), |sum, (x, size)| {
@@ -35,7 +36,7 @@ impl<T: Real> Scale<T> {
     fn norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
         let ([x, v], [x_size, v_size]) = (x, sizes);
         let sum = self.squares(x, x_size) + self.squares(v, v_size);
-        (sum / constant((2 * N.max(1)) as f64)).sqrt()
+        (sum / constant((2 * self.dimensions[1].max(1)) as f64)).sqrt()
     }
 
     /// Returns the estimated error of a step relative to the tolerance; `error` is the estimate for
@@ -48,7 +49,7 @@ impl<T: Real> Scale<T> {
     ) -> T {
         let (start, end) = (&step.start, &step.end);
         let moved = displacement.abs();
-        let size = larger(&larger(&sizes(&start.q), &sizes(&end.q)), &moved);
+        let size = larger(&larger(&self.sizes(&start.q), &self.sizes(&end.q)), &moved);
         let speed = larger(&start.v.abs(), &end.v.abs());
         self.norm([&error.displacement, &error.velocity], [&size, &speed])
     }
@@ -68,7 +69,7 @@ pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     acceleration: &SVector<T, NV>,
 ) -> T {
     let small = constant::<T>(1e-5);
-    let size = sizes(&start.q);
+    let size = scale.sizes(&start.q);
     let speed = start.v.abs();
     let norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
     let (state, rate) = (norm(&size, &start.v), norm(&start.v, acceleration));

@@ -351,7 +351,8 @@ where
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
         let mut local = Local { system: &mut system, origin };
-        let scale = Scale { relative: settings.relative, absolute: settings.absolute };
+        let dimensions = phased.mechanism.features().dimensions;
+        let scale = Scale { relative: settings.relative, absolute: settings.absolute, dimensions };
         let attempt =
             Attempt { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
         trial(&mut local, &attempt, dense).step

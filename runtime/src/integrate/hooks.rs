@@ -6,6 +6,45 @@ use crate::forward::{constants, each_function};
 use crate::{Mechanism, Real};
 use nalgebra::SVector;
 
+/// Properties of a mechanism that integration methods read from the object, because those of a mechanism that
+/// is loaded at run time are not known to the compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Features {
+    /// Value of [`Hooks::CONSTRAINED`].
+    pub constrained: bool,
+    /// Value of [`Hooks::SLIPPING`].
+    pub slipping: bool,
+    /// Value of [`Hooks::FEEDBACK`].
+    pub feedback: bool,
+    /// Value of [`Hooks::SPEEDS`].
+    pub speeds: bool,
+    /// Numbers of coordinates and velocities in use; further entries of vectors are padding, which is zero.
+    pub dimensions: [usize; 2],
+}
+
+impl Features {
+    /// Returns the properties of a mechanism that the compiler knows.
+    #[must_use]
+    pub const fn of<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>() -> Self
+    where
+        M: Hooks<T, NQ, NV, NU> + ?Sized,
+    {
+        Self {
+            constrained: M::CONSTRAINED,
+            slipping: M::SLIPPING,
+            feedback: M::FEEDBACK,
+            speeds: M::SPEEDS,
+            dimensions: [NQ, NV],
+        }
+    }
+
+    /// Whether configurations are a vector space, whose tangent vectors are the rates of the coordinates.
+    #[must_use]
+    pub const fn is_plain(&self) -> bool {
+        self.dimensions[0] == self.dimensions[1] && !self.speeds
+    }
+}
+
 /// Properties of a mechanism that choose how it is integrated, and the functions that do it: projection onto
 /// constraints, impulses, contacts. Integration methods call them; `#[mechanism]` and wrappers of mechanisms
 /// implement them.
@@ -37,6 +76,13 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Whether some velocities are declared generalized speeds ([`Speed`](crate::elements::Speed)): the
     /// relation between `v` and the motion of `q` then depends on `q`.
     const SPEEDS: bool = false;
+
+    /// Returns the properties that integration methods read from the object: the constants, unless the
+    /// mechanism is loaded at run time.
+    #[inline(always)]
+    fn features(&self) -> Features {
+        Features::of::<Self, T, NQ, NV, NU>()
+    }
 
     /// Projects a state onto the constraints, if there are any: returns the nearest state that satisfies
     /// them.
@@ -149,6 +195,11 @@ where
     M: Mechanism<NQ, NV, NU> + ?Sized,
 {
     constants!(hooks, M);
+
+    #[inline(always)]
+    fn features(&self) -> Features {
+        M::features(self)
+    }
 
     each_function!(methods, [M::Scalar] pass Hooks, self => *self);
 

@@ -42,6 +42,10 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.has_speeds()
     }
 
+    fn dimensions(&self) -> [usize; 2] {
+        self.system.dimensions()
+    }
+
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.system.acceleration(self.origin + t, q, v)
     }

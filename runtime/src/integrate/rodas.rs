@@ -11,12 +11,12 @@ use nalgebra::{SMatrix, SVector};
 /// Controller constants of RODAS.
 const CONTROL: Control = Control { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
 /// Diagonal coefficient `γ` of the method, which multiplies the Jacobian in each stage.
-pub const GAMMA: f64 = 0.25;
+const GAMMA: f64 = 0.25;
 /// Times of the stages, as fractions of the step.
-pub const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Weights of the earlier stages in the state at which each stage is evaluated. The last row is also the
 /// result without its own last stages.
-pub const STARTS: [&[f64]; 6] = [
+const STARTS: [&[f64]; 6] = [
     &[],
     &[1.544],
     &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
@@ -25,7 +25,7 @@ pub const STARTS: [&[f64]; 6] = [
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
 /// Weights of the earlier stages that are added to the rates of each stage, divided by the step.
-pub const ADDED: [&[f64]; 6] = [
+const ADDED: [&[f64]; 6] = [
     &[],
     &[-5.6688],
     &[-2.430_093_356_833_875, -0.206_359_915_709_191_5],
@@ -40,7 +40,7 @@ pub const ADDED: [&[f64]; 6] = [
     ],
 ];
 /// Weights of the time derivative of the rates, times the step.
-pub const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
+const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
 /// Third and fourth coefficient of the interpolating polynomial.
 const TERMS: [[f64; 5]; 2] = [
     [

@@ -79,7 +79,7 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     }
     let root = epsilon::<T>().sqrt();
     let momentum = system.momentum(*t, q, v);
-    for k in 0..NV {
+    for k in 0..system.dimensions()[1].min(NV) {
         let mut direction = SVector::<T, NV>::zeros();
         direction[k] = T::one();
         if is_part {

@@ -116,6 +116,11 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         false
     }
 
+    /// Returns the numbers of coordinates and velocities in use; further entries of vectors are padding.
+    fn dimensions(&self) -> [usize; 2] {
+        [NQ, NV]
+    }
+
     /// Returns `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
@@ -324,7 +329,11 @@ where
     }
 
     fn has_speeds(&self) -> bool {
-        M::SPEEDS
+        self.mechanism.features().speeds
+    }
+
+    fn dimensions(&self) -> [usize; 2] {
+        self.mechanism.features().dimensions
     }
 
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
@@ -336,7 +345,7 @@ where
     }
 
     fn is_constrained(&self) -> bool {
-        M::CONSTRAINED
+        self.mechanism.features().constrained
     }
 
     fn project(
@@ -349,15 +358,15 @@ where
     }
 
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::FEEDBACK { *v } else { self.mechanism.generalized_momentum(t, q, v) }
+        if self.mechanism.features().feedback { *v } else { self.mechanism.generalized_momentum(t, q, v) }
     }
 
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::FEEDBACK {
+        if self.mechanism.features().feedback {
             return self.acceleration(t, q, v);
         }
         let rate = self.mechanism.momentum_rate(t, q, v);
-        if M::SLIPPING {
+        if self.mechanism.features().slipping {
             // Forces at this acceleration: inputs, constraints, and the friction that depends on the
             // constraint forces.
             let acceleration = self.acceleration(t, q, v);
@@ -371,7 +380,7 @@ where
     }
 
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        if M::FEEDBACK {
+        if self.mechanism.features().feedback {
             return *p;
         }
         // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the
@@ -427,7 +436,7 @@ where
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
-        M::CONSTRAINED && self.mechanism.is_nearly_singular(t, q, dv)
+        self.mechanism.features().constrained && self.mechanism.is_nearly_singular(t, q, dv)
     }
 
     /// Returns the derivatives by the chain rule: only the inputs, which may depend on the state, are
@@ -444,7 +453,7 @@ where
             return Some((by_q, by_v));
         }
         let root = epsilon::<T>().sqrt();
-        for k in 0..NV {
+        for k in 0..self.mechanism.features().dimensions[1].min(NV) {
             let size = root * v[k].abs().max(T::one());
             let along = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
             let moved = self.inputs.at(t, &self.mechanism.integrate(q, &along(root)), v);

@@ -133,7 +133,7 @@ where
         // A zero displacement normalises quaternions.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
         // If declared generalized speeds determine no rates, the displacement is not finite.
-        if M::SPEEDS && unit.iter().any(|x| !x.is_finite()) {
+        if self.system.mechanism.features().speeds && unit.iter().any(|x| !x.is_finite()) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
         check_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;

@@ -139,12 +139,14 @@ pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             names: Self::CONSTRAINTS,
             angles: &{:?},
             turns: {:?},
+            sizes: [Self::NH, {}],
             residuals: |q: &{q}| self.constraint_residuals({pass}q),
             jacobian: |q: &{q}| self.constraint_jacobian({pass}q),
             integrate: |q: &{q}, dv: &{v}| self.integrate(q, dv),
         }};",
         c.angles,
         (0..s.nv).map(|k| c.turns.get(k) == Some(&true)).collect::<Vec<_>>(),
+        s.nv,
     );
     let call = |function: &str, more: &str| {
         format!("{loops} ::linkwork::__private::{function}(&loops, q, held{more})")
@@ -218,7 +220,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             {correction}.0
         }}
         #[doc(hidden)]
-        pub const __STRUCTURE: ::linkwork::__private::Structure<{nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
+        pub const __STRUCTURE: ::linkwork::__private::Structure<'static, {nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
         /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints; what these leave open is nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
         ///
         /// # Errors

@@ -23,7 +23,8 @@ enum {
     LW_LENGTH = 5,    /* an array or the list of arguments has the wrong length */
     LW_VALUE = 6,     /* a parameter has no value, or an impossible one */
     LW_NULL = 7,      /* a pointer is NULL, or a text is not UTF-8 */
-    LW_INTERNAL = 8   /* an internal error of Linkwork */
+    LW_INTERNAL = 8,  /* an internal error of Linkwork */
+    LW_MOTION = 9     /* a motion cannot be continued, or no state satisfies the constraints */
 };
 
 /* Lists of names. */
@@ -102,6 +103,42 @@ int lw_call(const lw_robot *robot, size_t function, const double *const *argumen
  * all sets one after the other, or those of one set, which all share. */
 int lw_call_many(const lw_robot *robot, size_t function, size_t count, size_t arguments,
                  const double *const *values, const size_t *lengths, double *results, size_t length);
+
+/* Writes the NU inputs at a time and a state. The velocity is followed by the states of first order. Another
+ * value than zero ends the run. Large mechanisms call it on a thread of the library. */
+typedef int (*lw_controller)(void *user, double t, const double *q, const double *v, double *u);
+
+/* Settings of a simulation. */
+typedef struct {
+    double start;         /* time at the start, s */
+    double duration;      /* s */
+    double every;         /* time between samples, s; 0: every step is a sample */
+    const char *method;   /* automatic, dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, rosenbrock,
+                           * semi_implicit_euler; for contacts automatic, time_stepping, time_stepping_midpoint,
+                           * event_driven; NULL: automatic */
+    double setting;       /* tolerance or step, s, of the method; 0: 1e-9 or 1e-3 */
+    lw_controller control; /* NULL: the inputs are zero */
+    void *user;           /* first argument of the controller */
+    double period;        /* period of a digital controller, s; 0: it is called whenever inputs are needed */
+    int without_contacts; /* bodies pass through each other */
+} lw_simulation;
+
+/* Number of values of a sample: 1 + NQ + NV + NU and the states of first order. */
+size_t lw_sample(const lw_robot *robot);
+
+/* Simulates from the configuration q (NQ values) and the velocity v (NV values), with contacts and constraints.
+ * Samples are rows of time, configuration, velocity, states of first order, and inputs. `count` is their number;
+ * if it is greater than `rows`, the first ones are written, and LW_LENGTH is returned. */
+int lw_simulate(const lw_robot *robot, const double *q, const double *v, const lw_simulation *settings,
+                double *samples, size_t rows, size_t *count);
+
+/* Writes a configuration near q that satisfies the constraints; coordinates whose velocities have the indices
+ * `held` keep their values. */
+int lw_assemble(const lw_robot *robot, const double *q, const size_t *held, size_t count, double *result);
+
+/* Writes the velocity with the entries `held` of v that satisfies the constraints at q. */
+int lw_complete_velocity(const lw_robot *robot, const double *q, const double *v, const size_t *held,
+                         size_t count, double *result);
 
 #ifdef __cplusplus
 }

@@ -6,9 +6,9 @@
 
 mod raw;
 
-use linkwork_jit::{Error, Function, Loader, Robot};
+use linkwork_jit::{Error, Function, Inputs, Loader, Method, Robot};
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char, c_int};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A robot with its texts as C reads them.
@@ -54,6 +54,7 @@ impl Failure {
             Failure::Index(_) | Failure::Linkwork(Error::Unknown { .. } | Error::OtherMechanism(_)) => 4,
             Failure::Linkwork(Error::Length { .. } | Error::Arguments { .. }) => 5,
             Failure::Linkwork(Error::Missing(_) | Error::Value(_)) => 6,
+            Failure::Linkwork(Error::Motion { .. }) => 9,
             Failure::Null => 7,
             Failure::Linkwork(_) => 8,
         }
@@ -424,5 +425,138 @@ pub unsafe extern "C" fn lw_call_many(
             *list = unsafe { raw::array(*pointer, *length) }?;
         }
         Ok(robot.robot.evaluate_many_into(f, count, &lists[..arguments.min(ARGUMENTS)], out)?)
+    })
+}
+
+/// Settings of a simulation, as the header has them.
+#[repr(C)]
+pub struct LwSimulation {
+    start: f64,
+    duration: f64,
+    every: f64,
+    method: *const c_char,
+    setting: f64,
+    control: Option<raw::Control>,
+    user: *mut c_void,
+    period: f64,
+    without_contacts: c_int,
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lw_sample(robot: *const LwRobot) -> usize {
+    // SAFETY: a robot of this library, as the header says.
+    value(0, || Ok(width(&unsafe { raw::shared(robot) }?.robot)))
+}
+
+fn width(robot: &Robot) -> usize {
+    1 + robot.nq() + robot.nv() + robot.states() + robot.nu()
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lw_simulate(
+    robot: *const LwRobot,
+    q: *const f64,
+    v: *const f64,
+    settings: *const LwSimulation,
+    samples: *mut f64,
+    rows: usize,
+    count: *mut usize,
+) -> c_int {
+    guarded(|| {
+        // SAFETY: a robot of this library, and variables of the caller, as the header says.
+        let (robot, settings, count) =
+            unsafe { (&raw::shared(robot)?.robot, raw::shared(settings)?, raw::unique(count)?) };
+        let width = width(robot);
+        *count = 0;
+        // SAFETY: arrays of these lengths, as the header says.
+        let (q, v, samples) = unsafe {
+            (
+                raw::array(q, robot.nq())?,
+                raw::array(v, robot.nv())?,
+                raw::array_mut(samples, rows.checked_mul(width).ok_or(Failure::Index(rows))?)?,
+            )
+        };
+        // SAFETY: a text of the caller, as the header says.
+        let name = match settings.method.is_null() {
+            true => "automatic",
+            false => unsafe { raw::text(settings.method) }?,
+        };
+        let positive = |x: f64| (x != 0.0).then_some(x);
+        let method = Method::named(name, positive(settings.setting))?;
+        let control = settings.control.map(|control| raw::Controller { control, user: settings.user });
+        let mut controller = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
+            Some(control) => control.call(t, q, v, u),
+            None => Ok(()),
+        };
+        let inputs = match (&control, positive(settings.period)) {
+            (None, _) => Inputs::Zero,
+            (Some(_), None) => Inputs::Function(&mut controller),
+            (Some(_), Some(period)) => Inputs::Sampled(period, &mut controller),
+        };
+        let run = robot.simulate().start_at(settings.start).from(q, v).inputs(inputs).method(method);
+        let run = run.duration(settings.duration);
+        let run = positive(settings.every).map_or(run, |every| run.sample_every(every));
+        let run = if settings.without_contacts != 0 { run.without_contacts() } else { run };
+        let mut places = samples.chunks_exact_mut(width);
+        let ended = run.each(&mut |sample| {
+            *count += 1;
+            let Some(place) = places.next() else { return };
+            let all = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v).chain(&sample.u);
+            place.iter_mut().zip(all).for_each(|(to, from)| *to = *from);
+        });
+        ended?;
+        match *count <= rows {
+            true => Ok(()),
+            false => {
+                let (of, name) = ("lw_simulate".to_string(), "samples".to_string());
+                Err(Error::Length { of, name, expected: *count * width, found: rows * width }.into())
+            }
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lw_assemble(
+    robot: *const LwRobot,
+    q: *const f64,
+    held: *const usize,
+    count: usize,
+    result: *mut f64,
+) -> c_int {
+    guarded(|| {
+        // SAFETY: a robot of this library, as the header says.
+        let robot = &unsafe { raw::shared(robot) }?.robot;
+        // SAFETY: arrays of these lengths, as the header says.
+        let (q, held, to) = unsafe {
+            (raw::array(q, robot.nq())?, raw::array(held, count)?, raw::array_mut(result, robot.nq())?)
+        };
+        to.copy_from_slice(robot.assemble(q, held)?.as_slice());
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lw_complete_velocity(
+    robot: *const LwRobot,
+    q: *const f64,
+    v: *const f64,
+    held: *const usize,
+    count: usize,
+    result: *mut f64,
+) -> c_int {
+    guarded(|| {
+        // SAFETY: a robot of this library, as the header says.
+        let robot = &unsafe { raw::shared(robot) }?.robot;
+        // SAFETY: arrays of these lengths, as the header says.
+        let (q, v, held, to) = unsafe {
+            (
+                raw::array(q, robot.nq())?,
+                raw::array(v, robot.nv())?,
+                raw::array(held, count)?,
+                raw::array_mut(result, robot.nv())?,
+            )
+        };
+        to.copy_from_slice(robot.complete_velocity(q, v, held)?.as_slice());
+        Ok(())
     })
 }

@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "pointers of callers in C")]
 
 use crate::Failure;
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_int, c_void};
 
 /// Returns the value behind a pointer.
 ///
@@ -75,5 +75,32 @@ pub unsafe fn free<T>(pointer: *mut T) {
     if !pointer.is_null() {
         // SAFETY: as the caller promises.
         drop(unsafe { Box::from_raw(pointer) });
+    }
+}
+
+/// Controller of the caller.
+pub type Control =
+    unsafe extern "C" fn(user: *mut c_void, t: f64, q: *const f64, v: *const f64, u: *mut f64) -> c_int;
+
+/// Controller of the caller with its own data.
+pub struct Controller {
+    pub control: Control,
+    pub user: *mut c_void,
+}
+
+// SAFETY: the header says that another thread may call the controller, while the caller waits for it.
+unsafe impl Send for Controller {}
+// SAFETY: one thread at a time calls it.
+unsafe impl Sync for Controller {}
+
+impl Controller {
+    /// Calls the controller.
+    pub fn call(&self, t: f64, q: &[f64], v: &[f64], u: &mut [f64]) -> Result<(), String> {
+        // SAFETY: the function and its data are those of the caller, and the slices have the lengths that the
+        // header says.
+        match unsafe { (self.control)(self.user, t, q.as_ptr(), v.as_ptr(), u.as_mut_ptr()) } {
+            0 => Ok(()),
+            code => Err(format!("the controller ended the run with the code {code}")),
+        }
     }
 }

@@ -17,6 +17,65 @@ static const char *const TEXT =
         }                                                                       \
     } while (0)
 
+static const char *const BALL =
+    "#[mechanism(gravity = -9.81 * z)] struct Ball { #[particle(mass = 0.1)] ball: Particle,"
+    "#[joint(ground -> ball, along = z)] height: Sleeve,"
+    "#[contact(ball, ground.plane(z), restitution = 0.5)] bounce: Contact }";
+
+static const char *const LINKS =
+    "#[mechanism] struct Links { #[body(mass = 1)] a: Body, #[body(mass = 1)] b: Body,"
+    "#[joint(ground -> a, along = x)] first: Sleeve, #[joint(ground -> b, along = x)] second: Sleeve,"
+    "#[constraint(2 * first = second)] gear: Holonomic }";
+
+/* Damps the motor, and ends the run at the time in `user`. */
+static int brake(void *user, double t, const double *q, const double *v, double *u) {
+    (void)q;
+    u[0] = -0.1 * v[0];
+    return t > *(double *)user;
+}
+
+/* Motions with a controller, with contacts and with constraints. */
+static int simulate(const lw_robot *pendulum) {
+    double limit = 10.0, rows[11][4];
+    const double q = 0.3, v = 0.0;
+    size_t count = 0;
+    lw_simulation settings = {0};
+    settings.duration = 1.0;
+    settings.every = 0.1;
+    settings.control = brake;
+    settings.user = &limit;
+    CHECK(lw_sample(pendulum) == 4);
+    CHECK(lw_simulate(pendulum, &q, &v, &settings, &rows[0][0], 11, &count) == LW_OK && count == 11);
+    CHECK(rows[10][0] == 1.0 && fabs(rows[10][3] + 0.1 * rows[10][2]) < 1e-12);
+    CHECK(lw_simulate(pendulum, &q, &v, &settings, &rows[0][0], 5, &count) == LW_LENGTH && count == 11);
+    limit = 0.5;
+    CHECK(lw_simulate(pendulum, &q, &v, &settings, &rows[0][0], 11, &count) == LW_VALUE);
+    settings.method = "euler";
+    CHECK(lw_simulate(pendulum, &q, &v, &settings, &rows[0][0], 11, &count) == LW_UNKNOWN);
+
+    /* From 1 m the ball falls for sqrt(2 h / g), and reaches 0.25 m after half of that time again. */
+    lw_robot *ball = NULL, *links = NULL;
+    const lw_simulation bounce = {.duration = 1.5 * sqrt(2.0 / 9.81), .every = 1.0, .method = "event_driven"};
+    double states[2][3];
+    const double top = 1.0;
+    CHECK(lw_declare(BALL, NULL, &ball) == LW_OK);
+    CHECK(lw_simulate(ball, &top, &v, &bounce, &states[0][0], 2, &count) == LW_OK && count == 2);
+    CHECK(fabs(states[1][1] - 0.25) < 1e-8);
+    const double inside = -0.1;
+    CHECK(lw_simulate(ball, &inside, &v, &bounce, &states[0][0], 2, &count) == LW_MOTION);
+    CHECK(strstr(lw_message(), "`bounce`") != NULL);
+    lw_free(ball);
+
+    CHECK(lw_declare(LINKS, NULL, &links) == LW_OK);
+    const double guess[] = {0.5, 0.0}, pace[] = {1.0, 0.0};
+    const size_t held = 0;
+    double place[2], rates[2];
+    CHECK(lw_assemble(links, guess, &held, 1, place) == LW_OK && fabs(place[1] - 1.0) < 1e-12);
+    CHECK(lw_complete_velocity(links, place, pace, &held, 1, rates) == LW_OK && fabs(rates[1] - 2.0) < 1e-12);
+    lw_free(links);
+    return 0;
+}
+
 int main(void) {
     lw_robot *robot = NULL, *copy = NULL;
     CHECK(lw_declare(TEXT, NULL, &robot) == LW_OK);
@@ -55,6 +114,7 @@ int main(void) {
     CHECK(lw_call(NULL, f, arguments, &a) == LW_NULL && lw_count(copy, 9) == 0);
     CHECK(lw_load("missing.urdf", NULL, &robot) == LW_FILE && robot == NULL);
     CHECK(lw_declare("struct", NULL, &robot) == LW_SYNTAX && lw_declare(NULL, NULL, &robot) == LW_NULL);
+    CHECK(simulate(copy) == 0);
     lw_free(copy);
     lw_free(NULL);
     return 0;

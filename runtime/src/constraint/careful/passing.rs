@@ -47,7 +47,7 @@ pub(super) fn acceleration<
     const NC: usize,
 >(
     mechanism: &M,
-    structure: &Structure<NC>,
+    structure: &Structure<'_, NC>,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     system: &System<T, NV, NC>,
@@ -90,7 +90,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     fn aside<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
-        structure: &Structure<NC>,
+        structure: &Structure<'_, NC>,
     ) -> Option<Self>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
@@ -120,7 +120,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     fn moved<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
-        structure: &Structure<NC>,
+        structure: &Structure<'_, NC>,
         h: T,
         (a, jerk): &Course<T, NV>,
     ) -> Option<(T, SVector<T, NQ>, SVector<T, NV>)>
@@ -167,7 +167,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     fn at<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
-        structure: &Structure<NC>,
+        structure: &Structure<'_, NC>,
         h: T,
         course: &Course<T, NV>,
     ) -> Option<Possible<T, NV>>
@@ -185,7 +185,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     fn interpolated<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
-        structure: &Structure<NC>,
+        structure: &Structure<'_, NC>,
     ) -> Option<Possible<T, NV>>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
@@ -220,7 +220,7 @@ struct Room<T, const NV: usize, const NC: usize> {
 
 impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
     /// Factorises the rows above the relative magnitude `clear`, and the smaller ones up to rounding errors.
-    fn of(structure: &Structure<NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
+    fn of(structure: &Structure<'_, NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
         let mut span = Span::of(&Metric::of(&SMatrix::identity().data.0), jacobian, &structure.groups);
         span.extend(clear, structure.rank);
         let regular = span.rank >= structure.rank;
@@ -260,7 +260,7 @@ impl<T: Real, const NV: usize> Possible<T, NV> {
     /// span the complement of the permitted accelerations are treated as constraints.
     fn acceleration<const NC: usize>(
         &self,
-        structure: &Structure<NC>,
+        structure: &Structure<'_, NC>,
         system: &System<T, NV, NC>,
     ) -> Option<SVector<T, NV>> {
         let mut rest = (SMatrix::identity() - self.free).data.0;

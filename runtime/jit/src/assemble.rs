@@ -1,0 +1,238 @@
+//! States of loaded mechanisms that satisfy the constraints.
+
+use crate::capacity::Visitor;
+use crate::error::Error;
+use crate::internal::Internal;
+use crate::padded::Padded;
+use crate::robot::Robot;
+use linkwork::nalgebra::{DVector, SMatrix, SVector};
+use linkwork::{Constrained, ConstraintError, integrate};
+
+/// A question about constraints.
+enum Question<'a> {
+    Assemble(Option<i8>),
+    LeastViolation,
+    Mode,
+    Project,
+    Velocity(&'a [f64]),
+    ProjectVelocity(&'a [f64]),
+}
+
+/// A question at a configuration, with the indices of entries that are fixed.
+struct Asked<'a> {
+    question: Question<'a>,
+    q: &'a [f64],
+    held: &'a [usize],
+}
+
+/// Vector, or assembly mode.
+type Answer = Result<(Vec<f64>, Option<i8>), ConstraintError>;
+
+impl Visitor for Asked<'_> {
+    type Output = Answer;
+
+    fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) -> Answer {
+        let (robot, held) = (m.robot(), self.held);
+        let t = robot.time();
+        let vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        let configuration = |q: SVector<f64, N>| (q.as_slice()[..robot.nq()].to_vec(), None);
+        let velocity = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
+        let q = vector(self.q);
+        match self.question {
+            Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration),
+            Question::LeastViolation => linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration),
+            Question::Mode => Ok((Vec::new(), m.mode(t, &q, held))),
+            Question::Project => {
+                Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration)
+            }
+            Question::Velocity(v) => {
+                Constrained::<N, N, N, N, N>::complete_velocity(m, t, &q, &vector(v), held).map(velocity)
+            }
+            Question::ProjectVelocity(v) => {
+                Constrained::<N, N, N, N, N>::project_velocity(m, t, &q, &vector(v)).map(velocity)
+            }
+        }
+    }
+}
+
+impl Robot {
+    fn ask(
+        &self,
+        question: Question<'_>,
+        q: &[f64],
+        held: &[usize],
+    ) -> Result<(DVector<f64>, Option<i8>), Error> {
+        self.check_length("q", self.nq(), q.len())?;
+        if let Question::Velocity(v) | Question::ProjectVelocity(v) = question {
+            self.check_length("v", self.nv(), v.len())?;
+        }
+        let reported = |reason| self.motion_error(integrate::Error::Constraint { t: self.time(), reason });
+        if let Some(index) = held.iter().copied().find(|index| *index >= self.nv()) {
+            return Err(reported(ConstraintError::Held { index, velocities: self.nv() }));
+        }
+        if self.shared.constraints.names.is_empty() {
+            return Err(Error::Value(format!("`{}` has no constraints", self.name())));
+        }
+        let (found, mode) = self.visit(Asked { question, q, held })?.map_err(reported)?;
+        Ok((DVector::from_vec(found), mode))
+    }
+
+    /// Returns a configuration near `q` that satisfies the constraints; coordinates whose joint velocities have
+    /// the indices `held` do not change, see [`Constrained::assemble`].
+    ///
+    /// # Errors
+    ///
+    /// There are no constraints, or no configuration is found ([`Error::Motion`]).
+    pub fn assemble(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::Assemble(None), q, held)?.0)
+    }
+
+    /// Returns a configuration near `q` that satisfies the constraints and has this assembly mode, see
+    /// [`Constrained::assemble_in_mode`].
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    pub fn assemble_in_mode(&self, q: &[f64], held: &[usize], mode: i8) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::Assemble(Some(mode)), q, held)?.0)
+    }
+
+    /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of the
+    /// constraints, whether it satisfies them or not; see [`assemble`](Self::assemble).
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    #[doc(hidden)]
+    pub fn least_violation(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::LeastViolation, q, held)?.0)
+    }
+
+    /// Returns the heights of terrain at a place, for drawings.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn terrain_heights(&self, place: [f64; 2]) -> Option<Vec<f64>> {
+        let index = self.shared.internal[Internal::DrawingHeights as usize]?;
+        let state = crate::robot::State { other: [&place, &[], &[]], ..crate::robot::State::default() };
+        self.state_call(index, state).ok()
+    }
+
+    /// Whether there are constraints.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_constrained(&self) -> bool {
+        !self.shared.constraints.names.is_empty()
+    }
+
+    /// Returns the assembly mode of a configuration, 1 or −1, see [`Constrained::assembly_mode`]; `None` in a
+    /// singular configuration, or if the held coordinates do not determine the others.
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    pub fn assembly_mode(&self, q: &[f64], held: &[usize]) -> Result<Option<i8>, Error> {
+        Ok(self.ask(Question::Mode, q, held)?.1)
+    }
+
+    /// Returns the configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic
+    /// energy.
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    pub fn project_configuration(&self, q: &[f64]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::Project, q, &[])?.0)
+    }
+
+    /// Returns the velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    pub fn project_velocity(&self, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::ProjectVelocity(v), q, &[])?.0)
+    }
+
+    /// Returns the velocity with the entries `held` of `v` that satisfies the constraints, see
+    /// [`Constrained::complete_velocity`].
+    ///
+    /// # Errors
+    ///
+    /// As [`assemble`](Self::assemble).
+    pub fn complete_velocity(&self, q: &[f64], v: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
+        Ok(self.ask(Question::Velocity(v), q, held)?.0)
+    }
+
+    /// Returns the ratio of the least to the greatest singular value of the matrix that determines declared
+    /// speeds from joint velocities, with rows of unit length; one without declared speeds.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn regularity_of_speeds(&self, q: &[f64]) -> f64 {
+        let n = self.nv();
+        let index = self.shared.internal[Internal::SpeedMatrix as usize];
+        let Some(index) = index.filter(|_| n > 0) else { return 1.0 };
+        let state = crate::robot::State { q, ..crate::robot::State::default() };
+        let Ok(values) = self.state_call(index, state) else { return 1.0 };
+        let mut speeds = nalgebra::DMatrix::from_vec(n, n, values);
+        // Speeds may have different units: rows have the length one, except rows that rounding makes nonzero.
+        let largest = speeds.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+        for mut row in speeds.row_iter_mut() {
+            let size = row.norm();
+            row /= if size > 1e-12 * largest { size } else { 1.0 };
+        }
+        let sizes = speeds.singular_values();
+        if sizes.max() > 0.0 { sizes.min() / sizes.max() } else { 0.0 }
+    }
+}
+
+impl<const N: usize> Padded<N, N, N, &Robot> {
+    /// Returns the constraints for assembly, whose displacements are joint velocities: declared speeds need not
+    /// determine these.
+    fn assembled(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        held: &[usize],
+        mode: Option<i8>,
+    ) -> Result<SVector<f64, N>, ConstraintError> {
+        linkwork::__private::assemble(&self.loops(t), q, held, mode)
+    }
+
+    fn mode(&self, t: f64, q: &SVector<f64, N>, held: &[usize]) -> Option<i8> {
+        linkwork::__private::assembly_mode(&self.loops(t), q, held)
+    }
+
+    #[allow(clippy::type_complexity, reason = "closures")]
+    fn loops(
+        &self,
+        t: f64,
+    ) -> linkwork::__private::Loops<
+        '_,
+        impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
+        impl Fn(&SVector<f64, N>) -> SMatrix<f64, N, N>,
+        impl Fn(&SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, N>,
+        N,
+        N,
+    > {
+        let robot = self.robot();
+        let has_speeds = robot.shared.has_speeds;
+        linkwork::__private::Loops {
+            names: Self::CONSTRAINTS,
+            angles: self.angles(),
+            // The units of declared speeds do not distinguish rotations from translations.
+            turns: if has_speeds { [false; N] } else { self.rotations() },
+            sizes: [self.holonomic(), robot.nv()],
+            residuals: move |q: &SVector<f64, N>| self.constraint_residuals(t, q),
+            jacobian: move |q: &SVector<f64, N>| {
+                let jacobian = self.constraint_jacobian(t, q);
+                if has_speeds { jacobian * self.speed_matrix(Internal::SpeedMatrix, q) } else { jacobian }
+            },
+            integrate: move |q: &SVector<f64, N>, dv: &SVector<f64, N>| {
+                let mut moved = *q;
+                let charts = &robot.shared.charts;
+                crate::space::integrate(charts, q.as_slice(), dv.as_slice(), moved.as_mut_slice());
+                moved
+            },
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Choice of the dimensions with which the runtime works on a robot.
+
+use crate::error::Error;
+use crate::padded::{Padded, PaddedContacts};
+use crate::robot::Robot;
+use linkwork::Mechanism;
+
+/// Code for robots of any dimensions.
+pub(crate) trait Visitor {
+    /// Type of the result.
+    type Output;
+
+    /// Returns the result for a robot, whose contacts have no effect.
+    fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output;
+}
+
+/// Code for robots with contacts.
+pub(crate) trait ContactVisitor {
+    /// Type of the result.
+    type Output;
+
+    /// Returns the result for a robot.
+    fn visit<M: Mechanism<N, N, N, Scalar = f64>, const N: usize>(self, robot: &M) -> Self::Output;
+}
+
+/// Largest number of coordinates, velocities, inputs and constraints.
+pub(crate) const LARGEST: usize = 64;
+/// Largest number of contacts.
+pub(crate) const MOST_CONTACTS: usize = 64;
+
+impl Robot {
+    /// Largest of the numbers of coordinates, velocities with states of first order, inputs, and constraints.
+    fn dimension(&self) -> usize {
+        let velocities = self.nv() + self.shared.states.len();
+        [self.nq(), velocities, self.nu(), self.shared.constraints.names.len()].into_iter().fold(0, usize::max)
+    }
+
+    /// Whether the matrices of the runtime need more stack than threads usually have.
+    pub(crate) fn needs_stack(&self) -> bool {
+        self.dimension() > 24 || self.shared.contacts.len() > 8
+    }
+
+    fn too_large(&self, what: &str, count: usize, most: usize) -> Error {
+        let name = self.name();
+        Error::Value(format!(
+            "`{name}` has {count} {what}, but loaded mechanisms move with at most {most}: compile it in a program of Rust, or export a library"
+        ))
+    }
+
+    /// Passes the robot with suitable dimensions to code of the runtime.
+    pub(crate) fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
+        match self.dimension() {
+            ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
+            ..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
+            ..=LARGEST => Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?)),
+            count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
+        }
+    }
+
+    /// Passes the robot with its contacts to code of the runtime.
+    pub(crate) fn visit_contacts<V: ContactVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
+        let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
+        let is_few = count <= 8 && rates <= 24;
+        match self.dimension() {
+            ..=8 if is_few => Ok(visitor.visit(&PaddedContacts::<8, 8, 8, 8, 24, _>::new(self)?)),
+            ..=24 if is_few => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 8, 24, _>::new(self)?)),
+            ..=24 if count <= 32 => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 32, 96, _>::new(self)?)),
+            ..=LARGEST if count <= 16 => {
+                Ok(visitor.visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, 16, 48, _>::new(self)?))
+            }
+            ..=LARGEST if count <= MOST_CONTACTS => {
+                Ok(visitor.visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
+            }
+            ..=LARGEST => Err(self.too_large("contacts", count, MOST_CONTACTS)),
+            count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Names in messages of the runtime, which takes names as constants: here they are numbers, which are
+//! replaced by the names of the mechanism in messages.
+
+use crate::shared::Shared;
+
+/// Lists of names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum List {
+    Configuration,
+    Velocities,
+    Inputs,
+    Constraints,
+    Contacts,
+}
+
+/// Number of names of each list.
+const COUNT: usize = 1000;
+/// Number of digits of each number.
+const DIGITS: usize = 4;
+const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &table();
+
+const fn table() -> [[u8; DIGITS]; 5 * COUNT] {
+    let mut all = [[0; DIGITS]; 5 * COUNT];
+    let mut k = 0;
+    while k < all.len() {
+        let (mut rest, mut i) = (k, DIGITS);
+        while i > 0 {
+            i -= 1;
+            all[k][i] = b'0' + (rest % 10) as u8;
+            rest /= 10;
+        }
+        k += 1;
+    }
+    all
+}
+
+/// Returns the numbers of the first names of a list.
+pub(crate) const fn numbers<const N: usize>(list: List) -> [&'static str; N] {
+    let mut all = [""; N];
+    let mut k = 0;
+    while k < N && k < COUNT {
+        if let Ok(text) = core::str::from_utf8(&TABLE[list as usize * COUNT + k]) {
+            all[k] = text;
+        }
+        k += 1;
+    }
+    all
+}
+
+impl Shared {
+    /// Returns the name that a number of [`numbers`] stands for.
+    fn numbered(&self, number: usize) -> Option<&str> {
+        let k = number % COUNT;
+        match number / COUNT {
+            0 => self.configuration.get(k).map(|one| one.name.as_str()),
+            1 => self.velocities.get(k).map(|one| one.name.as_str()),
+            2 => self.inputs.get(k).map(|one| one.name.as_str()),
+            3 => self.constraints.names.get(k).map(String::as_str),
+            _ => self.contacts.get(k).map(|one| one.name.as_str()),
+        }
+    }
+
+    /// Replaces the numbers in backticks of a message by the names that they stand for.
+    pub(crate) fn with_names(&self, message: &str) -> String {
+        let mut parts = message.split('`');
+        let mut text = parts.next().unwrap_or_default().to_string();
+        for part in parts {
+            let is_number = part.len() == DIGITS && part.bytes().all(|digit| digit.is_ascii_digit());
+            let name = part.parse().ok().filter(|_| is_number).and_then(|number| self.numbered(number));
+            text.push('`');
+            text.push_str(name.unwrap_or(part));
+        }
+        text
+    }
+}

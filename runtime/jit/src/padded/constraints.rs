@@ -1,0 +1,250 @@
+//! Constraints of padded robots.
+
+use super::Padded;
+use crate::internal::Internal;
+use crate::names::{List, numbers};
+use crate::robot::{Robot, State};
+use linkwork::__private::{
+    Elimination, Responses, Structure, careful_dynamics, careful_response, independent_solution,
+    least_solution, nearly_singular, regular_solution, slipping_solution,
+};
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{Constrained, ConstraintError};
+use std::borrow::Borrow;
+
+/// Accelerations, or changes of velocities, and multipliers.
+pub(super) type Solution<const NV: usize> = (SVector<f64, NV>, SVector<f64, NV>);
+
+/// Row of a sliding contact that is padding.
+const NO_ROW: usize = usize::MAX;
+
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
+    pub(super) fn is_constrained(&self) -> bool {
+        !self.robot().shared.constraints.names.is_empty()
+    }
+
+    /// Number of constraints.
+    fn rows(&self) -> usize {
+        self.robot().shared.constraints.names.len()
+    }
+
+    /// Groups of the constraints; each row of the padding is a group of its own.
+    pub(super) fn groups(&self) -> [usize; NV] {
+        let groups = &self.robot().shared.constraints.groups;
+        std::array::from_fn(|k| groups.get(k).copied().unwrap_or(NV + k))
+    }
+
+    /// Rows of sliding contacts.
+    pub(super) fn slipping(&self) -> [usize; NV] {
+        let rows = &self.robot().shared.constraints.slipping;
+        std::array::from_fn(|k| rows.get(k).copied().unwrap_or(NO_ROW))
+    }
+
+    fn structure(&self) -> Structure<'_, NV> {
+        let constraints = &self.robot().shared.constraints;
+        Structure {
+            groups: self.groups(),
+            determining: &constraints.determining,
+            rank: constraints.rank,
+        }
+    }
+
+    pub(super) fn constraints_nearly_singular(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+    ) -> bool {
+        nearly_singular::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, dv)
+    }
+
+    /// Evaluates an elimination, whose rows of the padding have pivots of one. The further entries of the
+    /// accelerations are `more`.
+    pub(super) fn elimination(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        more: &SVector<f64, NV>,
+    ) -> Elimination<f64, NV, NV> {
+        let (n, rows) = (self.robot().nv(), self.rows());
+        let mut found = [0.0; 64];
+        let mut heap = Vec::new();
+        let length = n + 3 * rows;
+        let found = match found.get_mut(..length) {
+            Some(found) => found,
+            None => {
+                heap.resize(length, 0.0);
+                &mut heap[..]
+            }
+        };
+        self.call(f, state, found);
+        let (accelerations, rest) = found.split_at(n);
+        let list = |first: usize, padding: f64| {
+            std::array::from_fn(|k| if k < rows { rest[first * rows + k] } else { padding })
+        };
+        let mut all = Elimination {
+            accelerations: more.data.0[0],
+            multipliers: list(0, 0.0),
+            pivots: list(1, 1.0),
+            before: list(2, 1.0),
+        };
+        all.accelerations[..n].copy_from_slice(accelerations);
+        all
+    }
+
+    /// Evaluates the quantities from which accelerations under redundant constraints follow.
+    fn responses(&self, f: Internal, state: State<'_>, more: &SVector<f64, NV>) -> Responses<f64, NV, NV> {
+        let (n, rows) = (self.robot().nv(), self.rows());
+        let mut found = vec![0.0; n + rows + rows * rows + n * rows];
+        self.call(f, state, &mut found);
+        let mut all = Responses {
+            free: more.data.0[0],
+            lacking: [0.0; NV],
+            gram: [[0.0; NV]; NV],
+            given: [[0.0; NV]; NV],
+        };
+        let (free, rest) = found.split_at(n);
+        let (lacking, rest) = rest.split_at(rows);
+        let (gram, given) = rest.split_at(rows * rows);
+        all.free[..n].copy_from_slice(free);
+        all.lacking[..rows].copy_from_slice(lacking);
+        for k in 0..rows {
+            all.gram[k][..rows].copy_from_slice(&gram[k * rows..(k + 1) * rows]);
+            all.given[k][..n].copy_from_slice(&given[k * n..(k + 1) * n]);
+        }
+        all
+    }
+
+    /// Accelerations and multipliers by an elimination, or `None` where it loses digits.
+    fn eliminated(
+        &self,
+        f: Internal,
+        independent: bool,
+        state: State<'_>,
+        more: &SVector<f64, NV>,
+    ) -> Option<Solution<NV>> {
+        let constraints = &self.robot().shared.constraints;
+        if constraints.overdetermined {
+            return least_solution(&self.groups(), constraints.rank, &self.responses(f, state, more));
+        }
+        let found = self.elimination(f, state, more);
+        if independent { independent_solution(&found) } else { regular_solution(&self.groups(), &found) }
+    }
+
+    /// Accelerations and multipliers of a mechanism with sliding contacts.
+    pub(super) fn slipping_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> Result<Solution<NV>, ConstraintError> {
+        let slipping = self.robot().shared.constraints.slipping.len();
+        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let mut more = *tau;
+        self.add_free_rates(state, 1.0, &mut more);
+        let names = Self::CONSTRAINTS;
+        slipping_solution(&self.slipping(), &self.groups(), &names, |sides: &[f64; NV]| {
+            let state = State { other: [&sides[..slipping], &[], &[]], ..state };
+            self.elimination(Internal::ConstrainedDynamics, state, &more)
+        })
+    }
+
+    /// Changes of velocities for forces and biases; further entries are those of the forces.
+    pub(super) fn constraint_solution(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        force: &[f64; NV],
+        bias: &[f64; NV],
+    ) -> SVector<f64, NV> {
+        let (n, rows) = (self.robot().nv(), self.rows());
+        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.at(t, q) };
+        let more = SVector::from(*force);
+        self.eliminated(Internal::ConstraintCorrection, false, state, &more)
+            .unwrap_or_else(|| {
+                careful_response::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, force, bias)
+            })
+            .0
+    }
+}
+
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constrained<NQ, NV, NU, NV, NV>
+    for Padded<NQ, NV, NU, R>
+{
+    const CONSTRAINTS: [&'static str; NV] = numbers(List::Constraints);
+
+    fn holonomic(&self) -> usize {
+        self.robot().shared.constraints.holonomic
+    }
+
+    fn angles(&self) -> &[usize] {
+        &self.robot().shared.constraints.angles
+    }
+
+    fn rotations(&self) -> [bool; NV] {
+        let velocities = self.robot().velocities();
+        std::array::from_fn(|k| velocities.get(k).is_some_and(|one| one.unit == "rad/s"))
+    }
+
+    fn constraint_residuals(&self, t: f64, q: &SVector<f64, NQ>) -> SVector<f64, NV> {
+        let count = self.robot().shared.constraints.holonomic;
+        match count {
+            0 => SVector::zeros(),
+            _ => self.vector(Internal::ConstraintResiduals, self.at(t, q), count, SVector::zeros()),
+        }
+    }
+
+    fn constraint_rates(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        self.vector(Internal::ConstraintRates, self.state(t, q, v), self.rows(), SVector::zeros())
+    }
+
+    fn constraint_jacobian(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
+        let size = (self.rows(), self.robot().nv());
+        self.matrix(Internal::ConstraintJacobian, self.at(t, q), size, SMatrix::zeros())
+    }
+
+    fn constraint_bias(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        self.vector(Internal::ConstraintBias, self.state(t, q, v), self.rows(), SVector::zeros())
+    }
+
+    fn constrained_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> Solution<NV> {
+        let constraints = &self.robot().shared.constraints;
+        if !constraints.slipping.is_empty() {
+            let undetermined = SVector::repeat(f64::NAN);
+            let found = self.slipping_dynamics(t, q, v, tau);
+            return found.unwrap_or((undetermined, undetermined));
+        }
+        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let mut more = *tau;
+        self.add_free_rates(state, 1.0, &mut more);
+        self.eliminated(Internal::ConstrainedDynamics, constraints.independent, state, &more).unwrap_or_else(
+            || careful_dynamics::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, v, tau),
+        )
+    }
+
+    fn constraint_correction(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        gap: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        self.constraint_solution(t, q, &[0.0; NV], &gap.data.0[0])
+    }
+
+    fn constraint_response(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        p: &SVector<f64, NV>,
+        gap: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
+        self.constraint_solution(t, q, &p.data.0[0], &gap.data.0[0])
+    }
+}

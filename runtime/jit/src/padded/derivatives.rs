@@ -1,0 +1,340 @@
+//! Derivatives of padded robots.
+
+use super::{Padded, put};
+use crate::internal::Internal;
+use crate::robot::{Robot, State};
+use linkwork::__private::{
+    MotionDerivatives, ball_integrate_derivatives, ball_tangent_rate_derivatives, constrained_derivatives,
+    displacement_rate_derivatives_in_speeds, free_integrate_derivatives, free_tangent_rate_derivatives,
+    integrate_derivatives_in_speeds, put_block, slipping_response,
+};
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{ByMotion, Constrained, Derivatives, Mechanism};
+use linkwork_compiler::mechanism::Chart;
+use std::borrow::Borrow;
+
+type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// Returns consecutive entries.
+fn entries<const N: usize, const NV: usize>(v: &SVector<f64, NV>, first: usize) -> [f64; N] {
+    std::array::from_fn(|k| v[first + k])
+}
+
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
+    /// Whether the robot was loaded with the option `derivatives`.
+    pub(super) fn has_derivatives(&self) -> bool {
+        self.has(Internal::GeneralizedForcesDerivatives)
+            && (self.has(Internal::MotionDerivatives) || !self.is_constrained())
+    }
+
+    /// Evaluates a function whose results are matrices with as many rows as there are velocities.
+    fn matrices<const K: usize>(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        columns: [usize; K],
+    ) -> impl Iterator<Item = (usize, Vec<f64>)> + use<NQ, NV, NU, K, R> {
+        let n = self.robot().nv();
+        let mut found = vec![0.0; n * columns.iter().sum::<usize>()];
+        self.call(f, state, &mut found);
+        let mut first = 0;
+        columns.into_iter().map(move |count| {
+            let own = found[n * first..n * (first + count)].to_vec();
+            first += count;
+            (n, own)
+        })
+    }
+
+    /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns of
+    /// the given ones.
+    fn squares<const K: usize>(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        mut all: [Square<NV>; K],
+    ) -> [Square<NV>; K] {
+        let found = self.matrices(f, state, [self.robot().nv(); K]);
+        for (to, (n, block)) in all.iter_mut().zip(found) {
+            put(to, n, &block);
+        }
+        all
+    }
+
+    /// Derivatives of `q ⊕ dv` with joint velocities.
+    fn plain_integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
+        let (mut first, mut second) = (Square::identity(), Square::identity());
+        for chart in &self.robot().shared.charts {
+            match *chart {
+                Chart::Plain(..) => {}
+                Chart::Ball(_, v) => {
+                    let blocks = ball_integrate_derivatives(entries(dv, v.0));
+                    put_block(&mut first, v.0, &blocks.0);
+                    put_block(&mut second, v.0, &blocks.1);
+                }
+                Chart::Free(_, v) => {
+                    let blocks = free_integrate_derivatives(entries(dv, v.0));
+                    put_block(&mut first, v.0, &blocks.0);
+                    put_block(&mut second, v.0, &blocks.1);
+                }
+            }
+        }
+        (first, second)
+    }
+
+    /// Derivatives of the rate of a displacement with joint velocities.
+    fn plain_rate_derivatives(
+        &self,
+        dv: &SVector<f64, NV>,
+        v: &SVector<f64, NV>,
+    ) -> (Square<NV>, Square<NV>) {
+        let (mut first, mut second) = (Square::zeros(), Square::identity());
+        for chart in &self.robot().shared.charts {
+            match *chart {
+                Chart::Plain(..) => {}
+                Chart::Ball(_, at) => {
+                    let blocks = ball_tangent_rate_derivatives(entries(dv, at.0), entries(v, at.0));
+                    put_block(&mut first, at.0, &blocks.0);
+                    put_block(&mut second, at.0, &blocks.1);
+                }
+                Chart::Free(_, at) => {
+                    let blocks = free_tangent_rate_derivatives(entries(dv, at.0), entries(v, at.0));
+                    put_block(&mut first, at.0, &blocks.0);
+                    put_block(&mut second, at.0, &blocks.1);
+                }
+            }
+        }
+        (first, second)
+    }
+
+    fn has_speeds(&self) -> bool {
+        self.robot().shared.has_speeds
+    }
+
+    /// Converts a vector between speeds and joint velocities.
+    fn converted(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+        self.vector(f, state, self.robot().nv(), *v)
+    }
+
+    pub(crate) fn speed_matrix(&self, f: Internal, q: &SVector<f64, NQ>) -> Square<NV> {
+        let n = self.robot().nv();
+        let state = State { q: self.configuration(q), ..State::default() };
+        self.matrix(f, state, (n, n), Square::identity())
+    }
+
+    fn rate_changes(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
+        let n = self.robot().nv();
+        let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+        self.matrix(Internal::RateChanges, state, (n, n), Square::zeros())
+    }
+
+    /// Displacement in joint velocities, and the configuration that it leads to.
+    fn moved(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> (SVector<f64, NV>, SVector<f64, NQ>) {
+        let way = self.converted(Internal::RatesOfSpeeds, q, dv);
+        let mut there = *q;
+        let charts = &self.robot().shared.charts;
+        crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
+        (way, there)
+    }
+
+    /// Derivatives of the equations of motion under constraints.
+    fn motion_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        a: &SVector<f64, NV>,
+        lambda: &SVector<f64, NV>,
+    ) -> MotionDerivatives<f64, NV, NV> {
+        let n = self.robot().nv();
+        let rows = self.robot().shared.constraints.names.len();
+        let state =
+            State { a: self.own(a), other: [&lambda.as_slice()[..rows], &[], &[]], ..self.state(t, q, v) };
+        let lengths = [n, n, rows, rows, rows, n];
+        let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
+        self.call(Internal::MotionDerivatives, state, &mut found);
+        let mut rest = &found[..];
+        let mut next = |rows: usize| {
+            let (own, others) = rest.split_at(n * rows);
+            rest = others;
+            let mut all = Square::<NV>::zeros();
+            put(&mut all, rows, own);
+            all.data.0
+        };
+        let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] =
+            lengths.map(|rows| next(rows));
+        MotionDerivatives { forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning }
+    }
+
+    /// Derivatives of accelerations under constraints.
+    fn constrained_motion_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> ByMotion<f64, NV, NV> {
+        let (a, lambda) = Constrained::<NQ, NV, NU, NV, NV>::constrained_dynamics(self, t, q, v, tau);
+        let parts = self.motion_derivatives(t, q, v, &a, &lambda);
+        let constraints = &self.robot().shared.constraints;
+        if constraints.slipping.is_empty() {
+            return constrained_derivatives(&parts, |force, bias| self.constraint_solution(t, q, force, bias));
+        }
+        let (slipping, groups) = (self.slipping(), self.groups());
+        let (n, rows, sliding) = (self.robot().nv(), constraints.names.len(), constraints.slipping.len());
+        let solve = slipping_response(&slipping, &groups, &lambda, |force, bias, sides| {
+            let other = [&force[..n], &bias[..rows], &sides[..sliding]];
+            let state = State { other, ..self.state(t, q, v) };
+            self.elimination(Internal::SlippingResponse, state, &SVector::from(*force))
+        });
+        constrained_derivatives(&parts, solve)
+    }
+}
+
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Derivatives<NQ, NV, NU>
+    for Padded<NQ, NV, NU, R>
+{
+    fn integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
+        match self.has_speeds() {
+            true => (Square::repeat(f64::NAN), Square::repeat(f64::NAN)),
+            false => self.plain_integrate_derivatives(dv),
+        }
+    }
+
+    fn tangent_rate_derivatives(
+        &self,
+        dv: &SVector<f64, NV>,
+        v: &SVector<f64, NV>,
+    ) -> (Square<NV>, Square<NV>) {
+        match self.has_speeds() {
+            true => (Square::repeat(f64::NAN), Square::repeat(f64::NAN)),
+            false => self.plain_rate_derivatives(dv, v),
+        }
+    }
+
+    fn integrate_derivatives_at(
+        &self,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+    ) -> (Square<NV>, Square<NV>) {
+        if !self.has_speeds() {
+            return self.plain_integrate_derivatives(dv);
+        }
+        let (way, there) = self.moved(q, dv);
+        integrate_derivatives_in_speeds(
+            &self.speed_matrix(Internal::RateMatrix, q),
+            &self.speed_matrix(Internal::SpeedMatrix, &there),
+            &self.plain_integrate_derivatives(&way),
+            &self.rate_changes(q, dv),
+        )
+    }
+
+    fn displacement_rate_derivatives(
+        &self,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+        v: &SVector<f64, NV>,
+    ) -> ByMotion<f64, NV, NV> {
+        if !self.has_speeds() {
+            let (by_dv, by_v) = self.plain_rate_derivatives(dv, v);
+            return (Square::zeros(), by_dv, by_v);
+        }
+        let (way, there) = self.moved(q, dv);
+        let rates = self.converted(Internal::RatesOfSpeeds, &there, v);
+        let found = self.displacement_rate(q, dv, v);
+        displacement_rate_derivatives_in_speeds(
+            [
+                &self.speed_matrix(Internal::SpeedMatrix, q),
+                &self.speed_matrix(Internal::RateMatrix, q),
+                &self.speed_matrix(Internal::RateMatrix, &there),
+            ],
+            &self.plain_rate_derivatives(&way, &rates),
+            &self.integrate_derivatives_at(q, dv),
+            [&self.rate_changes(q, dv), &self.rate_changes(q, &found), &self.rate_changes(&there, v)],
+        )
+    }
+
+    fn turning(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
+        match self.has_speeds() {
+            true => {
+                let n = self.robot().nv();
+                let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+                self.matrix(Internal::Turning, state, (n, n), Square::zeros())
+            }
+            false => self.plain_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
+        }
+    }
+
+    fn coriolis_matrix(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
+        let n = self.robot().nv();
+        self.matrix(Internal::CoriolisMatrix, self.state(t, q, v), (n, n), Square::zeros())
+    }
+
+    fn inverse_dynamics_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        a: &SVector<f64, NV>,
+    ) -> (Square<NV>, Square<NV>) {
+        let state = State { a: self.own(a), ..self.state(t, q, v) };
+        self.squares(Internal::InverseDynamicsDerivatives, state, [Square::zeros(); 2]).into()
+    }
+
+    fn forward_dynamics_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        tau: &SVector<f64, NV>,
+    ) -> ByMotion<f64, NV, NV> {
+        if self.is_constrained() {
+            return self.constrained_motion_derivatives(t, q, v, tau);
+        }
+        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let padding = [Square::zeros(), Square::zeros(), Square::identity()];
+        self.squares(Internal::ForwardDynamicsDerivatives, state, padding).into()
+    }
+
+    fn generalized_forces_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+        u: &SVector<f64, NU>,
+    ) -> ByMotion<f64, NV, NU> {
+        let (n, m) = (self.robot().nv(), self.robot().nu());
+        let state = State { u: self.inputs(u), ..self.state(t, q, v) };
+        let mut all = (Square::zeros(), Square::zeros(), SMatrix::zeros());
+        let mut found = self.matrices(Internal::GeneralizedForcesDerivatives, state, [n, n, m]);
+        for to in [&mut all.0, &mut all.1] {
+            if let Some((n, block)) = found.next() {
+                put(to, n, &block);
+            }
+        }
+        if let Some((n, block)) = found.next() {
+            put(&mut all.2, n, &block);
+        }
+        all
+    }
+
+    fn generalized_momentum_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+    ) -> Square<NV> {
+        let n = self.robot().nv();
+        let state = self.state(t, q, v);
+        self.matrix(Internal::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
+    }
+
+    fn momentum_rate_derivatives(
+        &self,
+        t: f64,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+    ) -> (Square<NV>, Square<NV>) {
+        self.squares(Internal::MomentumRateDerivatives, self.state(t, q, v), [Square::zeros(); 2]).into()
+    }
+}
