@@ -6,7 +6,7 @@ use crate::equations::Written;
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// Sizes and the names of what vectors hold.
+/// Writes the sizes of configuration, velocity and inputs, and the names of their entries.
 pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
     let numbers = [
         ("NQ", i.configuration.len(), "configuration numbers"),
@@ -26,12 +26,13 @@ pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
     }
 }
 
+/// Writes a list of names as a constant.
 fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
     let _ =
         writeln!(out, "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};", names.len());
 }
 
-/// Sizes, names, equations.
+/// Writes all constants: sizes, names, additional lists and equations.
 pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, constants: &[Constant]) {
     write_sizes(out, i);
     write_names(out, "FRAMES", &i.frames, "every frame");
@@ -70,13 +71,13 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
             "" if i.facts.kinematic => "Empty: without inertia there are no equations of motion.",
             _ => about,
         };
-        // Rustdoc would show a literal, with all its escapes.
+        // Rustdoc would show a plain literal with all its escapes.
         let _ = writeln!(out, "/// {about}\npub const {name}: &'static str = [{text:?}][0];");
     }
 }
 
-/// The index of a frame by its name. A mechanism that failed to compile knows every name: what its frames are called is
-/// not known, and its own mistakes are said already.
+/// Writes the function that returns the index of a frame by name. For a mechanism that failed to compile it
+/// accepts every name: the names of its frames are unknown, and its own errors are already reported.
 pub fn write_frame_index(out: &mut String, failed: bool) {
     let found = "::linkwork::index_of(&Self::FRAMES, name)";
     let value = match failed {
@@ -91,7 +92,7 @@ pub fn write_frame_index(out: &mut String, failed: bool) {
     );
 }
 
-/// What the equations are made of, where they are not written out.
+/// Returns the structure of the equations of motion, for mechanisms whose terms are not printed.
 fn structure(i: &Interface<'_>) -> Written {
     let time = if i.facts.time { "t, " } else { "" };
     let constrained = i.facts.constraints.is_some();

@@ -1,5 +1,5 @@
-//! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
-//! projection.
+//! Generated code of mechanisms with constraints: constrained dynamics around the generated elimination,
+//! assembly and projection.
 
 use super::signature::Signature;
 use crate::catalogue::{Argument, Id, Shape};
@@ -10,32 +10,35 @@ use std::fmt::Write;
 /// The scalar constraints of a mechanism.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints {
-    /// Their names, those on configurations first.
+    /// Names of the constraints; holonomic constraints come first.
     pub names: Vec<String>,
-    /// How many restrict configurations.
+    /// Number of holonomic constraints.
     pub holonomic: usize,
-    /// Which are components of one vector: those of one number.
+    /// Group of each constraint; constraints of one group are components of one vector.
     pub groups: Vec<usize>,
-    /// Rows of joints that are left out because they follow from these.
+    /// Names of rows of joints and constraints that are omitted because they depend on the others.
     pub redundant: Vec<String>,
-    /// Independent coordinates and velocities.
+    /// Numbers of independent coordinates and velocities.
     pub freedom: Freedom,
-    /// Those whose multipliers are normal forces of friction.
+    /// Indices of the constraints whose multipliers are normal forces of sliding contacts with friction.
     pub slipping: Vec<usize>,
-    /// Those that determine coordinates which may have no inertia.
+    /// Indices of the constraints that determine coordinates that may have no inertia.
     pub determining: Vec<usize>,
-    /// Some follow from others everywhere: only least squares tell the multipliers.
+    /// True if some constraints depend on others in every admissible configuration, so that multipliers
+    /// require least squares.
     pub overdetermined: bool,
-    /// Accelerations are those of independent speeds, by pivots that are chosen in advance.
+    /// True if accelerations are eliminated to those of independent velocities, with pivots chosen at compile
+    /// time.
     pub independent: bool,
-    /// Entries of `q` that are angles.
+    /// Indices of the entries of `q` that are angles.
     pub angles: Vec<usize>,
-    /// Velocities that rotate something.
+    /// Whether each velocity is an angular velocity.
     pub turns: Vec<bool>,
 }
 
 impl Constraints {
-    /// One, where only the equations could tell how many there are; of a contact that slips, if there is one.
+    /// Returns one unnamed constraint for a mechanism whose constraints are unknown because of an error; with
+    /// `slips`, a constraint of a sliding contact.
     pub fn unknown(slips: bool) -> Constraints {
         Constraints {
             names: vec![String::new()],
@@ -52,7 +55,7 @@ impl Constraints {
         }
     }
 
-    /// Those of a model.
+    /// Returns the constraints of a model.
     pub fn of(model: &Model<'_>) -> Constraints {
         let those = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
             let all = model.constraints.iter().enumerate();
@@ -74,17 +77,21 @@ impl Constraints {
     }
 }
 
-/// Types and calls, as they are spelt.
+/// Source text of types and arguments.
 struct Words {
+    /// Type of a configuration.
     q: String,
+    /// Type of a velocity.
     v: String,
+    /// Type of the residuals of the holonomic constraints.
     residuals: String,
+    /// Type of the multipliers of all constraints.
     multipliers: String,
-    /// `t: f64, ` where functions take time.
+    /// Parameter `t: f64, ` if functions take time, otherwise empty.
     t: String,
-    /// `t, ` where they do.
+    /// Argument `t, ` if functions take time, otherwise empty.
     pass: &'static str,
-    /// What stands for time where it does not matter.
+    /// Time argument of trait functions: `t`, or zero if functions do not take time.
     any: String,
 }
 
@@ -107,7 +114,7 @@ impl Words {
     }
 }
 
-/// Sizes and names.
+/// Writes the constants for the numbers of constraints and degrees of freedom, and for the names.
 pub fn write_constants(out: &mut String, c: &Constraints) {
     if c.names.is_empty() {
         return;
@@ -128,7 +135,8 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     );
 }
 
-/// Writes the functions of assembly of a mechanism without inertia, which has no trait of constraints.
+/// Writes the assembly functions of a mechanism without inertia, which does not implement the trait
+/// `Constrained`.
 pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -157,7 +165,7 @@ pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     write_assembly_functions(out, c, s, &bodies);
 }
 
-/// Writes `assemble`, `assemble_in_mode` and `assembly_mode`, of the given bodies.
+/// Writes `assemble`, `assemble_in_mode` and `assembly_mode` with the given bodies.
 fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>, bodies: &[String; 3]) {
     let Words { q, t, .. } = Words::new(c, s);
     let [any, one, mode] = bodies;
@@ -181,7 +189,7 @@ fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>
     );
 }
 
-/// The inherent functions.
+/// Writes the inherent functions of constrained dynamics, completion and projection.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -262,7 +270,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
 }
 
-/// Writes the forces of a motion under the constraints.
+/// Writes `constrained_inverse_dynamics`.
 fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
     let _ = writeln!(
@@ -278,8 +286,9 @@ fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) 
     );
 }
 
-/// Accelerations and multipliers from what was `found` by an elimination, or the `careful` way where that loses digits.
-/// Corrections are always found by multipliers.
+/// Returns the expression for accelerations and multipliers from the result `found` of the elimination. The
+/// rank-revealing call `careful` is used if the elimination would lose digits. Corrections always use
+/// multipliers.
 fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
     let quick = if c.overdetermined {
         "least_solution(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
@@ -296,7 +305,7 @@ fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
     )
 }
 
-/// Accelerations and multipliers of a mechanism whose contacts do not slip.
+/// Returns the function `constrained_dynamics` of a mechanism without sliding contacts.
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
@@ -311,7 +320,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// The functions of constrained dynamics of a mechanism with contacts that slip.
+/// Returns the functions of constrained dynamics of a mechanism with sliding contacts.
 fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
     let (scalar, slipping) = (s.scalar.name(), &c.slipping);
@@ -333,7 +342,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Derivatives of constrained motion, on request.
+/// Writes the derivatives of constrained motion and the linearisation.
 fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, t, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
@@ -350,7 +359,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         )
     };
     let forces = "inputs.forces.into()";
-    // A matrix from the list of its columns.
+    // Constructor of a matrix from an array of columns.
     let storage = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
     let _ = writeln!(
         out,
@@ -397,7 +406,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     );
 }
 
-/// How the multipliers change, where their derivatives are determined.
+/// Returns the function of multiplier derivatives, or nothing if these are not available.
 fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     if !are_differentiable(c) {
         return String::new();
@@ -416,7 +425,7 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Writes the hooks of integrators by which states satisfy the constraints.
+/// Writes the integrator hooks that make states satisfy the constraints.
 pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -456,7 +465,7 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
     );
 }
 
-/// The trait of constrained mechanisms, in terms of the inherent functions.
+/// Writes the functions of the trait `Constrained`, which call the inherent functions.
 pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, residuals, multipliers, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
@@ -476,7 +485,8 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     );
 }
 
-/// Derivatives of the motion on which violations decay, for methods of integration that come by the trait of constraints.
+/// Writes the derivatives of the stabilised motion, in which constraint violations decay. Integration methods
+/// call them through the trait `Constrained`.
 pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
     let (scalar, q, v, u) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.vector(s.nu));
     let _ = writeln!(
@@ -489,13 +499,14 @@ pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// Whether derivatives of the equations determine those of accelerations and multipliers: forces of friction that follow from
-/// multipliers are not among them.
+/// Returns true if the derivatives of the equations determine those of accelerations and multipliers. They do
+/// not for sliding contacts, whose friction depends on multipliers.
 pub fn are_differentiable(c: &Constraints) -> bool {
     !c.names.is_empty() && c.slipping.is_empty()
 }
 
-/// What leads generic code from the trait of derivatives to that of constraints.
+/// Writes the function with which generic code gets from the trait `Derivatives` to the trait
+/// `ConstrainedDerivatives`.
 pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if are_differentiable(c) {
         let _ = writeln!(
@@ -511,7 +522,7 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     }
 }
 
-/// The trait of derivatives of constrained mechanisms.
+/// Writes the function of the trait `ConstrainedDerivatives`.
 pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());

@@ -1,4 +1,5 @@
-//! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
+//! Documentation of the user's struct: coordinates, units, limits, constraints, contacts, equations and
+//! operation counts.
 
 use super::interface::Interface;
 use super::{contacts, limits};
@@ -11,17 +12,17 @@ use crate::mechanism::{Freedom, Quantity};
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// A part of the documentation, and where it is read.
+/// A part of the documentation, with the place where it is shown.
 pub enum Part {
-    /// On pages and in editors.
+    /// On rustdoc pages and in editors.
     Everywhere(String),
-    /// On pages of rustdoc: HTML.
+    /// On rustdoc pages only: HTML.
     Pages(String),
-    /// In editors, which show what a person reads in the source.
+    /// In editors only, which show plain text.
     Editors(String),
 }
 
-/// Paragraphs for the struct's rustdoc.
+/// Returns the documentation of the struct.
 pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut text = String::from("\n\n");
@@ -90,7 +91,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         equations(&mut parts, &mut text, "Equations of motion", &output.equations, "<details>");
     }
     for linear in &output.linear_equations {
-        // The text says more than equations.
+        // The text contains more than the equations.
         equations(&mut parts, &mut text, "Linear equations", linear, "<details open>");
     }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
@@ -106,7 +107,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     parts
 }
 
-/// A section with equations: typeset on pages, above the text that editors show alone.
+/// Adds a section with equations: typeset on pages, with the text folded below; in editors the text alone.
 fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &Written, details: &str) {
     let _ = writeln!(text, "\n# {title}");
     parts.push(Part::Everywhere(std::mem::take(text)));
@@ -116,11 +117,12 @@ fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &
         "\n{page}\n\n{details}<summary>As text</summary>\n{plain}\n</details>\n\n"
     )));
     parts.push(Part::Editors(plain));
-    // HTML ends at an empty line, of which rustdoc drops one.
+    // An HTML block ends at an empty line, and rustdoc drops one empty line.
     text.push('\n');
 }
 
-/// A table of what the functions cost, and of what a worst case is reckoned from; nothing where they cost nothing.
+/// Returns a table of the operation counts of the functions, with the values from which a worst-case
+/// execution time is estimated; empty if no function has any operation.
 pub fn operations(functions: &[Function]) -> String {
     let mut lines = String::new();
     let mut row = |name: &str, program: &Program| {
@@ -155,7 +157,7 @@ pub fn operations(functions: &[Function]) -> String {
     )
 }
 
-/// The constraints, and what they leave free.
+/// Adds the section on constraints and degrees of freedom.
 fn constraints(text: &mut String, i: &Interface<'_>) {
     let c = &i.constraints;
     if c.names.is_empty() {
@@ -186,7 +188,8 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     }
 }
 
-/// Which functions evaluate limbs or joints as the lanes of vectors, and which coordinates those limbs have.
+/// Adds the section on SIMD lanes: the functions that evaluate identical limbs or joints as lanes, and the
+/// coordinates of these limbs.
 fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let shown = output.functions.iter().filter(|f| !f.name.starts_with("__"));
     let in_lanes: Vec<(&str, &Program)> =
@@ -214,7 +217,7 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     }
 }
 
-/// The unit of everything that has a name.
+/// Adds the table of the units of parameters, coordinates, inputs, tables and outputs.
 fn units(text: &mut String, i: &Interface<'_>) {
     let plain = |name: String| name.trim_start_matches("r#").to_string();
     let parameters: Vec<String> = i.shell.accesses().into_iter().map(plain).collect();
@@ -233,7 +236,7 @@ fn units(text: &mut String, i: &Interface<'_>) {
     let mut row = |what: &str, name: &str, unit: &str| {
         let _ = write!(text, "| {what} | `{name}` | {unit} |");
         if !i.shell.notes.is_empty() {
-            // Once for all coordinates of a joint; their rates go without.
+            // The note of a joint is printed once, for the first of its coordinates.
             let note = note(i, name).filter(|note| !said.contains(note));
             said.extend(note);
             let _ = write!(text, " {} |", note.unwrap_or_default().replace('|', "\\|"));
@@ -256,13 +259,13 @@ fn units(text: &mut String, i: &Interface<'_>) {
     }
 }
 
-/// What the user says of the field that a name belongs to.
+/// Returns the user's doc comment of the field to which a name belongs.
 pub fn note<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a str> {
     let field = name.split('.').next().unwrap_or(name);
     i.shell.notes.iter().find(|(known, _)| known == field).map(|(_, note)| note.as_str())
 }
 
-/// Documentation of an output's function: what the user says of it, then what it is.
+/// Returns the documentation of an output's function: the user's doc comment, then the description `what`.
 pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
     match note(i, name) {
         Some(note) => format!(" {note}\n\n The output `{name}`, {what}"),
@@ -270,10 +273,10 @@ pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
     }
 }
 
-/// Most lines of a declaration that is not folded.
+/// Maximum number of lines of a declaration that is not folded.
 const UNFOLDED: usize = 40;
 
-/// The declaration as the user wrote it.
+/// Adds the user's declaration as source text.
 fn declaration(text: &mut String, i: &Interface<'_>) {
     let Some(code) = &i.shell.declaration else { return };
     // Doc comments may contain code.

@@ -1,4 +1,5 @@
-//! Fields that hold figures of a file, and what gives them and takes them.
+//! Struct fields with inertial parameters and placements of an imported file, and the functions that get and
+//! set them.
 
 use super::interface::{ALLOW, Head, Interface};
 use super::item::runtime;
@@ -11,7 +12,7 @@ use quote::{ToTokens, format_ident, quote};
 use std::fmt::Write;
 use syn::Ident;
 
-/// The fields of the struct.
+/// Returns the fields of the struct for values of the file.
 pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
     let runtime = runtime(i.shell);
     let scalar = scalar(i);
@@ -27,12 +28,14 @@ pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
     i.shell.file_fields.iter().map(field).collect()
 }
 
+/// Returns the scalar type of the fields.
 fn scalar(i: &Interface<'_>) -> Ident {
     let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
     format_ident!("{}", name.one())
 }
 
-/// The file's own figures, and all links at once.
+/// Writes the constructors from the values of the file, and the functions that get and set the inertial
+/// parameters of all links.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if !i.facts.meet(Need::FileParameters) {
         return;
@@ -113,7 +116,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     }
 }
 
-/// What puts base parameters back.
+/// Writes the trait `Identifiable`, which sets inertial parameters from base parameters.
 pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
     if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meet(*need)) {
         return;
@@ -132,12 +135,12 @@ pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarS
     );
 }
 
-/// The fields that hold mass properties.
+/// Returns the fields that hold inertial parameters.
 fn links<'a>(i: &'a Interface<'_>) -> Vec<&'a FileField> {
     i.shell.file_fields.iter().filter(|field| field.kind == FileFieldKind::Inertial).collect()
 }
 
-/// The file's figures, as a field holds them.
+/// Returns the expression of a field's value in the file.
 fn value(field: &FileField, s: &ScalarSpelling) -> String {
     let numbers: Vec<String> = field.values.iter().map(|x| s.constant(*x)).collect();
     match (field.kind, numbers.as_slice()) {

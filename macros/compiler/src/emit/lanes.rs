@@ -1,4 +1,5 @@
-//! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
+//! Functions of several states at once, which the option `batch` requests. They have the same bodies, with
+//! lanes in place of scalars.
 
 use super::dispatch::Bodies;
 use super::function::write_function;
@@ -10,8 +11,8 @@ use crate::derive::Function;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// Writes every public function of the state once more, its name with `_lanes`, if this was asked for; without the parts of
-/// the configuration space, for a mechanism that failed to compile, as stubs.
+/// Writes the variant of every public function of the state for several states, with the suffix `_lanes`, if
+/// the option `batch` is set. Without `charts`, for a mechanism that failed to compile, these are stubs.
 pub fn write_methods(
     out: &mut String,
     bodies: &mut Bodies,
@@ -27,7 +28,7 @@ pub fn write_methods(
     let lanes = Signature { scalar: &in_lanes, ..*s };
     let wanted = |f: &&Function| match f.id {
         Id::ConstrainedDynamics => !i.constraints.overdetermined,
-        // What other functions call.
+        // Hidden functions that other functions call.
         Id::AccelerationsAndInverse | Id::PassiveForces | Id::PassiveDerivatives => true,
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
@@ -50,8 +51,9 @@ pub fn write_methods(
     write_manifold(out, charts, i.facts.speeds, &lanes);
 }
 
-/// The body of a function in lanes for debug builds, where lanes would need more stack than a thread has: one state after
-/// another. `None` for what only others call that have such a body.
+/// Returns the body of a function of several states for debug builds, which computes one state after another:
+/// lanes would need more stack than a thread has. Returns `None` for hidden functions that are called only
+/// from such bodies.
 pub fn one_by_one(f: &Function) -> Option<String> {
     let argument = |a: &Argument| match a {
         Argument::T => Some("t.0[k]".to_string()),
@@ -103,7 +105,8 @@ pub fn one_by_one(f: &Function) -> Option<String> {
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))
 }
 
-/// Forward dynamics with constraints. Where the elimination fails in some lane, all take the way of a single state.
+/// Writes forward dynamics with constraints. If the elimination fails in a lane, all lanes use the function
+/// of a single state.
 fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let nv = s.nv;
     let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau]);
@@ -157,7 +160,8 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
-/// Writes the functions of the trait `Batch` in terms of the inherent ones. They take time first, needed or not.
+/// Writes the functions of the trait `Batch`, which call the inherent functions. They always take time as the
+/// first argument.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let in_lanes = s.scalar.in_lanes();
     let s = &Signature { scalar: &in_lanes, ..*s };

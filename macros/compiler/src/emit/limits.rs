@@ -1,25 +1,26 @@
-//! The limits of the coordinates.
+//! Limits of the coordinates.
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
 use crate::mechanism::{Limit, Model};
 use std::fmt::Write;
 
-/// Where the bounds of an entry of `v` stand among the values of the hidden function, and its coordinate.
+/// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
 #[derive(Clone, Debug)]
 pub struct Limited {
     /// Index of the coordinate in `q`.
     q: usize,
-    /// Index in `v`.
+    /// Index of the velocity in `v`.
     v: usize,
-    /// The name of the coordinate.
+    /// Name of the coordinate.
     name: String,
-    /// Lower, upper, speed, effort: index of the value, and the value if it is a number.
+    /// Lower limit, upper limit, velocity limit and effort limit: index of the value, and the value if it is
+    /// constant.
     bounds: [Option<(usize, Option<f64>)>; 4],
 }
 
 impl Limited {
-    /// All that are limited, in the order of the values.
+    /// Returns all limits of a model, in the order of the values.
     pub fn of(model: &Model<'_>) -> Vec<Limited> {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
@@ -35,13 +36,13 @@ impl Limited {
         model.limits.iter().map(&mut place).collect()
     }
 
-    /// Where a bound stands.
+    /// Returns the index of the value of a bound.
     fn index(&self, which: usize) -> Option<usize> {
         self.bounds.get(which).copied().flatten().map(|(k, _)| k)
     }
 }
 
-/// The functions of the trait, with the sign of their infinity.
+/// Functions of the trait, with the infinity that they return for a missing limit.
 const FUNCTIONS: [(&str, &str); 4] = [
     ("lower_limits", "NEG_INFINITY"),
     ("upper_limits", "INFINITY"),
@@ -49,7 +50,7 @@ const FUNCTIONS: [(&str, &str); 4] = [
     ("effort_limits", "INFINITY"),
 ];
 
-/// The functions of the runtime's trait of limits; those that are not written say that there are none.
+/// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
 pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Signature<'_>) {
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
@@ -107,7 +108,7 @@ pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Sign
     );
 }
 
-/// A table for the struct's documentation.
+/// Adds a table of the limits to the documentation of the struct.
 pub fn write_docs(text: &mut String, limited: &[Limited]) {
     if limited.is_empty() {
         return;

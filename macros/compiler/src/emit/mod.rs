@@ -1,5 +1,5 @@
-//! Lowered programs → Rust: the struct without its elements, the generated functions with their documentation, and the
-//! implementation of the trait. Emission never simplifies.
+//! Rust code from lowered programs: the struct without its elements, the generated functions with their
+//! documentation, and the trait implementations. This stage performs no simplification.
 
 mod absent;
 mod angles;

@@ -1,5 +1,5 @@
-//! The second struct of the word `prepare`: it holds the numbers that depend on the parameters alone, and has the
-//! functions of the first, which do what is left.
+//! The struct that the option `prepare` adds. It stores the values that depend only on parameters, and has
+//! the functions of the mechanism, which compute the remainder.
 
 use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
@@ -17,16 +17,16 @@ use crate::mechanism::Chart;
 use quote::ToTokens;
 use std::fmt::Write;
 
-/// What the functions are written from; nothing for a mechanism that failed to compile.
+/// Program and charts from which the functions are written; empty for a mechanism that failed to compile.
 #[derive(Default)]
 pub struct Content<'a> {
-    /// The numbers.
+    /// Program of the stored values.
     pub numbers: Option<&'a Program>,
-    /// Parts of the configuration space.
+    /// Coordinate charts of the configuration space.
     pub charts: Option<&'a [Chart]>,
 }
 
-/// Writes the struct, its functions, and `prepare`.
+/// Writes the prepared struct, its functions, and `prepare`.
 pub fn write_prepared(
     out: &mut String,
     i: &Interface<'_>,
@@ -86,6 +86,7 @@ pub fn write_prepared(
     out.push_str("}\n");
 }
 
+/// Writes the definition of the prepared struct with its documentation.
 fn write_struct(
     out: &mut String,
     i: &Interface<'_>,

@@ -1,22 +1,22 @@
-//! The function that checks parameters.
+//! The generated function that checks parameters.
 
 use super::interface::Interface;
 use crate::mechanism::{Model, Requirement};
 use std::fmt::Write;
 
-/// A condition on figures that follow from parameters.
+/// A condition on values that depend on parameters.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// The condition's name in the runtime.
+    /// Name of the condition in the runtime.
     rule: &'static str,
-    /// What the figures are.
+    /// Description of the values.
     name: String,
-    /// The parameters that they follow from.
+    /// Names of the parameters on which the values depend.
     parameters: Vec<String>,
 }
 
 impl Figure {
-    /// All conditions of a model, in the order of the values of the hidden function.
+    /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
     pub fn of(model: &Model<'_>) -> Vec<Figure> {
         let name = |k: &usize| model.parameters.get(*k).cloned();
         let figure = |requirement: &Requirement<'_>| Figure {
@@ -28,7 +28,7 @@ impl Figure {
     }
 }
 
-/// Writes the function; of a mechanism that failed to compile its body never returns.
+/// Writes `validate`. For a mechanism that failed to compile its body never returns.
 pub fn write_method(out: &mut String, i: &Interface<'_>, failed: bool) {
     if i.facts.parameters == 0 {
         return;
