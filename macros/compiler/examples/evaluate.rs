@@ -1,13 +1,13 @@
-//! The functions of a robot file at states from the standard input, without compiling them.
+//! Evaluates the functions of a robot file at states from the standard input, by interpreting their programs.
 //!
 //! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
 //!
-//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`.
-//! Prints the names of configuration, velocities and inputs, tabs between them, and what is left out; then
-//! for each line `q v u τ` of numbers a line each with the mass matrix, the bias forces, the generalized
-//! forces, the accelerations, and residuals and Jacobian of the constraints, empty where there is none.
-//! Errors of the file go to the standard error. `tests/peers/run` compares what it prints with other
-//! programs.
+//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, such as `"passive = ignore"`.
+//! Prints the names of configuration, velocities and inputs, separated by tabs, and the omitted elements of the
+//! file. For each input line `q v u τ` of numbers it then prints six lines: the mass matrix, the bias forces, the
+//! generalized forces, the accelerations, and residuals and Jacobian of the constraints. The last two are empty
+//! without constraints. Errors of the file are printed to the standard error. `tests/peers/run` compares the
+//! output with other programs.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -80,7 +80,7 @@ fn run() -> Result<(), Failure> {
             let found = derived.functions.iter().find(|function| function.name == name);
             found.map(|function| function.program.run(&symbol)).unwrap_or_default()
         };
-        // Where these are long, the others call them.
+        // If the passive forces are long, the other functions call them.
         let passive = values("__passive_forces", &[]);
         for name in FUNCTIONS {
             let text: Vec<String> = values(name, &passive).iter().map(|value| format!("{value:e}")).collect();

@@ -166,8 +166,8 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
     }
 }
 
-/// Checks the derived output: all coefficients must be finite, no expression may be NaN, and each program
-/// must return as many values as its result has. Returns `None` with the error in `cx` otherwise.
+/// Checks the derived output: all coefficients must be finite, no expression may be NaN, and the number of
+/// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.all_functions().all(|f| f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")

@@ -1,4 +1,5 @@
-//! Exponents: small fractions, since a root of a length is a length to the power one half.
+//! Exponents as small fractions, since the square root of a length has the dimension of length to the power
+//! one half.
 
 /// A fraction in lowest terms with a positive denominator. Numerator and denominator stay small, so that
 /// products of two never overflow; arithmetic that would leave this range has no result.
@@ -14,17 +15,17 @@ const LIMIT: i64 = 1_000_000;
 const READABLE: i64 = 120;
 
 impl Ratio {
-    /// Nothing.
+    /// Zero.
     pub const ZERO: Ratio = Ratio::integer(0);
     /// One.
     pub const ONE: Ratio = Ratio::integer(1);
 
-    /// A small integer.
+    /// Returns a small integer.
     pub const fn integer(n: i64) -> Ratio {
         Ratio { n, d: 1 }
     }
 
-    /// The fraction `n / d`.
+    /// Returns the fraction `n / d`.
     pub fn new(n: i64, d: i64) -> Option<Ratio> {
         if d == 0 {
             return None;
@@ -34,7 +35,7 @@ impl Ratio {
         (n.abs() <= LIMIT && d <= LIMIT).then_some(Ratio { n, d })
     }
 
-    /// The fraction that a number is, if it is a simple one.
+    /// Returns the simple fraction that equals a number, if there is one.
     pub fn of(x: f64) -> Option<Ratio> {
         let near = |d: i64| {
             let n = x * d as f64;
@@ -43,38 +44,38 @@ impl Ratio {
         (1..=READABLE).find_map(|d| near(d).and_then(|n| Ratio::new(n, d)))
     }
 
-    /// True for zero.
+    /// Returns true for zero.
     pub fn is_zero(self) -> bool {
         self.n == 0
     }
 
-    /// Numerator and denominator.
+    /// Returns numerator and denominator.
     pub fn parts(self) -> (i64, i64) {
         (self.n, self.d)
     }
 
-    /// `−self`
+    /// Returns `−self`.
     pub fn negated(self) -> Ratio {
         Ratio { n: -self.n, d: self.d }
     }
 
-    /// `self + other`
+    /// Returns `self + other`.
     pub fn plus(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.d + other.n * self.d, self.d * other.d)
     }
 
-    /// `self × other`
+    /// Returns `self × other`.
     pub fn times(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.n, self.d * other.d)
     }
 
-    /// `1 / self`
+    /// Returns `1 / self`.
     pub fn inverse(self) -> Option<Ratio> {
         Ratio::new(self.d, self.n)
     }
 }
 
-/// Greatest common divisor (Euclid).
+/// Returns the greatest common divisor (Euclid).
 fn divisor(mut a: i64, mut b: i64) -> i64 {
     while b != 0 {
         (a, b) = (b, a % b);

@@ -571,7 +571,7 @@ fn parts_of_a_path_without_length_are_errors() {
     }
 }
 
-/// Contacts that were asked for and are none.
+/// Requested contacts that the file does not contain.
 #[test]
 fn planes_that_nothing_touches() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
