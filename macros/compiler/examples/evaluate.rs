@@ -2,12 +2,12 @@
 //!
 //! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
 //!
-//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, such as `"passive = ignore"`.
-//! Prints the names of configuration, velocities and inputs, separated by tabs, and the omitted elements of the
-//! file. For each input line `q v u τ` of numbers it then prints six lines: the mass matrix, the bias forces, the
-//! generalized forces, the accelerations, and residuals and Jacobian of the constraints. The last two are empty
-//! without constraints. Errors of the file are printed to the standard error. `tests/peers/run` compares the
-//! output with other programs.
+//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, such as `"passive =
+//! ignore"`. Prints the names of configuration, velocities and inputs, separated by tabs, and the omitted
+//! elements of the file. For each input line `q v u τ` of numbers it then prints six lines: the mass matrix,
+//! the bias forces, the generalized forces, the accelerations, and residuals and Jacobian of the constraints.
+//! The last two are empty without constraints. Errors of the file are printed to the standard error.
+//! `tests/peers/run` compares the output with other programs.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};

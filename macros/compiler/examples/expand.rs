@@ -5,12 +5,12 @@
 //! `FILE` is a Rust file with a `#[mechanism(…)]` struct (the first, or the one named by `--struct NAME`), or
 //! a URDF file. Options: `--rust` (default: the generated code), `--counts` (operations of every function),
 //! `--time` (milliseconds of every stage and pass), `--after PASS` with `--function NAME` (the function's
-//! programs after a pass, including those of all candidates; `--after all`: after every pass); for a URDF file
-//! also `--base free`, `--inertia trust`, `--mimic independent`, `--passive ignore`.
+//! programs after a pass, including those of all candidates; `--after all`: after every pass); for a URDF
+//! file also `--base free`, `--inertia trust`, `--mimic independent`, `--passive ignore`.
 //!
-//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` prints the unformatted generated code of
-//! every mechanism in the Rust files, then again with all options that are single words. `.ci/compare-output`
-//! compares this text.
+//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` prints the unformatted generated code
+//! of every mechanism in the Rust files, then again with all options that are single words.
+//! `.ci/compare-output` compares this text.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};

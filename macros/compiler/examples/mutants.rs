@@ -1,6 +1,6 @@
 //! Adds all mutants of a copy of this crate to its source. An environment variable selects the active mutants
-//! at run time, so one build serves all of them. `.ci/mutate` makes the copy, builds it and runs the tests with
-//! one mutant after another.
+//! at run time, so one build serves all of them. `.ci/mutate` makes the copy, builds it and runs the tests
+//! with one mutant after another.
 //!
 //! ```sh
 //! cargo run -p linkwork-compiler --example mutants -- COPY-OF-THE-CRATE [NUMBER-OF-A-MUTANT-TO-LEAVE-OUT …]

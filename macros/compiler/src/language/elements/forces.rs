@@ -106,7 +106,8 @@ pub struct ForceRow {
     pub between: bool,
     /// All other arguments, in the order in which messages list them.
     pub arguments: &'static [Key],
-    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last one.
+    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last
+    /// one.
     pub laws: &'static [Key],
     /// Arguments that must be given, with an example each.
     pub required: &'static [(Key, &'static str)],
