@@ -74,7 +74,7 @@ fn check_momentum_rate<'g>(
     for (k, rate) in rates.iter().enumerate() {
         let mut d = Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph);
         for (sum, p) in expected.iter_mut().zip(p) {
-            *sum += d.of(*p) * *rate;
+            *sum += d.differentiate(*p) * *rate;
         }
     }
     let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
@@ -106,7 +106,7 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     };
     let direct = eval(tau, &symbol);
     let program = lower::lower(tau);
-    let (plain, fused) = (program.run(&symbol), program.through(lower::pipeline::PART).run(&symbol));
+    let (plain, fused) = (program.run(&symbol), program.run_passes(lower::pipeline::PART).run(&symbol));
     let scale = direct.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for k in 0..direct.len() {
         assert!((plain[k] - direct[k]).abs() <= 1e-13 * scale, "{} and {}", plain[k], direct[k]);
@@ -138,7 +138,7 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
         };
     }
     let expected: Vec<Expr<'g>> = (0..model.nv())
-        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).of(power))
+        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).differentiate(power))
         .collect();
     assert_close("inputs", model, seed, &forces::generalized_forces(model, &joints), &expected);
 }
@@ -159,7 +159,8 @@ fn ground_vector<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g G
 fn along<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let rates = lagrange::configuration_rates(model);
     rates.iter().enumerate().fold(model.graph.zero(), |sum, (k, rate)| {
-        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).of(e) * *rate
+        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).differentiate(e)
+            * *rate
     })
 }
 

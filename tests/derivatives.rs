@@ -144,7 +144,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
 fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
-    let factor = derivatives::Factor::of(&mass, &joints);
+    let factor = derivatives::Factor::new(&mass, &joints);
     let a = mechanics::accelerations(model);
     let times = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
         let zero = model.graph.zero();
@@ -153,9 +153,9 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     let forces = times(&mass, &a);
     assert_same("inverse", model, seed, &times(&factor.inverse(), &forces), &a);
     assert_same("solution", model, seed, &factor.solve(forces.clone()), &a);
-    let trunk = Trunk::of(&joints, &mass, &Trunk::branching(&joints, model.nv()));
+    let trunk = Trunk::new(&joints, &mass, &Trunk::branching(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
-    let parts = derivatives::Inverse::of(&mass, &trunk);
+    let parts = derivatives::Inverse::new(&mass, &trunk);
     assert_same("solution in parts", model, seed, &parts.solve(&forces), &a);
     let (mut whole, factors) = (parts.columns(), parts.factors());
     for row in &mut whole {

@@ -110,7 +110,7 @@ fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
 }
 
 fn by<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
-    Derivative::with_respect_to(quantity.symbol(), model.graph).of(e)
+    Derivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {

@@ -55,11 +55,11 @@ pub fn derive_with<'g>(
     passes: Passes,
     cx: &mut Diagnostics,
 ) -> Option<Output> {
-    let passes = without(passes, requests.skipped);
-    let speeds = InSpeeds::of(model).map(Rc::new);
+    let passes = remaining_passes(passes, requests.skipped);
+    let speeds = InSpeeds::new(model).map(Rc::new);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
-    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::without(s, requests)) {
+    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::unsupported_option(s, requests)) {
         cx.error(model.place.clone(), what).help(help);
         return None;
     }
@@ -196,7 +196,7 @@ fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Outp
 }
 
 /// Returns the passes that the user has not switched off.
-fn without(passes: Passes, skipped: Skipped) -> Passes {
+fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
     Passes {
         frames: passes.frames && !skipped.frames,
         regroup: passes.regroup && !skipped.regroup,
@@ -293,7 +293,7 @@ impl<'g> Extras<'_, 'g> {
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
         let conserved = self.conserved.as_ref().map(Vec::len).unwrap_or_default();
         let cyclic = self.routh.as_ref().map(|routh| routh.cyclic.len()).unwrap_or_default();
-        Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::of(model, requests) }
+        Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::from_model(model, requests) }
     }
 }
 
@@ -330,7 +330,7 @@ fn functions<'g>(
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
-    let derivation = derivation.with(&facts, extras, derivatives.as_ref());
+    let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
     let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
     finish(&mut functions);
     functions
@@ -340,7 +340,7 @@ fn functions<'g>(
 fn finish(functions: &mut [Function]) {
     for f in functions {
         pipeline::begin(&f.name);
-        f.program = std::mem::take(&mut f.program).through(pipeline::FINISH);
+        f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
     }
 }
 
@@ -356,7 +356,7 @@ pub fn equations_latex(model: &Model<'_>) -> String {
 }
 
 fn written_alone(model: &Model<'_>) -> Written {
-    let speeds = InSpeeds::of(model);
+    let speeds = InSpeeds::new(model);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
     written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
@@ -466,7 +466,7 @@ fn written<'g>(
 
 /// Lowers one step of the recursion from link to link.
 fn part(outputs: &[Expr<'_>]) -> Program {
-    lower(outputs).through(pipeline::PART)
+    lower(outputs).run_passes(pipeline::PART)
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {

@@ -18,7 +18,7 @@ pub struct Place {
 
 impl Place {
     /// Returns the range from the start of `self` to the end of `end`.
-    pub fn to(&self, end: &Place) -> Place {
+    pub fn join(&self, end: &Place) -> Place {
         Place { end: end.end, ..self.clone() }
     }
 }

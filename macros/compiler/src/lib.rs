@@ -193,7 +193,8 @@ fn model_and_functions<'g>(
     describe(&mut output, &source.mechanism);
     let description = &source.mechanism.description;
     let good = check_rates(description, &output.functions, cx);
-    let good = check_outputs(description, &output.functions, &Facts::of(&model, requests), cx) && good;
+    let good =
+        check_outputs(description, &output.functions, &Facts::from_model(&model, requests), cx) && good;
     good.then_some((model, output))
 }
 

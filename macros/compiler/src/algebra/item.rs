@@ -72,7 +72,7 @@ fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
 
 impl Order {
     /// Returns the order of the atoms of a ring.
-    pub fn of(ring: &Ring) -> Order {
+    pub fn new(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
         atoms.sort_by_cached_key(|k| place(ring, *k));
         Order {
@@ -89,7 +89,7 @@ impl Order {
     /// Returns true if a sum contains only parameters.
     pub fn is_constant(&self, items: &[Item]) -> bool {
         items.iter().all(|item| {
-            item.factor.without(self.parameters) == Monomial::ONE
+            item.factor.cleared(self.parameters) == Monomial::ONE
                 && item.sums.iter().all(|sum| self.is_constant(&sum.items))
         })
     }
@@ -103,7 +103,7 @@ impl Order {
     fn size_of(&self, item: &Item) -> usize {
         let of_sums = item.sums.iter().map(|sum| self.size(&sum.items)).sum::<usize>();
         let factors = size_of_monomial(&self.sizes, item.factor) + of_sums;
-        factors + usize::from(factors == 0 || !near(item.coefficient.abs(), 1.0))
+        factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))
     }
 
     /// Returns the factors of a monomial, atom and power, in printing order.
@@ -141,7 +141,7 @@ fn sizes(ring: &Ring) -> Vec<usize> {
     for atom in &ring.atoms {
         let of = |p: &Polynomial| -> usize {
             let number =
-                |t: &Term| usize::from(t.monomial == Monomial::ONE || !near(t.coefficient.abs(), 1.0));
+                |t: &Term| usize::from(t.monomial == Monomial::ONE || !is_close(t.coefficient.abs(), 1.0));
             p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + number(t)).sum()
         };
         let angle =
@@ -164,7 +164,7 @@ fn size_of_monomial(sizes: &[usize], m: Monomial) -> usize {
 }
 
 /// Returns true if two numbers differ by rounding error only.
-pub fn near(a: f64, b: f64) -> bool {
+pub fn is_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * b.abs()
 }
 
@@ -173,7 +173,7 @@ pub fn near(a: f64, b: f64) -> bool {
 pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     let sign = if coefficients.clone().all(|c| c < 0.0) { -1.0 } else { 1.0 };
     let size = coefficients.clone().next().map_or(1.0, f64::abs);
-    if coefficients.clone().all(|c| near(c.abs(), size)) {
+    if coefficients.clone().all(|c| is_close(c.abs(), size)) {
         return sign * size;
     }
     let mut common: Option<(u32, u32)> = None;

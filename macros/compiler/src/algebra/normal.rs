@@ -27,7 +27,7 @@ impl<'g> Normal<'g> {
     }
 
     /// Returns the normal form of `e`, `None` if it exceeds the limits of the ring.
-    pub fn of(&mut self, e: Expr<'g>) -> Option<Polynomial> {
+    pub fn normal_form(&mut self, e: Expr<'g>) -> Option<Polynomial> {
         self.known.resize(self.known.len().max(e.id() as usize + 1), UNKNOWN);
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
@@ -121,7 +121,7 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     }
     if p.terms.len() > 1 {
         let rest = p.terms.iter().map(|t| Term {
-            monomial: t.monomial.over(common),
+            monomial: t.monomial.quotient(common),
             coefficient: t.coefficient / first.coefficient,
         });
         let rest = Polynomial { terms: rest.collect() };

@@ -381,12 +381,12 @@ impl Ring {
     fn rewritten(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
         if let Some(one) = self.cancels(monomial) {
-            return Some(Polynomial::single(monomial.over(one), coefficient));
+            return Some(Polynomial::single(monomial.quotient(one), coefficient));
         }
         if let Some([inverse, cosine, sine]) = self.over_sine(monomial) {
             let square = Monomial::atom(cosine).times(Monomial::atom(cosine))?;
-            let one = monomial.over(square);
-            let rest = one.over(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
+            let one = monomial.quotient(square);
+            let rest = one.quotient(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
             return Some(Polynomial::sum(vec![
                 Term { monomial: one, coefficient },
                 Term { monomial: rest, coefficient: -coefficient },
@@ -395,7 +395,7 @@ impl Ring {
         match self.squares.iter().find(|(atom, _)| monomial.power(*atom) > 1) {
             Some((atom, square)) => {
                 let atom = Monomial::atom(*atom);
-                square.times(&Term { monomial: monomial.over(atom.times(atom)?), coefficient })
+                square.times(&Term { monomial: monomial.quotient(atom.times(atom)?), coefficient })
             }
             None => Some(Polynomial { terms: vec![*term] }),
         }

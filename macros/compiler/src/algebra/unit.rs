@@ -22,7 +22,7 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
     loop {
         let heads = terms
             .iter()
-            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.over(*s)));
+            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.quotient(*s)));
         let mut heads: Vec<Monomial> = heads.collect();
         heads.sort_unstable();
         heads.dedup();

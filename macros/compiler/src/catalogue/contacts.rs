@@ -47,7 +47,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Array(3 * f.contacts.count),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::ContactResponses,
         "__contact_responses",
@@ -58,7 +58,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::ContactDerivatives,
         "__contact_derivatives",
@@ -69,7 +69,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .alone(),
+    .unbatched(),
 ];
 
 /// Returns the argument with the forces of all contacts.

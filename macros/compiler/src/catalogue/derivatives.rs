@@ -118,7 +118,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     })
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::PassiveDerivatives,
         Called::PassiveDerivatives.function(),
@@ -134,7 +134,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];
 
 const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
@@ -216,7 +216,7 @@ pub const SECOND_ROWS: &[Row] = &[
             }
         },
     )
-    .alone(),
+    .unbatched(),
 ];
 
 fn constraints(f: &Facts) -> usize {

@@ -16,27 +16,27 @@ pub const ROWS: &[Row] = &[
         docs: vec!["The configuration with all coordinates zero; identity quaternions."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.limits),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the parameters as they are."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
         timeless: true,
         arguments: vec![Argument::Given("place", 0, 2)],
         shape: Shape::Array(f.heights),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),
@@ -170,7 +170,7 @@ pub const ROWS: &[Row] = &[
         docs: vec!["Mass of everything that moves, kg."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(3),

@@ -126,7 +126,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, f.base),
@@ -205,5 +205,5 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Array(f.figures),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];

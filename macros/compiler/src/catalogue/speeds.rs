@@ -34,28 +34,28 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
         arguments: vec![Q, V, A],
         timeless: true,
         shape: Shape::Vector(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];
 
 /// Rows of the functions of the option `derivatives` for mechanisms with generalized speeds.
@@ -70,4 +70,4 @@ pub const DERIVATIVES: &[Row] = &[Row::derived(
         ..Declaration::default()
     },
 )
-.alone()];
+.unbatched()];

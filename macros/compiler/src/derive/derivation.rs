@@ -67,7 +67,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Adds the data for the functions of several options; results that are already derived are retained.
-    pub(super) fn with<'b>(
+    pub(super) fn with_option_data<'b>(
         self,
         facts: &'b Facts,
         extras: &'b Extras<'b, 'g>,

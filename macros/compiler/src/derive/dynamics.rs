@@ -160,7 +160,7 @@ impl<'g> Dynamics<'g> {
         self.of_best(|variants| {
             let plain = variants.cheapest(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
-                Factor::of(&mass, &variants.joints).responses(rows)
+                Factor::new(&mass, &variants.joints).responses(rows)
             });
             let limbs = variants.plain_limbs().filter_map(|limbs| limb_responses::responses(limbs, rows));
             plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
@@ -176,7 +176,7 @@ impl<'g> Dynamics<'g> {
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
         let limbs = self.choices.first().and_then(|variants| variants.plain_limbs().next());
-        let mut contacts = limbs.and_then(|limbs| LimbContacts::of(limbs, rows));
+        let mut contacts = limbs.and_then(|limbs| LimbContacts::new(limbs, rows));
         let found = contacts.as_mut().and_then(outputs);
         plain.or_in_lanes(found.map(|outputs| self.specialisation.program(&outputs)))
     }

@@ -19,7 +19,10 @@ use crate::mechanism::{Model, Quantity};
 use crate::syntax::{Printed, Requests};
 
 /// Returns the error message and help for an option that does not support these speeds.
-pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'static str, &'static str)> {
+pub(super) fn unsupported_option(
+    speeds: &InSpeeds<'_>,
+    requests: Requests,
+) -> Option<(&'static str, &'static str)> {
     if requests.routh || requests.equations == Printed::Routh {
         return Some((
             "Routh's equations are those of coordinates, not of declared speeds",
@@ -98,7 +101,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::ForwardDynamicsDerivatives => {
                 let forces = symbolic::derivatives(model, &self.inverse(speeds));
                 let accelerations = self.free_accelerations(speeds);
-                let forces = self.at(force_columns(&forces), &accelerations);
+                let forces = self.at_accelerations(force_columns(&forces), &accelerations);
                 Some([forces, self.inverse_of(speeds, true), accelerations].concat())
             }
             Id::Linearize => Some(self.linearized(speeds)),
@@ -129,7 +132,7 @@ impl<'g> Derivation<'_, 'g> {
     fn factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
         let mass = crba::mass_matrix(&speeds.native, self.joints);
         let mass = if effective { added_mass::effective(&speeds.native, &mass) } else { mass };
-        Factor::of(&mass, self.joints)
+        Factor::new(&mass, self.joints)
     }
 
     /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
@@ -146,7 +149,7 @@ impl<'g> Derivation<'_, 'g> {
     }
 
     /// Returns the expressions with the acceleration symbols replaced by `a`.
-    fn at(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn at_accelerations(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(&e, &|s| match Quantity::of(s) {
             Quantity::Acceleration(k) => a.get(k).copied(),
             _ => None,
@@ -163,7 +166,7 @@ impl<'g> Derivation<'_, 'g> {
         let by_state = symbolic::derivatives(model, &tau);
         subtract(&mut forces.by_q, &by_state.by_q);
         subtract(&mut forces.by_v, &by_state.by_v);
-        let mut outputs = self.at(force_columns(&forces), &accelerations);
+        let mut outputs = self.at_accelerations(force_columns(&forces), &accelerations);
         outputs.extend(self.inverse_of(speeds, true));
         outputs.extend(columns(&symbolic::by_input(model, &tau)));
         outputs.extend(columns(&speeds.turning()));
@@ -193,8 +196,8 @@ impl<'g> Derivation<'_, 'g> {
         let native = &speeds.native;
         let turned = |found: Hessian<'g>| Hessian {
             qq: speeds.metric(&found.qq),
-            qv: speeds.along(&found.qv),
-            qa: speeds.along(&found.qa),
+            qv: speeds.project(&found.qv),
+            qa: speeds.project(&found.qa),
             ..found
         };
         match id {
@@ -204,14 +207,14 @@ impl<'g> Derivation<'_, 'g> {
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
                 let mut outputs = second::state(&turned(found.state)).concat();
-                outputs.extend(columns(&speeds.along(&found.q_lambda)));
+                outputs.extend(columns(&speeds.project(&found.q_lambda)));
                 outputs
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
                     hessian::of_inputs(native, &self.input_forces(speeds));
                 let [qq, qv, vv, _] = second::state(&turned(state));
-                [qq, qv, vv, columns(&speeds.along(&qu)), columns(&vu), columns(&uu)].concat()
+                [qq, qv, vv, columns(&speeds.project(&qu)), columns(&vu), columns(&uu)].concat()
             }
             _ => {
                 let found = hessian::of_power(native, &self.inverse(speeds), &hessian::factors(native));
@@ -225,7 +228,7 @@ impl<'g> Derivation<'_, 'g> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
         let of = |k| {
             let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
-            e.iter().map(|e| by.of(*e)).collect()
+            e.iter().map(|e| by.differentiate(*e)).collect()
         };
         (0..count).map(of).collect()
     }
@@ -242,7 +245,7 @@ impl<'g> Derivation<'_, 'g> {
             (0..n).map(row).collect()
         };
         let changes = self.by_parameters(&self.inverse(speeds));
-        changes.into_iter().flat_map(|change| solved(&self.at(change, &a))).collect()
+        changes.into_iter().flat_map(|change| solved(&self.at_accelerations(change, &a))).collect()
     }
 
     fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {

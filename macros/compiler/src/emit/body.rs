@@ -5,7 +5,7 @@
 use super::angles::{Calls, WIDTH};
 use super::instruction::{Build, Writer};
 use super::pieces::{Outputs, Piece, Statement, storage};
-use super::signature::{Signature, filled, given};
+use super::signature::{Signature, filled, matrix_arguments};
 use super::statements::{BLOCK, write_let, write_statements};
 use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
@@ -63,7 +63,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let rest = w.statements.split_off(head);
     let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero };
-    if !given(f).is_empty() {
+    if !matrix_arguments(f).is_empty() {
         let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
         out.push_str(&matrices::finish(f, s, &results));

@@ -56,7 +56,7 @@ impl Constraints {
     }
 
     /// Returns the constraints of a model.
-    pub fn of(model: &Model<'_>) -> Constraints {
+    pub fn from_model(model: &Model<'_>) -> Constraints {
         let those = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
             let all = model.constraints.iter().enumerate();
             all.filter(|(_, c)| is(c)).map(|(k, _)| k).collect()

@@ -29,7 +29,7 @@ pub struct Touching {
 
 impl Touching {
     /// Returns the contacts of a model.
-    pub fn of(model: &Model<'_>) -> Vec<Touching> {
+    pub fn from_model(model: &Model<'_>) -> Vec<Touching> {
         let touching = |c: &crate::mechanism::Contact<'_>| Touching {
             name: c.name.clone(),
             rates: c.rates.len(),

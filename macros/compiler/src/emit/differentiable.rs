@@ -32,7 +32,7 @@ pub fn write_methods(
     );
     let turned =
         charts.filter(|_| !i.facts.speeds).map_or("::core::option::Option::None".to_string(), |charts| {
-            let (first, end) = turned(charts);
+            let (first, end) = rotational_range(charts);
             format!("::core::option::Option::Some(({first}, {end}))")
         });
     let _ = writeln!(
@@ -203,7 +203,7 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
 }
 
 /// Returns the half-open range that contains all velocities of ball and free joints.
-fn turned(charts: &[Chart]) -> (usize, usize) {
+fn rotational_range(charts: &[Chart]) -> (usize, usize) {
     let velocities = charts.iter().filter_map(|chart| match *chart {
         Chart::Plain(..) => None,
         Chart::Ball(_, v) => Some((v.0, v.0 + 3)),

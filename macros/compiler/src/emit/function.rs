@@ -2,7 +2,7 @@
 
 use super::body::write_body;
 use super::instruction::Build;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     }
     let result = s.result(f);
     // The caller may need only the matrix arguments and ignore the result.
-    let must_use = if given(f).is_empty() { "#[must_use]\n" } else { "" };
+    let must_use = if matrix_arguments(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",

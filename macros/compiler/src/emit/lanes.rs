@@ -5,7 +5,7 @@ use super::dispatch::Bodies;
 use super::function::write_function;
 use super::interface::{Interface, needed};
 use super::manifold::write_manifold;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;
@@ -63,7 +63,7 @@ pub fn one_by_one(f: &Function) -> Option<String> {
     };
     let arguments: Option<Vec<String>> = f.arguments.iter().map(argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
-    let given = given(f);
+    let given = matrix_arguments(f);
     if !given.is_empty() {
         let each = |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
         let (first, last) = (

@@ -21,7 +21,7 @@ pub struct Limited {
 
 impl Limited {
     /// Returns all limits of a model, in the order of the values.
-    pub fn of(model: &Model<'_>) -> Vec<Limited> {
+    pub fn from_model(model: &Model<'_>) -> Vec<Limited> {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
             let bounds = limit.bounds().map(|bound| {

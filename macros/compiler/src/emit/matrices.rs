@@ -1,7 +1,7 @@
 //! Results that consist of several matrices, and products and inverses that are completed at run time.
 
 use super::pieces::Outputs;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::catalogue::{InverseForm, Shape, Structure};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
@@ -16,7 +16,7 @@ const NOTHING: &str = "&mut []";
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
 /// matrices.
 pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let given: Vec<String> = given(f).iter().map(|name| format!("*{name}")).collect();
+    let given: Vec<String> = matrix_arguments(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}{}\n",
@@ -30,7 +30,7 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}a\n",
                 solved([by_q, by_v], inverse, n, s, &f.structure),
-                known(f, outputs, n)
+                store_known_columns(f, outputs, n)
             )
         }
         (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
@@ -172,7 +172,7 @@ impl Beside<'_> {
     /// `place`; empty if all factors are zero.
     fn completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
         let used: Vec<(usize, Span)> = (0..self.rows).filter_map(|k| Some((k, self.used(k)?))).collect();
-        let runs = together(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
+        let runs = factor_runs(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
         if runs.is_empty() {
             return String::new();
         }
@@ -207,9 +207,9 @@ impl Beside<'_> {
             let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
             limb.iter().for_each(|k| used[*k] = all);
         }
-        let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+        let runs = factor_runs(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
         let neighbours = |limb: &Vec<usize>| {
-            let runs = together(limb.iter().map(|k| (*k, Span::default(), *k)));
+            let runs = factor_runs(limb.iter().map(|k| (*k, Span::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
         };
         let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
@@ -230,7 +230,7 @@ impl Beside<'_> {
 
 /// Groups neighbouring columns whose factors have the same range of trunk rows and consecutive indices.
 /// `columns` holds, in ascending order, the index of each column, the range and the index of the factors.
-fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
+fn factor_runs(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
     let mut runs: Vec<(Span, Span, usize)> = Vec::new();
     for (k, used, place) in columns {
         match runs.last_mut() {
@@ -246,8 +246,8 @@ fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, S
 }
 
 /// Returns the statements that store the columns that are already computed in the matrix arguments.
-fn known(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
-    let columns = given(f).into_iter().zip(&f.structure.known);
+fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
+    let columns = matrix_arguments(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
         format!("{matrix}.data.0[{column}] = {};\n", outputs.list(k * n..(k + 1) * n))

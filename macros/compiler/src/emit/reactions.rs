@@ -43,7 +43,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let call = format!("self.{}({t}{pass})", f.name);
         let (docs, shape, result) = match diagram {
             Some(diagram) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
-            None => (about(i, s), s.shape(f.shape), call),
+            None => (reaction_docs(i, s), s.shape(f.shape), call),
         };
         let _ = writeln!(
             out,
@@ -172,7 +172,7 @@ fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
 }
 
 /// Returns the description of the function of an output that contains reactions.
-fn about(i: &Interface<'_>, s: &Signature<'_>) -> String {
+fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",

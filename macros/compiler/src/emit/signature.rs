@@ -8,7 +8,7 @@ use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
 
 /// Returns the names of the matrix arguments to which a function writes its results.
-pub fn given(f: &Function) -> Vec<&'static str> {
+pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
     let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
     f.arguments.iter().filter_map(given).collect()
 }
@@ -18,7 +18,7 @@ pub fn given(f: &Function) -> Vec<&'static str> {
 pub fn filled(f: &Function) -> Option<usize> {
     let has_variant = f.name == "inverse_dynamics_derivatives";
     match f.shape {
-        _ if !given(f).is_empty() => None,
+        _ if !matrix_arguments(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),
         Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
         _ => None,
@@ -45,8 +45,8 @@ impl Signature<'_> {
     pub fn result(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector(n),
-            Shape::Forward(n) | Shape::CalledForward(n) if !given(f).is_empty() => self.vector(n),
-            shape if given(f).is_empty() => self.shape(shape),
+            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_arguments(f).is_empty() => self.vector(n),
+            shape if matrix_arguments(f).is_empty() => self.shape(shape),
             _ => "()".to_string(),
         }
     }

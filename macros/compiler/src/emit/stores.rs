@@ -2,7 +2,7 @@
 //! memory in between.
 
 use super::pieces::{Outputs, Piece, Statement};
-use super::signature::given;
+use super::signature::matrix_arguments;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
@@ -49,7 +49,7 @@ pub fn with_stores(
 /// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
 /// stored, because they are computed later.
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
-    let given = given(f);
+    let given = matrix_arguments(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
@@ -104,7 +104,7 @@ fn as_known(
     }
     let widths = program.lanes();
     for (pairs, ready) in pairs.iter().zip(&mut ready) {
-        ready.extend(together(pairs, &widths));
+        ready.extend(store_pairs(pairs, &widths));
     }
     for (piece, places) in outputs.pieces.iter().zip(&left).filter(|(_, places)| !places.is_empty()) {
         let text = match places.as_slice() {
@@ -170,7 +170,7 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
 
 /// Returns the statements that store pairs of lanes. All lanes of a vector in adjacent rows are stored
 /// together, as are all lanes of two vectors in adjacent columns; remaining pairs are stored individually.
-fn together(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
+fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
     let mut statements = Vec::new();
     let mut rest = pairs;
     while let [[one, next], ..] = rest {

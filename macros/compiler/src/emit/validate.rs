@@ -17,7 +17,7 @@ pub struct Figure {
 
 impl Figure {
     /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
-    pub fn of(model: &Model<'_>) -> Vec<Figure> {
+    pub fn from_model(model: &Model<'_>) -> Vec<Figure> {
         let name = |k: &usize| model.parameters.get(*k).cloned();
         let figure = |requirement: &Requirement<'_>| Figure {
             rule: requirement.rule.name(),

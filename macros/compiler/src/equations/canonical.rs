@@ -58,9 +58,9 @@ pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>)
     let rate = with_velocities(&rate, &velocity);
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
-    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
     let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?;
+    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?;
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());
     let velocity = all.split_off(1);
@@ -105,7 +105,8 @@ pub(super) fn velocities_of<'g>(
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
         let moves = |s: &Symbol| matches!(Quantity::of(*s), Quantity::Configuration(_));
-        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.of(divisor)?.terms.len() > 1) {
+        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.normal_form(divisor)?.terms.len() > 1)
+        {
             determinants.push(divisor);
             divisor = determinant(determinants.len() - 1).expr(divisor.graph());
         }

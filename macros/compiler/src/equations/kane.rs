@@ -84,7 +84,7 @@ pub fn kane<'g>(
         }
         _ => chosen(model, own, &rows).ok_or(Without::Choice)?,
     };
-    let solved = Solved::of(own, &rows, dependent).ok_or(Without::Choice)?;
+    let solved = Solved::new(own, &rows, dependent).ok_or(Without::Choice)?;
     let v = velocities(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
     let mut inputs = forces::generalized_forces(model, joints);
@@ -116,14 +116,14 @@ fn polynomials<'g, const N: usize>(
     lists: &[Vec<Expr<'g>>; N],
 ) -> Option<(Ring, [Vec<Polynomial>; N])> {
     let all: Vec<Expr<'g>> = lists.concat();
-    if Tape::of(&all).steps() > Limits::ASKED.operations[1] {
+    if Tape::new(&all).steps() > Limits::ASKED.operations[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
     normal.ring.allow_more();
-    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
     let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?.into_iter();
+    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?.into_iter();
     let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
     Some((short.ring, lists))
 }
@@ -136,13 +136,13 @@ fn polynomials<'g, const N: usize>(
 /// speeds.
 fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
-    let tape = Tape::of(&rows.concat());
+    let tape = Tape::new(&rows.concat());
     let at = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
         tape.values(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
         (0..SAMPLES).map(|seed| at(&random_configuration(model, seed), seed)).collect();
-    let closed = sample_configurations(model, &Rows::of(model), &mut Diagnostics::new());
+    let closed = sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
     let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| at(q, *seed)).collect();
     let is_regular = |columns: &[usize]| {
         closed.iter().all(|rows| {
@@ -208,7 +208,7 @@ struct Solved<'g> {
 }
 
 impl<'g> Solved<'g> {
-    fn of(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
+    fn new(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
         let g = model.graph;
         dependent.sort_unstable();
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
@@ -277,7 +277,7 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
         (names.get(&name), dots)
     };
     let left = |k: usize| primed(rate_name(model, k));
-    let lines = Lines::of(kane, Plain { name: &marked }, &left);
+    let lines = Lines::new(kane, Plain { name: &marked }, &left);
     let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(line).collect();
     plain += "\n";
@@ -288,9 +288,9 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
         (names.get(&name), dots)
     };
     let latex = |k: usize| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let latex = Lines::of(kane, Latex { name: &dotted }, &latex);
+    let latex = Lines::new(kane, Latex { name: &dotted }, &latex);
     let mathml = |k: usize| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let mathml = Lines::of(kane, MathMl { name: &dotted }, &mathml);
+    let mathml = Lines::new(kane, MathMl { name: &dotted }, &mathml);
     Written {
         plain,
         latex: aligned(&[latex.velocities, latex.motion].concat()),
@@ -307,7 +307,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
+    fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
         let writer = Writer::styled(&kane.ring, style);
         let of_speeds = kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {

@@ -88,7 +88,7 @@ impl<'a> Writer<'a> {
 impl<'a, S: Style> Writer<'a, S> {
     /// Creates a writer for the polynomials of a ring in the given style.
     pub fn styled(ring: &'a Ring, style: S) -> Writer<'a, S> {
-        Writer { ring, order: Order::of(ring), style }
+        Writer { ring, order: Order::new(ring), style }
     }
 
     /// Formats a polynomial with grouped terms and extracted common factors.
@@ -139,8 +139,8 @@ impl<'a, S: Style> Writer<'a, S> {
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
         self.factors(front, &mut factors, &mut divisors);
         factors.extend(sums);
-        self.factors(m.without(front), &mut factors, &mut divisors);
-        let number = Number::of(coefficient.abs());
+        self.factors(m.cleared(front), &mut factors, &mut divisors);
+        let number = Number::classify(coefficient.abs());
         let number = (number != Number::ONE || factors.is_empty()).then_some(number);
         self.style.product(number, &factors, &divisors)
     }

@@ -14,7 +14,7 @@ use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::routh::{Solved, part, solved, with, with_velocities};
+use crate::mechanics::routh::{Solved, part, solved, with_cyclic_velocities, with_velocities};
 use crate::mechanics::{accelerations, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
@@ -58,7 +58,7 @@ pub fn reduced<'g>(
         divisors = found;
         Some(velocity)
     })?;
-    let all = with(model, &cyclic, &velocity);
+    let all = with_cyclic_velocities(model, &cyclic, &velocity);
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
@@ -82,12 +82,12 @@ pub fn reduced<'g>(
     let lists = [vec![routhian], motion, forces, velocity, momentum_rate, divisors];
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for list in &lists {
-        found.push(list.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?);
+        found.push(list.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?);
     }
     let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
     let mut found = found
         .iter()
-        .map(|list| list.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>())
+        .map(|list| list.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>())
         .collect::<Option<Vec<_>>>()?
         .into_iter();
     let mut next = || found.next().unwrap_or_default();

@@ -30,7 +30,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style>(equations: &Equations, style: S) -> Lines {
+    fn new<S: Style>(equations: &Equations, style: S) -> Lines {
         let writer = Writer::styled(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         Lines {
@@ -53,7 +53,7 @@ impl Lines {
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
 fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let name = |symbol| primed(name(model, rates, symbol));
-    let lines = Lines::of(equations, Plain { name: &name });
+    let lines = Lines::new(equations, Plain { name: &name });
     let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
     let mut out = line(&format!("{energy} = {}", lines.lagrangian));
@@ -181,9 +181,9 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::of(equations, Latex { name: &name })
+    let latex = Lines::new(equations, Latex { name: &name })
         .equations(energy, &|k| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
-    let mathml = Lines::of(equations, MathMl { name: &name })
+    let mathml = Lines::new(equations, MathMl { name: &name })
         .equations(of_mathml, &|k| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
     (aligned(&latex), page(&mathml))
 }

@@ -55,12 +55,12 @@ pub struct Derivative<'g> {
 impl<'g> Derivative<'g> {
     /// Creates the differentiation with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
-        Derivative::along(vec![(symbol, graph.one())], graph)
+        Derivative::with_rates(vec![(symbol, graph.one())], graph)
     }
 
     /// Creates the differentiation along a direction in which the symbols change at the given rates and all
     /// others are constant.
-    pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
+    pub fn with_rates(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
     }
 
@@ -97,13 +97,13 @@ impl<'g> Derivative<'g> {
     /// Creates the partial differentiation of an operation with respect to its operand `id`. Its other
     /// operands are constant.
     fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
-        let mut derivative = Derivative::along(Vec::new(), graph);
+        let mut derivative = Derivative::with_rates(Vec::new(), graph);
         derivative.known.set(id, graph.one().id());
         derivative
     }
 
     /// Returns the derivative of `e`.
-    pub fn of(&mut self, e: Expr<'g>) -> Expr<'g> {
+    pub fn differentiate(&mut self, e: Expr<'g>) -> Expr<'g> {
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
         while let Some(&id) = todo.last() {
@@ -221,7 +221,7 @@ mod tests {
         let found = gradient(e, &symbols);
         let at = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
         for (symbol, found) in symbols.into_iter().zip(found) {
-            let expected = at(Derivative::with_respect_to(symbol, &g).of(e));
+            let expected = at(Derivative::with_respect_to(symbol, &g).differentiate(e));
             assert!((at(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{symbol:?}");
         }
     }

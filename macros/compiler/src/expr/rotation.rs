@@ -391,16 +391,16 @@ impl<'g> Step<'g> {
                 let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
                 // Same formula as in `apply_mat`. Twice the sine can be shared between several tensors, but
                 // if `xy` is a multiple, doubling its coefficient costs nothing.
-                let xy = x.at(i, j);
+                let xy = x.entry(i, j);
                 let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
-                let u = *cos * (x.at(i, i) - x.at(j, j)) - twice;
+                let u = *cos * (x.entry(i, i) - x.entry(j, j)) - twice;
                 let (cu, su) = (*cos * u, *sin * u);
                 let mut out = x.full();
-                (out.0[i][i], out.0[j][j]) = (x.at(j, j) + cu, x.at(i, i) - cu);
+                (out.0[i][i], out.0[j][j]) = (x.entry(j, j) + cu, x.entry(i, i) - cu);
                 let (ij, ki, kj) = (
-                    x.at(i, j) + su,
-                    *cos * x.at(k, i) - *sin * x.at(k, j),
-                    *sin * x.at(k, i) + *cos * x.at(k, j),
+                    x.entry(i, j) + su,
+                    *cos * x.entry(k, i) - *sin * x.entry(k, j),
+                    *sin * x.entry(k, i) + *cos * x.entry(k, j),
                 );
                 for (a, b, e) in [(i, j, ij), (k, i, ki), (k, j, kj)] {
                     (out.0[a][b], out.0[b][a]) = (e, e);
@@ -458,7 +458,7 @@ mod tests {
             let m = Mat3(numbers(&rotation).map(|r| r.map(|c| g.num(c))));
             let full = m * tensor.full() * m.transpose();
             let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(
-                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).at(k / 3, k % 3))),
+                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).entry(k / 3, k % 3))),
             );
             for (a, b) in pairs {
                 assert!((a.value().unwrap() - b.value().unwrap()).abs() < 1e-14);

@@ -47,7 +47,7 @@ impl Dimension {
     }
 
     /// Returns the dimension of a quotient.
-    pub fn over(&self, other: &Dimension) -> Option<Dimension> {
+    pub fn quotient(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::integer(-1))
     }
 

@@ -36,7 +36,7 @@ impl Ratio {
     }
 
     /// Returns the simple fraction that equals a number, if there is one.
-    pub fn of(x: f64) -> Option<Ratio> {
+    pub fn from_value(x: f64) -> Option<Ratio> {
         let near = |d: i64| {
             let n = x * d as f64;
             ((n - n.round()).abs() < 1e-9 && n.abs() < 1e6).then(|| n.round() as i64)
@@ -93,10 +93,10 @@ mod tests {
         assert_eq!(Ratio::new(3, -6), Ratio::new(-1, 2));
         assert_eq!(Ratio::new(1, 0), None);
         assert_eq!(Ratio::new(i64::MAX, 1), None);
-        assert_eq!(Ratio::of(1.5), Ratio::new(3, 2));
-        assert_eq!(Ratio::of(1.0 / 3.0), Ratio::new(1, 3));
-        assert_eq!(Ratio::of(std::f64::consts::PI), None);
-        assert_eq!(Ratio::of(f64::NAN), None);
+        assert_eq!(Ratio::from_value(1.5), Ratio::new(3, 2));
+        assert_eq!(Ratio::from_value(1.0 / 3.0), Ratio::new(1, 3));
+        assert_eq!(Ratio::from_value(std::f64::consts::PI), None);
+        assert_eq!(Ratio::from_value(f64::NAN), None);
         let half = Ratio::new(1, 2).unwrap();
         assert_eq!(half.plus(half), Some(Ratio::ONE));
         assert_eq!(half.times(half).unwrap().parts(), (1, 4));

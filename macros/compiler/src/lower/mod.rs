@@ -37,7 +37,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     let start = Instant::now();
     let program = select(outputs, known);
     pipeline::observe(pipeline::SELECT, &program, start.elapsed());
-    let mut program = program.through(pipeline::DRAFT);
+    let mut program = program.run_passes(pipeline::DRAFT);
     program.counts = program.count();
     program
 }

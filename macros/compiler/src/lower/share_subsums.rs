@@ -83,7 +83,7 @@ impl Program {
     /// Returns a program with shared sums and its length after fusing: for a small program the best one,
     /// otherwise the first improvement. Returns `None` if none is shorter than `length`.
     fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
-        let all = Sums::of(self);
+        let all = Sums::from_program(self);
         let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;
         let mut cost = (length, self.counts.total());
         let mut best: Option<(usize, Program)> = None;
@@ -159,7 +159,7 @@ impl Program {
 }
 
 impl Sums {
-    fn of(program: &Program) -> Sums {
+    fn from_program(program: &Program) -> Sums {
         let n = program.instructions.len();
         let mut sums = Sums {
             atoms: Vec::new(),
@@ -271,7 +271,7 @@ impl Sums {
 
     /// Replaces the most frequently shared pairs of terms by sums of their own.
     fn share(&mut self) {
-        let mut pairs = Pairs::of(&self.sums, self.atoms.len());
+        let mut pairs = Pairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
             let new = Key::Sum(self.sums.len());
             let mut with_new = Vec::new();
@@ -285,12 +285,12 @@ impl Sums {
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
                         if is_gone(a.0.number()) || is_gone(b.0.number()) {
-                            pairs.remove(Pair::of(*a, *b), k);
+                            pairs.remove(Pair::new(*a, *b), k);
                         }
                     }
                 }
                 terms.retain(|(key, _)| !is_gone(key.number()));
-                with_new.extend(terms.iter().map(|term| (Pair::of(*term, (new, c)), k)));
+                with_new.extend(terms.iter().map(|term| (Pair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
             pairs.add(with_new);

@@ -29,16 +29,16 @@ struct SharedMotion<'g> {
 
 impl<'g> Alike<'g> {
     /// Collects shared motion subspaces.
-    pub fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
-        Alike::by(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
+    pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
+        Alike::collect(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
     }
 
     /// Collects shared time derivatives of motion subspaces.
     pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
-        Alike::by(model, joints, |joint, dof| joint.drift.as_ref()?.subspace_rates.get(dof).copied())
+        Alike::collect(model, joints, |joint, dof| joint.drift.as_ref()?.subspace_rates.get(dof).copied())
     }
 
-    fn by(
+    fn collect(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,

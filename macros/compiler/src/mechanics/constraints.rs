@@ -258,7 +258,7 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
 
 /// Returns the forces and biases of the equations of motion as the symbols that [`solve`] takes as arguments
 /// at run time.
-pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let symbols =
         |range: std::ops::Range<usize>| range.map(|k| Quantity::Given(k).expr(model.graph)).collect();

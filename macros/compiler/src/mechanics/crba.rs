@@ -17,11 +17,11 @@ pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
 
 /// Returns `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of one expression.
 pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
-    let paths = Paths::of(joints, most);
+    let paths = Paths::new(joints, most);
     let dofs =
         joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let (composites, alike) = (composites(model, joints), Alike::of(model, joints));
+    let (composites, alike) = (composites(model, joints), Alike::new(model, joints));
     let mut columns = Columns { joints, dofs: dofs.collect(), composites, alike, matrix };
     paths.propagate(&mut columns);
     let Columns { composites, alike, matrix: mut m, .. } = columns;

@@ -91,7 +91,7 @@ pub fn forward_dynamics<'g>(
     tau: &[Expr<'g>],
     method: DerivationMethod,
 ) -> Linearized<'g> {
-    let factor = Factor::of(mass, joints);
+    let factor = Factor::new(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let accelerations = factor.solve(r);

@@ -17,7 +17,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// Groups the contact velocities with the given Jacobian rows. Returns `None` unless each contact
     /// velocity depends on one limb of a group of identical limbs, and all limbs of a group have the same
     /// number of them.
-    pub fn of(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
+    pub fn new(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
         let alike = limbs.limb_rows(jacobian)?;
         Some(LimbContacts { limbs, alike, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
     }

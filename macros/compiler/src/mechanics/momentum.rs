@@ -34,7 +34,7 @@ fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<S
 
 fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
-    let alike = Alike::of(model, joints);
+    let alike = Alike::new(model, joints);
     for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !alike.has(*k)) {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);

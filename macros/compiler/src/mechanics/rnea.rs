@@ -22,7 +22,7 @@ pub fn inverse_dynamics<'g>(
     if let Some(a) = a {
         added_mass::subtract_from_forces(model, a, &mut tau);
     }
-    let alike = Alike::of(model, joints);
+    let alike = Alike::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
         for dof in joint.dofs.iter().filter(|_| !alike.has(k)) {
@@ -122,9 +122,9 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
     let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        moment.0[k] += diagonal_terms(i, s, k) + i.at(l, m) * (s.squares[l] - s.squares[m])
-            - i.at(k, l) * u[m][k]
-            + i.at(k, m) * u[l][k];
+        moment.0[k] += diagonal_terms(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
+            - i.entry(k, l) * u[m][k]
+            + i.entry(k, m) * u[l][k];
     }
     Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
 }

@@ -48,7 +48,7 @@ impl<'g> Limbs<'g> {
     /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces
     /// of the whole mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape
     /// cannot be merged.
-    pub fn of(
+    pub fn new(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         groups: &[Group],

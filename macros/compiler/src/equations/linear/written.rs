@@ -100,7 +100,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
+    fn new<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
         let writer = Writer::styled(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
@@ -149,7 +149,7 @@ fn in_one(stability: &Stability) -> Option<Polynomial> {
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
     let marked = |symbol| primed(words.name(symbol));
-    let plain = plain(&words, linear, &Lines::of(linear, Plain { name: &marked }));
+    let plain = plain(&words, linear, &Lines::new(linear, Plain { name: &marked }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
     let names = names_with(model, &others);
@@ -157,11 +157,11 @@ pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) 
         let (name, dots) = words.name(symbol);
         (names.get(&name), dots)
     };
-    let lines = Lines::of(linear, Latex { name: &dotted });
+    let lines = Lines::new(linear, Latex { name: &dotted });
     let spelled = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
     let latex = aligned(&equations(&lines, &spelled(&words.frequency)));
     let frequency = crate::equations::print::mathml::spelled(&names.get(&words.frequency), 0, 1);
-    let mathml = page(&equations(&Lines::of(linear, MathMl { name: &dotted }), &frequency));
+    let mathml = page(&equations(&Lines::new(linear, MathMl { name: &dotted }), &frequency));
     Written { plain, latex, mathml }
 }
 

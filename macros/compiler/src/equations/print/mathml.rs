@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn long_sums_are_broken_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
-        let style = MathMl { name: &|_| (Name::of("x"), 0) };
+        let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));
         let parts = |text: &str| pieces(text, &BREAKS);
         assert_eq!(parts(&sum).len(), 8);

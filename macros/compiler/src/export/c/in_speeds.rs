@@ -3,7 +3,7 @@
 
 use super::docs;
 use super::function::Outline;
-use super::manifold::{self, own};
+use super::manifold::{self, self_parameter};
 use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
@@ -61,7 +61,7 @@ fn signature(o: &Outline<'_>, of: &Space) -> String {
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
-    format!("void {}_{}({}{})", o.prefix, of.name, own(o), list.join(", "))
+    format!("void {}_{}({}{})", o.prefix, of.name, self_parameter(o), list.join(", "))
 }
 
 /// Returns the declarations.

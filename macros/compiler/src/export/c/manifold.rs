@@ -22,12 +22,12 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     ("tangent_rate", ["dv", "v"], "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`."),
 ];
 
-pub fn own(o: &Outline<'_>) -> String {
+pub fn self_parameter(o: &Outline<'_>) -> String {
     if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() }
 }
 
 fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
-    let own = own(o);
+    let own = self_parameter(o);
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
@@ -110,7 +110,7 @@ fn derivatives_signature(o: &Outline<'_>, of: &ToFirstOrder) -> String {
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
-    format!("void {}_{name}_derivatives({}{})", o.prefix, own(o), list.join(", "))
+    format!("void {}_{name}_derivatives({}{})", o.prefix, self_parameter(o), list.join(", "))
 }
 
 fn define_derivatives(

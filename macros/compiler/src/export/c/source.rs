@@ -92,7 +92,7 @@ pub fn write(
         derivatives: output.functions.iter().any(|f| f.id == Id::InputDerivatives),
         speeds: model.speeds.is_some(),
     };
-    let mut chosen = Chosen::of(output);
+    let mut chosen = Chosen::new(output);
     chosen.left_out.extend(options.left_out.iter().cloned());
     if options.casadi.is_some() {
         let reactions = chosen.reactions.iter().filter_map(|f| f.name.strip_prefix(REACTION));
@@ -113,7 +113,7 @@ pub fn write(
         bodies.push_str(&write_limits(limits, model, &o, &mut support));
     }
     manifold::define(&mut bodies, &output.charts, &o, &mut support);
-    let steps = steps::Steps::of(model, output);
+    let steps = steps::Steps::new(model, output);
     steps.define(&mut bodies, &o, &mut support);
     bodies.push_str(&frames::define(output, &o, &mut support));
     let casadi = match &options.casadi {
@@ -207,7 +207,7 @@ struct Chosen<'a> {
 }
 
 impl<'a> Chosen<'a> {
-    fn of(output: &'a Output) -> Chosen<'a> {
+    fn new(output: &'a Output) -> Chosen<'a> {
         let mut chosen = Chosen {
             public: Vec::new(),
             hidden: Vec::new(),

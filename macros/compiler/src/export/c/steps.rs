@@ -45,7 +45,7 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// Determines the available steps of a mechanism.
-    pub fn of(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
+    pub fn new(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
         let find = |id: Id| output.functions.iter().find(|f| f.id == id);
         let taken = output.functions.iter().any(|f| {
             METHODS.iter().any(|(method, _)| {

@@ -9,7 +9,7 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, number, place, tag};
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, about, add, apply, product, scale};
+use crate::import::pose::{Pose, add, apply, axis_rotation, product, scale};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
@@ -287,7 +287,7 @@ impl<'a> Reader<'a> {
         }
         let mut carrier = parent.clone();
         for (k, joint) in joints.into_iter().enumerate() {
-            let child = if k + 1 == number { body.clone() } else { self.between(body, &joint) };
+            let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
             let outer = match (k, joint.kind) {
                 // The coordinates of a free joint are the pose of the body in the world.
                 (_, JointKind::Free) => Pose::ZERO,
@@ -304,7 +304,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a massless link between two joints of a body and returns its name.
-    fn between(&mut self, body: &Name, joint: &BodyJoint) -> Name {
+    fn add_massless_link(&mut self, body: &Name, joint: &BodyJoint) -> Name {
         let text =
             unused(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
         self.link_names.insert(text.clone());
@@ -421,7 +421,7 @@ fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJ
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
     match joint.kind {
-        JointKind::Pin if joint.reference != 0.0 => inner.axes = about(axis, -joint.reference),
+        JointKind::Pin if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
         JointKind::Sleeve => inner.at = add(inner.at, scale(axis, -joint.reference)),
         _ => {}
     }

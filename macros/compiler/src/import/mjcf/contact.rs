@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         cx: &mut Cx<'_>,
     ) -> Option<(Shape, Pose)> {
         let kind = shape.text("type").unwrap_or("sphere");
-        if kind == "mesh" || shape.with("mesh").is_some() {
+        if kind == "mesh" || shape.node_with("mesh").is_some() {
             return Some((Shape::Mesh, Pose::ZERO));
         }
         let (pose, [x, y, z]) = super::geometry::dimensions(kind, shape, &self.settings, cx)?;

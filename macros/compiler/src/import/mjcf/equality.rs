@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         self.joint_names.insert(named.text.clone());
         let [parent, child] = [first, second].map(|(body, pose)| {
             let origin = origin(&pose, &body.place);
-            Endpoint { at: origin.at(), rotated: origin.rotated(), body }
+            Endpoint { at: origin.position(), rotated: origin.rotated(), body }
         });
         self.robot.closing.push(bare_joint(named, kind, parent, child));
     }

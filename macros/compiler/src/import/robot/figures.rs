@@ -5,7 +5,7 @@ use super::names::unused;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
-use crate::import::pose::{IDENTITY, Matrix, Vector, about, product, roll_pitch_yaw, transpose};
+use crate::import::pose::{IDENTITY, Matrix, Vector, axis_rotation, product, roll_pitch_yaw, transpose};
 use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
@@ -235,7 +235,7 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
     let Some((axis, angle)) = turn(e) else {
         let ExprKind::Call(_, arguments) = &e.kind else { return None };
         let [axis, angle] = arguments.as_slice() else { return None };
-        return Some(about(numbers(axis)?, angle.literal()?));
+        return Some(axis_rotation(numbers(axis)?, angle.literal()?));
     };
     let (s, c) = angle.sin_cos();
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);

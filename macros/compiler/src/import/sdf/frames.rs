@@ -8,7 +8,7 @@ use crate::import::element::{
     Attribute, Node, check_plain, check_radians, content, contents, elements, place, report_second,
 };
 use crate::import::imported::Placed;
-use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
+use crate::import::pose::{IDENTITY, Pose, axis_rotation, of_quaternion, product, roll_pitch_yaw};
 use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -140,8 +140,9 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     }
     let angle = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
-    let axes =
-        turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| product(&whole, &about(axis, angle(turn))));
+    let axes = turns
+        .into_iter()
+        .fold(IDENTITY, |whole, (axis, turn)| product(&whole, &axis_rotation(axis, angle(turn))));
     Some(Pose { at: [x, y, z], axes })
 }
 

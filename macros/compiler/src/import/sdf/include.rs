@@ -53,7 +53,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     while let Some(step) = steps.pop() {
         match step {
             Step::Copy(file, range) => whole.copy(file, range.start, range.end, name, cx)?,
-            Step::Put(text, file, at) => whole.put(&text, (file, at), name, cx)?,
+            Step::Put(text, file, at) => whole.append(&text, (file, at), name, cx)?,
             Step::Leave => {
                 open.pop();
             }

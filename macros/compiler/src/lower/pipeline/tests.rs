@@ -20,7 +20,7 @@ fn selected(outputs: impl for<'g> Fn([Expr<'g>; 8]) -> Vec<Expr<'g>>) -> Program
 /// Returns the texts before and after a pass, and checks that both programs return the same values.
 fn around(pass: &Pass, mut program: Program) -> [Vec<String>; 2] {
     program.counts = program.count();
-    let after = program.clone().through(&[*pass]);
+    let after = program.clone().run_passes(&[*pass]);
     let value = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
     for (a, b) in program.run(&value).iter().zip(after.run(&value)) {
         assert!((a - b).abs() <= 1e-13 * a.abs().max(1.0), "{}: {a} and {b}", pass.name);
@@ -93,7 +93,7 @@ fn the_whole_pipeline() {
     let g = Graph::new();
     let [m, l, gravity, q, v, tau] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
     let acceleration = (tau - m * gravity * l * q.sin() - v) / (m * l * l);
-    let program = lower(&[acceleration]).through(super::FINISH);
+    let program = lower(&[acceleration]).run_passes(super::FINISH);
     let text = program.text(&name);
     let expected = [
         "t0 = a * c",

@@ -15,7 +15,7 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// Returns the pairs of the sums, given the number of atoms.
-    pub(super) fn of(sums: &[Terms], atoms: usize) -> Pairs {
+    pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> Pairs {
         let place = |key: Key| match key {
             Key::One => 0,
             Key::Atom(a) => 1 + a,
@@ -32,7 +32,7 @@ impl Pairs {
             common.clear();
             common.extend(terms.iter().filter(|(key, _)| uses[place(*key)] > 1));
             for (i, a) in common.iter().enumerate() {
-                all.extend(common[i + 1..].iter().map(|b| (Pair::of(*a, *b), k)));
+                all.extend(common[i + 1..].iter().map(|b| (Pair::new(*a, *b), k)));
             }
         }
         let mut pairs = Pairs::default();
@@ -75,7 +75,7 @@ pub(super) struct Pair(u128);
 impl Pair {
     /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
     /// begins with a value.
-    pub(super) fn of(a: (Key, f64), b: (Key, f64)) -> Pair {
+    pub(super) fn new(a: (Key, f64), b: (Key, f64)) -> Pair {
         let [x, y] = [a.0.number(), b.0.number()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };

@@ -31,7 +31,7 @@ pub struct Known<'g> {
 }
 
 /// Finds the columns of derivatives that invariance under displacements of a free base determines.
-pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
+pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     let mut found = Known::default();
     let is_base = |base: usize| match model.links[base] {
         Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q: q.0, v: v.0 }),
@@ -41,7 +41,7 @@ pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     if bases.is_empty() {
         return found;
     }
-    let others = Others::of(model, joints);
+    let others = Others::new(model, joints);
     for base in
         bases.into_iter().filter(|base| base.carries_all_alike(model, joints) && others.let_fall(base.v))
     {
@@ -120,7 +120,7 @@ struct Others<'g> {
 
 impl<'g> Others<'g> {
     /// Derives the equations of motion of the model with massless links.
-    fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Others<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> Others<'g> {
         let mut massless = model.clone();
         for link in &mut massless.links {
             link.inertia = Inertia::zero(model.graph);
@@ -129,7 +129,7 @@ impl<'g> Others<'g> {
         let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
         let depends = |k: usize| {
             let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-            forces.iter().any(|force| !d.of(*force).is_zero())
+            forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(depends).collect();
         Others { forces: symbolic::derivatives(model, &forces), inertial }

@@ -56,7 +56,7 @@ impl Trunk {
 
     /// Returns the partition with the given trunk, or `None` if there is only one limb or the mass matrix
     /// couples different limbs.
-    pub fn of(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
+    pub fn new(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
         let order = elimination_order(joints, mass.len());
         let mut limbs: Vec<Limb> = Vec::new();
         let mut limb_of_joint: Vec<Option<usize>> = Vec::with_capacity(joints.len());
@@ -136,7 +136,7 @@ pub struct Inverse<'a, 'g> {
 
 impl<'a, 'g> Inverse<'a, 'g> {
     /// Computes the blocks.
-    pub fn of(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
+    pub fn new(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
             return Inverse { trunk, parts: Vec::new() };

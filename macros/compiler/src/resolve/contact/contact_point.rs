@@ -41,7 +41,7 @@ impl<'g> Builder<'_, 'g> {
         let along = |c: &Coordinate| {
             let mut d =
                 Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
-            at.map(|e| d.of(e))
+            at.map(|e| d.differentiate(e))
         };
         let tangents = [along(&first), along(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {

@@ -50,7 +50,7 @@ impl<'g> Builder<'_, 'g> {
                 .help("write it by `u` and `w`, the place along the body's x and y, as in `0.1 * sin(3 * u)`; where it is level, a plane will do");
             return None;
         }
-        let along = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).of(e);
+        let along = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);
         let slopes = [along(height_of, 0), along(height_of, 1)];
         let curvatures = [along(slopes[0], 0), along(slopes[0], 1), along(slopes[1], 1)];
         Some(Terrain { height: height_of, slopes, curvatures })

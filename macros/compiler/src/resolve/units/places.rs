@@ -106,9 +106,9 @@ pub fn collect<'a>(
         places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
-            let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));
+            let dimension = power.and_then(|power| FORCE.quotient(&LENGTH.power(power)?));
             places.maybe([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
-            places.maybe(&soft.dissipation, TIME.over(&LENGTH), "s/m");
+            places.maybe(&soft.dissipation, TIME.quotient(&LENGTH), "s/m");
             places.all(&soft.speed, &SPEED, "m/s");
         }
     }
@@ -244,7 +244,7 @@ impl<'a> Places<'a> {
         // A force at a point works on a length, a torque on an angle.
         let force = match on_point && action.kind.row().torque {
             true => Some(ENERGY),
-            false => ENERGY.over(&work.coordinate),
+            false => ENERGY.quotient(&work.coordinate),
         };
         if let Some(force) = force {
             self.element(action, &work, &force, inference);
@@ -263,8 +263,8 @@ impl<'a> Places<'a> {
             _ => [""; 3],
         };
         self.all(limit.from.iter().chain(&limit.to), &q, length);
-        self.maybe(&limit.max_speed, q.over(&TIME), speed);
-        self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
+        self.maybe(&limit.max_speed, q.quotient(&TIME), speed);
+        self.maybe(&limit.max_effort, ENERGY.quotient(&q), effort);
         self.all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
@@ -282,7 +282,7 @@ impl<'a> Places<'a> {
     fn element(&mut self, action: &'a Action, work: &Work, force: &Dimension, inference: &mut Inference<'a>) {
         let [n, stiffness, damping, inertance] = work.units;
         let q = &work.coordinate;
-        let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
+        let per = |times: i64| force.quotient(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
         let row = action.kind.row();
         for (key, e) in &action.arguments {
             let (dimension, unit) = match &key.row().quantity {
@@ -292,7 +292,7 @@ impl<'a> Places<'a> {
                 ForceQuantity::Force => (Some(force.clone()), n),
                 ForceQuantity::Energy => (Some(ENERGY), "J"),
                 ForceQuantity::Coordinate => (Some(q.clone()), if q.is_plain() { "rad" } else { "" }),
-                ForceQuantity::Speed => (q.over(&TIME), ""),
+                ForceQuantity::Speed => (q.quotient(&TIME), ""),
                 ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
                 ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
                 // It belongs to an input, which gets its unit below.
@@ -305,7 +305,7 @@ impl<'a> Places<'a> {
                     vec![("stretch", q.clone()), ("length", q.clone())]
                 }
                 (Locals::Speed, Key::Force | Key::Energy) => {
-                    q.over(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
+                    q.quotient(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
                 }
                 _ => Vec::new(),
             };

@@ -54,7 +54,7 @@ impl System {
 
     /// Demands that two dimensions are the same.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
-        let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
+        let quotient = a.quotient(b).and_then(|quotient| self.resolve(&quotient));
         let Some(quotient) = quotient else { return Outcome::GaveUp };
         match quotient.unknown.last() {
             None if quotient.is_plain() => Outcome::Holds(Vec::new()),

@@ -326,7 +326,7 @@ impl<'a> Inference<'a> {
         match (base, exponent) {
             (Value::Number(value), Value::Number(n)) => Value::Number(value.powf(n)),
             (Value::Number(_), _) => Value::quantity(PLAIN),
-            (base, Value::Number(n)) => base.power(Ratio::of(n)),
+            (base, Value::Number(n)) => base.power(Ratio::from_value(n)),
             (Value::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::variable(self.system.variable());
                 self.wishes.push((dimension, Some(power.clone())));
@@ -360,7 +360,7 @@ impl<'a> Inference<'a> {
 /// A quantity divided by one of this dimension; anything else as it is.
 fn quotient(value: Value, by: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.over(by) {
+        Value::Quantity { dimension, anchor } => match dimension.quotient(by) {
             Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },

@@ -62,14 +62,14 @@ pub struct Numbers<'g> {
 }
 
 impl<'g> Numbers<'g> {
-    pub fn of(model: &Model<'g>) -> Numbers<'g> {
+    pub fn new(model: &Model<'g>) -> Numbers<'g> {
         let joints = crate::kinematics::joints(model);
         let lagrange = lagrange::derive(model, &joints);
         let inputs = forces::generalized_forces(model, &joints);
         let mut all = lagrange.mass_matrix.concat();
         all.extend(inputs.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias));
         let quaternion = model.nq() > model.nv();
-        Numbers { nv: model.nv(), forces: crate::expr::eval::Tape::of(&all), quaternion }
+        Numbers { nv: model.nv(), forces: crate::expr::eval::Tape::new(&all), quaternion }
     }
 
     pub fn accelerations(&self, q: &[f64], v: &[f64], u: &[f64], parameters: &[f64]) -> Vec<f64> {

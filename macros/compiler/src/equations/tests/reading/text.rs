@@ -97,7 +97,7 @@ pub struct Text {
 }
 
 impl Text {
-    pub fn of(text: &str) -> Text {
+    pub fn parse(text: &str) -> Text {
         // Continuation lines are indented.
         let mut lines: Vec<String> = Vec::new();
         for line in text.lines() {
