@@ -139,7 +139,7 @@ impl Order {
 fn sizes(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
-        let of = |p: &Polynomial| -> usize {
+        let size_of_polynomial = |p: &Polynomial| -> usize {
             let number =
                 |t: &Term| usize::from(t.monomial == Monomial::ONE || !is_close(t.coefficient.abs(), 1.0));
             p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + number(t)).sum()
@@ -149,10 +149,12 @@ fn sizes(ring: &Ring) -> Vec<usize> {
         let size = match atom {
             Atom::Symbol(_) => 1,
             Atom::Wave(w) => 1 + angle(w),
-            Atom::Inverse(p) => of(p),
-            Atom::Call(_, p) => 1 + of(p),
-            Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => 1 + of(a) + of(b),
-            Atom::Table(_, _, arguments) => 1 + arguments.iter().map(of).sum::<usize>(),
+            Atom::Inverse(p) => size_of_polynomial(p),
+            Atom::Call(_, p) => 1 + size_of_polynomial(p),
+            Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => {
+                1 + size_of_polynomial(a) + size_of_polynomial(b)
+            }
+            Atom::Table(_, _, arguments) => 1 + arguments.iter().map(size_of_polynomial).sum::<usize>(),
         };
         sizes.push(size);
     }

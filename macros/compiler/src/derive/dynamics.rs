@@ -225,17 +225,17 @@ fn mass_matrices_in_lanes<'g>(
     wide: &[usize],
 ) -> Vec<Program> {
     let limbs = |most| {
-        let of = move |variants: &Variants<'g>| {
+        let mass_matrices = move |variants: &Variants<'g>| {
             variants.plain_limbs().map(|limbs| limb_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(of))
+        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
     };
     let columns = |most| {
-        let of = move |variants: &Variants<'g>| {
+        let mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.plain();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(of))
+        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
     };
     [1].iter()
         .chain(wide)

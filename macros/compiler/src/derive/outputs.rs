@@ -76,10 +76,10 @@ fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let by = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
     let column =
         |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.differentiate(*e)).collect() };
-    (0..model.parameters.len()).flat_map(|k| column(by(k))).collect()
+    (0..model.parameters.len()).flat_map(|k| column(derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of

@@ -124,20 +124,20 @@ impl Calls {
     /// memory if the angles are adjacent.
     fn pad(&mut self) {
         let count = self.arguments.len();
-        let again = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
+        let repeated = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
         match count % WIDTH {
             0 => {}
             // Repeats the angle before the last three.
-            3 if count > WIDTH => self.arguments.insert(count - 3, again(&self.arguments, count - 4)),
-            3 => self.arguments.push(again(&self.arguments, count - 1)),
+            3 if count > WIDTH => self.arguments.insert(count - 3, repeated(&self.arguments, count - 4)),
+            3 => self.arguments.push(repeated(&self.arguments, count - 1)),
             rest => (rest..WIDTH).for_each(|k| {
                 let k = count - rest + k % rest;
-                self.arguments.push(again(&self.arguments, k));
+                self.arguments.push(repeated(&self.arguments, k));
             }),
         }
         let count = self.arguments.len();
         if count > WIDTH && !count.is_multiple_of(2 * WIDTH) {
-            (count - WIDTH..count).for_each(|k| self.arguments.push(again(&self.arguments, k)));
+            (count - WIDTH..count).for_each(|k| self.arguments.push(repeated(&self.arguments, k)));
         }
     }
 }

@@ -99,12 +99,13 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
-        let given = |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
+        let link_argument =
+            |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
         if !frame.is_link {
-            step(format!("__frame{k}_placement"), given(12), 12, &frame.placement);
+            step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
         }
-        step(format!("__frame{k}_twist"), given(18), 6, &frame.twist);
-        step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
+        step(format!("__frame{k}_twist"), link_argument(18), 6, &frame.twist);
+        step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
     }
     for (k, link) in links.iter().enumerate() {
         write_path(&mut steps, k, link, s);

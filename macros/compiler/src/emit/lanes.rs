@@ -26,13 +26,13 @@ pub fn write_methods(
     }
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
-    let wanted = |f: &&Function| match f.id {
+    let is_batched = |f: &&Function| match f.id {
         Id::ConstrainedDynamics => !i.constraints.overdetermined,
         // Hidden functions that other functions call.
         Id::AccelerationsAndInverse | Id::PassiveForces | Id::PassiveDerivatives => true,
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
-    for f in functions.iter().filter(wanted) {
+    for f in functions.iter().filter(is_batched) {
         let exact = match f.program.simd {
             None => "bit for bit",
             Some(_) => "up to rounding: for a single state the lanes are limbs or joints",

@@ -53,13 +53,13 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
         Shape::Jacobians(rows, n, m) => {
-            let by = |k: usize| outputs.matrix(k * rows * n, rows, n);
+            let jacobian = |k: usize| outputs.matrix(k * rows * n, rows, n);
             let by_u = outputs.matrix(3 * rows * n, rows, m);
             format!(
                 "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
-                by(0),
-                by(1),
-                by(2)
+                jacobian(0),
+                jacobian(1),
+                jacobian(2)
             )
         }
         Shape::Hessian(n) => {
@@ -131,12 +131,12 @@ fn completed(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let beside = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
+    let additional_values = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
-        InverseForm::LowRankUpdate(trunk) => beside(trunk.len()).completion(place, trunk, s),
+        InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).completion(place, trunk, s),
         InverseForm::BlockArrow { trunk, limbs } => {
-            beside(trunk.len()).inversion([place, solved], trunk, limbs, s)
+            additional_values(trunk.len()).inversion([place, solved], trunk, limbs, s)
         }
     }
 }
@@ -282,13 +282,13 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
 /// processors with registers of four numbers. `rows` returns for each the number of rows that are computed
 /// together.
 fn parts(rows: impl Fn(bool) -> String) -> String {
-    let of = |wide: bool| {
+    let tile = |wide: bool| {
         let n = rows(wide);
         format!(
             "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
         )
     };
-    format!("({}, {})", of(true), of(false))
+    format!("({}, {})", tile(true), tile(false))
 }
 
 /// Neighbouring columns of a matrix.

@@ -9,8 +9,8 @@ use std::fmt::Write;
 
 /// Returns the names of the matrix arguments to which a function writes its results.
 pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
-    let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
-    f.arguments.iter().filter_map(given).collect()
+    let matrix_name = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+    f.arguments.iter().filter_map(matrix_name).collect()
 }
 
 /// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a

@@ -57,8 +57,8 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
     let own: Vec<String> = i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter(*k))).collect();
     // All fields are named, because the struct need not be `Clone`.
-    let spelt = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
-    let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(spelt);
+    let field_name = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
+    let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(field_name);
     let of_file = i.shell.file_fields.iter().map(|field| field.ident.clone());
     let fields = of_struct.chain(of_file).map(|field| {
         let plain = field.trim_start_matches("r#");

@@ -93,10 +93,10 @@ fn as_known(
     }
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
-    let known = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
-    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| known(*need)).max().unwrap_or(0);
+    let binding = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
+    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| binding(*need)).max().unwrap_or(0);
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
-    for [one, next] in neighbours(lanes(program, places, &known)) {
+    for [one, next] in neighbours(lanes(program, places, &binding)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }

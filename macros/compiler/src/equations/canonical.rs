@@ -122,11 +122,11 @@ pub(super) fn velocities_of<'g>(
 fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
     // With cyclic indices no sign is needed.
-    let at = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
+    let entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
     match n {
         1 => m[0][0].num(1.0),
-        2 if i == j => at(1, 1),
-        2 => -at(1, 1),
-        _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
+        2 if i == j => entry(1, 1),
+        2 => -entry(1, 1),
+        _ => entry(1, 1) * entry(2, 2) - entry(1, 2) * entry(2, 1),
     }
 }

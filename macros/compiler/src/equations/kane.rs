@@ -137,13 +137,13 @@ fn polynomials<'g, const N: usize>(
 fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::new(&rows.concat());
-    let at = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
+    let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
         tape.values(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
-        (0..SAMPLES).map(|seed| at(&random_configuration(model, seed), seed)).collect();
+        (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
     let closed = sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
-    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| at(q, *seed)).collect();
+    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| sampled_rows(q, *seed)).collect();
     let is_regular = |columns: &[usize]| {
         closed.iter().all(|rows| {
             let mut basis = Basis::default();
@@ -221,11 +221,11 @@ impl<'g> Solved<'g> {
             };
             inverse.iter().map(|row| shortened(model, entry(row))).collect()
         };
-        let still = |e: Expr<'g>| {
+        let at_zero_velocity = |e: Expr<'g>| {
             replace_all(&[e], &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()))[0]
         };
         // Motion that is driven in time also moves dependent velocities.
-        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| still(c.rate)).collect();
+        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| at_zero_velocity(c.rate)).collect();
         let mut values = times(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
         for k in &independent {
@@ -276,20 +276,20 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
         let (name, dots) = name(symbol);
         (names.get(&name), dots)
     };
-    let left = |k: usize| primed(rate_name(model, k));
-    let lines = Lines::new(kane, Plain { name: &marked }, &left);
+    let rate_text = |k: usize| primed(rate_name(model, k));
+    let lines = Lines::new(kane, Plain { name: &marked }, &rate_text);
     let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(line).collect();
     plain += "\n";
     plain.extend(lines.motion.iter().map(line));
     plain = plain + "\n" + &filled(&legend(model, kane, &marked)) + "\n";
-    let left = |k: usize| {
+    let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
-    let latex = |k: usize| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let latex = |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
     let latex = Lines::new(kane, Latex { name: &dotted }, &latex);
-    let mathml = |k: usize| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let mathml = |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
     let mathml = Lines::new(kane, MathMl { name: &dotted }, &mathml);
     Written {
         plain,

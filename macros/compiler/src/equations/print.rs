@@ -40,7 +40,7 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     if depth == 0 {
         return "…".to_string();
     }
-    let at = |id, level| term(e.graph().expr(id), name, level, depth - 1);
+    let operand = |id, level| term(e.graph().expr(id), name, level, depth - 1);
     let (text, own) = match e.node() {
         Node::Const(c) => (format!("{c}"), if c < 0.0 { 1 } else { 4 }),
         Node::Symbol(s) => (name(s), 4),
@@ -49,23 +49,23 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
             let names: Vec<String> = e.graph().gather(k).into_iter().map(name).collect();
             (format!("[{}]", names.join(", ")), 4)
         }
-        Node::Sum(_, a) => (format!("sum({})", at(a, 0)), 4),
-        Node::Lane(k, a) => (format!("{}[{k}]", at(a, 4)), 4),
-        Node::Join(_, a, b) => (format!("[{}; {}]", at(a, 0), at(b, 0)), 4),
-        Node::Neg(a) => (format!("-{}", at(a, 2)), 1),
-        Node::Add(a, b) => (format!("{} + {}", at(a, 1), at(b, 1)), 1),
-        Node::Sub(a, b) => (format!("{} - {}", at(a, 1), at(b, 2)), 1),
-        Node::Mul(a, b) => (format!("{} * {}", at(a, 2), at(b, 2)), 2),
-        Node::Div(a, b) => (format!("{} / {}", at(a, 2), at(b, 3)), 2),
-        Node::Call(f, a) => (format!("{}({})", f.name(), at(a, 0)), 4),
-        Node::Atan2(a, b) => (format!("atan2({}, {})", at(a, 0), at(b, 0)), 4),
+        Node::Sum(_, a) => (format!("sum({})", operand(a, 0)), 4),
+        Node::Lane(k, a) => (format!("{}[{k}]", operand(a, 4)), 4),
+        Node::Join(_, a, b) => (format!("[{}; {}]", operand(a, 0), operand(b, 0)), 4),
+        Node::Neg(a) => (format!("-{}", operand(a, 2)), 1),
+        Node::Add(a, b) => (format!("{} + {}", operand(a, 1), operand(b, 1)), 1),
+        Node::Sub(a, b) => (format!("{} - {}", operand(a, 1), operand(b, 2)), 1),
+        Node::Mul(a, b) => (format!("{} * {}", operand(a, 2), operand(b, 2)), 2),
+        Node::Div(a, b) => (format!("{} / {}", operand(a, 2), operand(b, 3)), 2),
+        Node::Call(f, a) => (format!("{}({})", f.name(), operand(a, 0)), 4),
+        Node::Atan2(a, b) => (format!("atan2({}, {})", operand(a, 0), operand(b, 0)), 4),
         Node::Table(lookup, a, b, c) => {
             let arguments: Vec<String> =
-                [a, b, c].into_iter().take(lookup.variables()).map(|a| at(a, 0)).collect();
+                [a, b, c].into_iter().take(lookup.variables()).map(|a| operand(a, 0)).collect();
             (format!("{}({})", e.graph().table_name(lookup), arguments.join(", ")), 4)
         }
-        Node::Pow(a, b) => (format!("pow({}, {})", at(a, 0), at(b, 0)), 4),
-        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), at(a, 0), at(b, 0)), 4),
+        Node::Pow(a, b) => (format!("pow({}, {})", operand(a, 0), operand(b, 0)), 4),
+        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), operand(a, 0), operand(b, 0)), 4),
     };
     if own < level { format!("({text})") } else { text }
 }

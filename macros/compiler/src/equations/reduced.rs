@@ -64,21 +64,21 @@ pub fn reduced<'g>(
     let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
     let a = accelerations(model);
     let dot = |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
-    let of = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
-    let a = of(&others, &a);
+    let selected = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
+    let a = selected(&others, &a);
     // Accelerations of the cyclic coordinates without inputs, and due to inputs.
     let across = part(mass, &cyclic, &others);
-    let carried = across.iter().zip(of(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
+    let carried = across.iter().zip(selected(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
     let (carried, _) = velocities_of(&own, &carried, &mut normal)?;
-    let (driven, _) = velocities_of(&own, &of(&cyclic, &inputs), &mut normal)?;
+    let (driven, _) = velocities_of(&own, &selected(&cyclic, &inputs), &mut normal)?;
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in &others {
-        let row = of(&cyclic, &mass[*k]);
-        motion.push(dot(&of(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
+        let row = selected(&cyclic, &mass[*k]);
+        motion.push(dot(&selected(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
         forces.push(inputs[*k] - dot(&row, &driven));
     }
-    let momentum_rate = of(&cyclic, &inputs);
+    let momentum_rate = selected(&cyclic, &inputs);
     let lists = [vec![routhian], motion, forces, velocity, momentum_rate, divisors];
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for list in &lists {

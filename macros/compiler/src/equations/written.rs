@@ -173,7 +173,7 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         let (name, dots) = name(model, rates, symbol);
         (names.get(&name), dots)
     };
-    let left = |k: usize| {
+    let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
@@ -181,10 +181,12 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::new(equations, Latex { name: &name })
-        .equations(energy, &|k| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
-    let mathml = Lines::new(equations, MathMl { name: &name })
-        .equations(of_mathml, &|k| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
+    let latex = Lines::new(equations, Latex { name: &name }).equations(energy, &|k| {
+        Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
+    let mathml = Lines::new(equations, MathMl { name: &name }).equations(of_mathml, &|k| {
+        MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
     (aligned(&latex), page(&mathml))
 }
 

@@ -76,16 +76,16 @@ impl<'g> Tape<'g> {
         let padded = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
-            let at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
+            let value_at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
                 Node::Tuple(k) => padded(graph.tuple(k).into_iter().map(V::from_number).collect()),
                 Node::Gather(k) => padded(graph.gather(k).into_iter().map(symbol).collect()),
-                Node::Sum(n, _) => [V::sum(&at(*a)[..usize::from(n)]); N],
-                Node::Lane(k, _) => [at(*a)[usize::from(k)]; N],
-                Node::Join(n, _, _) => joined(n.into(), at(*a), at(*b)),
+                Node::Sum(n, _) => [V::sum(&value_at(*a)[..usize::from(n)]); N],
+                Node::Lane(k, _) => [value_at(*a)[usize::from(k)]; N],
+                Node::Join(n, _, _) => joined(n.into(), value_at(*a), value_at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
-                    let (a, b, c) = (at(*a), at(*b), at(*c));
+                    let (a, b, c) = (value_at(*a), value_at(*b), value_at(*c));
                     std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
                 }
             };

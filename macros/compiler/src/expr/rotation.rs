@@ -155,13 +155,13 @@ impl<'g> Rotation<'g> {
         // The trailing steps that are of the same kind in all lanes are combined one by one. The steps before
         // them become one matrix.
         let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
-        let alike = |k: &usize| {
+        let is_common = |k: &usize| {
             let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.kind()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
         };
-        let common = (0..first.steps.len()).take_while(alike).count();
+        let common = (0..first.steps.len()).take_while(is_common).count();
         let rest = |r: &Rotation<'g>| {
             let steps = r.steps[..r.steps.len() - common].to_vec();
             Rotation { steps, graph: r.graph }
@@ -292,11 +292,11 @@ impl<'g> Step<'g> {
             return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
         };
         let part = |sine: bool| {
-            let of = |step: &Step<'g>| match *step {
+            let lane_part = |step: &Step<'g>| match *step {
                 Step::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
                 Step::Matrix(_) => None,
             };
-            lanes.iter().map(of).collect::<Option<Vec<_>>>()
+            lanes.iter().map(lane_part).collect::<Option<Vec<_>>>()
         };
         Some(Step::Axis { axis, sin: merge(&part(true)?)?, cos: merge(&part(false)?)? })
     }
@@ -432,16 +432,16 @@ mod tests {
     #[test]
     fn constant_rotations_take_as_few_steps_as_they_can() {
         let g = Graph::new();
-        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
         for (rotation, steps) in [
-            (about(1, 0.3).then(&about(1, -0.3)), 0),
+            (axis_rotation(1, 0.3).then(&axis_rotation(1, -0.3)), 0),
             (Rotation::from_matrix(right), 1),
-            (about(1, 0.3).then(&about(1, 0.4)), 1),
-            (about(0, 2.0), 2),
-            (Rotation::from_matrix(right).then(&about(2, 0.1)), 2),
-            (about(0, 0.3).then(&about(1, 0.4)), 2),
-            (about(0, 0.3).then(&about(1, 0.4)).then(&about(2, 0.5)), 1),
+            (axis_rotation(1, 0.3).then(&axis_rotation(1, 0.4)), 1),
+            (axis_rotation(0, 2.0), 2),
+            (Rotation::from_matrix(right).then(&axis_rotation(2, 0.1)), 2),
+            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)), 2),
+            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)).then(&axis_rotation(2, 0.5)), 1),
         ] {
             assert_eq!(rotation.steps.len(), steps, "{rotation:?}");
         }
@@ -450,11 +450,14 @@ mod tests {
     #[test]
     fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
         let g = Graph::new();
-        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let v = Vec3::numbers(&g, [0.7, -1.1, 0.4]);
         let tensor =
             Sym3 { diagonal: [1.0, 2.0, 3.5].map(|c| g.num(c)), off: [0.2, -0.3, 0.6].map(|c| g.num(c)) };
-        for rotation in [about(0, 0.3).then(&about(1, 2.4)), about(2, -3.0).then(&about(0, 1.0))] {
+        for rotation in [
+            axis_rotation(0, 0.3).then(&axis_rotation(1, 2.4)),
+            axis_rotation(2, -3.0).then(&axis_rotation(0, 1.0)),
+        ] {
             let m = Mat3(numbers(&rotation).map(|r| r.map(|c| g.num(c))));
             let full = m * tensor.full() * m.transpose();
             let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(

@@ -24,11 +24,11 @@ type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
     let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
-    let at = |seed| {
+    let sampled_rows = |seed| {
         let q = random_configuration(model, seed);
         tape.values(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
     };
-    (0..SAMPLES).map(at).collect()
+    (0..SAMPLES).map(sampled_rows).collect()
 }
 
 /// Returns the columns of a matrix that are not zero in all configurations.

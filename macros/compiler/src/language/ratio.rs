@@ -37,11 +37,11 @@ impl Ratio {
 
     /// Returns the simple fraction that equals a number, if there is one.
     pub fn from_value(x: f64) -> Option<Ratio> {
-        let near = |d: i64| {
+        let numerator = |d: i64| {
             let n = x * d as f64;
             ((n - n.round()).abs() < 1e-9 && n.abs() < 1e6).then(|| n.round() as i64)
         };
-        (1..=READABLE).find_map(|d| near(d).and_then(|n| Ratio::new(n, d)))
+        (1..=READABLE).find_map(|d| numerator(d).and_then(|n| Ratio::new(n, d)))
     }
 
     /// Returns true for zero.

@@ -92,7 +92,7 @@ impl SurfaceId {
     /// Returns the surface with a name and a number of arguments; if none has this number, another surface
     /// of this name.
     pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
-        let named = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
-        named().find(|id| id.row().arguments.len() == count).or_else(|| named().next())
+        let candidates = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
+        candidates().find(|id| id.row().arguments.len() == count).or_else(|| candidates().next())
     }
 }

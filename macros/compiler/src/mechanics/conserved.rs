@@ -198,15 +198,15 @@ impl State {
 
     /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
     fn displaced(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
-        let moved = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
-        State { t: self.t + h * t, q: moved(&self.q, q), v: moved(&self.v, v), seed: self.seed }
+        let displaced = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
+        State { t: self.t + h * t, q: displaced(&self.q, q), v: displaced(&self.v, v), seed: self.seed }
     }
 
     /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
     /// velocity, by central differences of fourth order.
     fn directional_derivatives(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let at = |h: f64| self.displaced(h * STEP, t, q, v).values(tape);
-        let all = [at(-2.0), at(-1.0), at(1.0), at(2.0)];
+        let values_at = |h: f64| self.displaced(h * STEP, t, q, v).values(tape);
+        let all = [values_at(-2.0), values_at(-1.0), values_at(1.0), values_at(2.0)];
         let rate = |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
         (0..all[0].len()).map(rate).collect()
     }
@@ -234,9 +234,9 @@ impl State {
     fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
         let (nq, nv) = (self.q.len(), self.v.len());
         let unit = |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let by =
+        let gradient_entry =
             |k: usize| self.directional_derivatives(tape, 0.0, &unit(nq, k), &unit(nv, k.wrapping_sub(nq)));
-        let columns: Vec<Vec<f64>> = (0..nq + nv).map(by).collect();
+        let columns: Vec<Vec<f64>> = (0..nq + nv).map(gradient_entry).collect();
         let count = columns.first().map_or(0, Vec::len);
         (0..count).map(|value| columns.iter().map(|column| column[value]).collect()).collect()
     }

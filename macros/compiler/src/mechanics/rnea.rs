@@ -77,8 +77,8 @@ impl<'g> State<'g> {
 
     /// Returns the motion of a frame that is fixed in the link.
     pub(super) fn seen_from(&self, pose: &Pose<'g>) -> State<'g> {
-        let turned = |v| pose.rotation.to_child(v);
-        State::new(turned(self.w), turned(self.dw), turned(self.a + self.u * pose.translation))
+        let to_child = |v| pose.rotation.to_child(v);
+        State::new(to_child(self.w), to_child(self.dw), to_child(self.a + self.u * pose.translation))
     }
 }
 

@@ -103,7 +103,7 @@ pub fn derive<'g>(
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let force: Vec<Expr<'g>> =
         bias.iter().enumerate().map(|(k, bias)| Quantity::Force(k).expr(g) - *bias).collect();
-    let of = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
+    let selected_forces = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
     let across = part(mass, &others, &cyclic);
     let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
     let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
@@ -111,8 +111,8 @@ pub fn derive<'g>(
     for (row, across) in reduced.iter_mut().zip(&across) {
         row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot(across, taken));
     }
-    let of_cyclic = of(&cyclic);
-    let right = of(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
+    let of_cyclic = selected_forces(&cyclic);
+    let right = selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
     let acceleration = solved_by(&reduced, right.collect());
     Routh { cyclic, routhian, velocity, acceleration }
 }

@@ -54,8 +54,8 @@ pub fn sizes(model: &Model<'_>) -> Vec<f64> {
 
 /// Returns the data that the choice of frames depends on.
 fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
-    let of = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
-    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(of).collect();
+    let site = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
+    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site).collect();
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {

@@ -20,11 +20,11 @@ fn ring() -> Ring {
 
 fn value(items: &[Item], atoms: &[f64]) -> f64 {
     let power = |(k, n): (usize, u8)| atoms[k].powi(n.into());
-    let of = |item: &Item| {
+    let item_value = |item: &Item| {
         let sums = item.sums.iter().map(|sum| value(&sum.items, atoms).powi(sum.power.into()));
         item.coefficient * item.factor.factors().map(power).product::<f64>() * sums.product::<f64>()
     };
-    items.iter().map(of).sum()
+    items.iter().map(item_value).sum()
 }
 
 fn times(ring: &mut Ring, all: &[&Polynomial]) -> Polynomial {

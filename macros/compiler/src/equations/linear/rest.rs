@@ -250,14 +250,14 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
     for id in needed(graph, e) {
-        let at = |id| graph.expr(id);
+        let expr = |id| graph.expr(id);
         match graph.node(id) {
             Node::Call(f @ (Function::Abs | Function::Signum | Function::Sqrt), a) => {
-                suspects.push((f.name(), at(a)));
+                suspects.push((f.name(), expr(a)));
             }
             Node::Extreme(f, a, b) => {
                 let name = if f == Extreme::Max { "max" } else { "min" };
-                suspects.push((name, at(a) - at(b)));
+                suspects.push((name, expr(a) - expr(b)));
             }
             _ => {}
         }

@@ -151,11 +151,11 @@ fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     let Some((first, others)) = rows.split_first() else { return Some(Polynomial::number(1.0)) };
     let mut sum = Polynomial::default();
     for (c, entry) in first.iter().enumerate().filter(|(_, p)| !p.terms.is_empty()) {
-        let without = |row: &Vec<Polynomial>| {
+        let remaining_row = |row: &Vec<Polynomial>| {
             let kept = row.iter().enumerate().filter(|(k, _)| *k != c);
             kept.map(|(_, p)| p.clone()).collect()
         };
-        let own = minor(&others.iter().map(without).collect::<Vec<_>>(), ring)?;
+        let own = minor(&others.iter().map(remaining_row).collect::<Vec<_>>(), ring)?;
         let product = ring.times(entry, &own)?.scaled(if c % 2 == 0 { 1.0 } else { -1.0 });
         sum = ring.plus(&sum, &product)?;
     }

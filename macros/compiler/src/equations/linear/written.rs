@@ -33,14 +33,14 @@ struct Words<'a, 'g> {
 impl<'a, 'g> Words<'a, 'g> {
     fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> Words<'a, 'g> {
         let free = |choices: &[&str]| {
-            let taken = |word: &str| {
+            let is_used = |word: &str| {
                 let velocities = model.velocities.iter().map(|(name, _)| name);
                 let inputs = model.inputs.iter().map(|(name, _)| name);
                 let mut all =
                     model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
                 all.any(|name| name == word)
             };
-            let found = choices.iter().find(|word| !taken(word));
+            let found = choices.iter().find(|word| !is_used(word));
             found.or(choices.last()).map_or_else(String::new, ToString::to_string)
         };
         Words { model, at, deviations: deviations(model), root: free(&ROOTS), frequency: free(&FREQUENCIES) }
@@ -54,11 +54,11 @@ impl<'a, 'g> Words<'a, 'g> {
                 self.at.states.get(k - nv).and_then(|state| self.model.parameters.get(state.parameter));
             state.cloned().unwrap_or_default()
         };
-        let of = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
+        let deviation_name = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
         match Quantity::of(symbol) {
-            Quantity::Deviation(k) => (of(k), 0),
-            Quantity::Velocity(k) => (of(k), 1),
-            Quantity::Acceleration(k) => (of(k), 2),
+            Quantity::Deviation(k) => (deviation_name(k), 0),
+            Quantity::Velocity(k) => (deviation_name(k), 1),
+            Quantity::Acceleration(k) => (deviation_name(k), 2),
             Quantity::Force(k) => (format!("lambda{}", k + 1), 0),
             Quantity::Laplace => (self.root.clone(), 0),
             _ => name_of(self.model, &[], symbol),

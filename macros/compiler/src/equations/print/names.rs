@@ -137,9 +137,9 @@ impl Names {
                 names.push((text.to_string(), Name::parse(text)));
             }
         }
-        let alike = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
-        let alike: Vec<bool> = names.iter().map(|(_, name)| alike(name)).collect();
-        for ((text, name), _) in names.iter_mut().zip(alike).filter(|(_, alike)| *alike) {
+        let is_ambiguous = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
+        let ambiguous: Vec<bool> = names.iter().map(|(_, name)| is_ambiguous(name)).collect();
+        for ((text, name), _) in names.iter_mut().zip(ambiguous).filter(|(_, ambiguous)| *ambiguous) {
             *name = Name::verbatim(text);
         }
         Names(names)

@@ -153,7 +153,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
                 let value = state_values(&model, seed, &p, &tau);
                 let (a, w) = (acceleration.values(&value), velocity.values(&value));
-                let moved = |h: f64| {
+                let displaced_value = |h: f64| {
                     let value = |s: Symbol| match Quantity::of(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
@@ -170,7 +170,10 @@ fn lagranges_equations_hold_for_the_routhian() {
                     momenta.values(&value)
                 };
                 let h = 1e-3;
-                let ((b, c), (d, e)) = ((moved(h), moved(-h)), (moved(2.0 * h), moved(-2.0 * h)));
+                let ((b, c), (d, e)) = (
+                    (displaced_value(h), displaced_value(-h)),
+                    (displaced_value(2.0 * h), displaced_value(-2.0 * h)),
+                );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
                 let full = |s: Symbol| match Quantity::of(s) {
@@ -225,14 +228,14 @@ fn printed_reduction_is_that_of_the_functions() {
                     Quantity::Velocity(k) if cyclic.contains(&k) => f64::NAN,
                     _ => symbol(s),
                 };
-                let of = |list: &[Polynomial]| -> Vec<f64> {
+                let values = |list: &[Polynomial]| -> Vec<f64> {
                     list.iter().map(|p| printed.ring.evaluate(p, &value)).collect()
                 };
                 // The ring also evaluates atoms that no polynomial contains.
-                assert_near(&of(&printed.motion), &of(&printed.forces), &model.name);
-                assert_near(&of(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
+                assert_near(&values(&printed.motion), &values(&printed.forces), &model.name);
+                assert_near(&values(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
                 assert_near(
-                    &of(std::slice::from_ref(&printed.routhian)),
+                    &values(std::slice::from_ref(&printed.routhian)),
                     &eval(&[functions.routhian], &symbol),
                     "R",
                 );

@@ -324,12 +324,12 @@ impl Shapes<'_> {
         let x = 2 * n;
         let own = if self.o.has_own() { "&self, " } else { "" };
         let free = self.free().len();
-        let of = |name: &str,
-                  inputs: &[(&str, usize, usize)],
-                  outputs: &[(&str, usize, usize)],
-                  has_h: bool,
-                  work: usize,
-                  body: String| {
+        let external = |name: &str,
+                        inputs: &[(&str, usize, usize)],
+                        outputs: &[(&str, usize, usize)],
+                        has_h: bool,
+                        work: usize,
+                        body: String| {
             let entries = |list: &[(&str, usize, usize)]| {
                 list.iter().map(|(name, r, c)| dense(name, *r, *c)).collect::<Vec<_>>()
             };
@@ -364,8 +364,8 @@ impl Shapes<'_> {
         );
         let (state, inputs) = (("x", x, 1), ("u", m, 1));
         vec![
-            of("expl_ode_fun", &[state, inputs], &[("f", x, 1)], false, 0, rates.clone()),
-            of(
+            external("expl_ode_fun", &[state, inputs], &[("f", x, 1)], false, 0, rates.clone()),
+            external(
                 "expl_vde_forw",
                 &[state, ("sx", x, x), ("su", x, m), inputs],
                 &[("f", x, 1), ("sx_rate", x, x), ("su_rate", x, m)],
@@ -373,7 +373,7 @@ impl Shapes<'_> {
                 x * x + x * m,
                 forward,
             ),
-            of(
+            external(
                 "expl_vde_adj",
                 &[state, ("lambda", x, 1), inputs],
                 &[("adjoint", x + m, 1)],
@@ -381,8 +381,8 @@ impl Shapes<'_> {
                 x * x + x * m,
                 adjoint,
             ),
-            of("dyn_disc_phi_fun", &[state, inputs], &[("phi", x, 1)], true, 0, step),
-            of(
+            external("dyn_disc_phi_fun", &[state, inputs], &[("phi", x, 1)], true, 0, step),
+            external(
                 "dyn_disc_phi_fun_jac",
                 &[state, inputs],
                 &[("phi", x, 1), ("jac_ut_xt", m + x, x)],

@@ -117,7 +117,7 @@ impl<'a> Steps<'a> {
         let own = if o.has_own() { "self, " } else { "" };
         let own_declared = if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() };
         let [t, t_declared] = if o.time { ["t, ", "double t, "] } else { ["", ""] };
-        let later = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
+        let time_after = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
         let mut text = template.to_string();
         let mut put = |word: &str, by: &str| text = text.replace(word, by);
         put("@FORCES@", &self.forces(o));
@@ -158,7 +158,7 @@ impl<'a> Steps<'a> {
         put("@OWN_DECLARED@", &own_declared);
         put("@T@", t);
         put("@T_DECLARED@", t_declared);
-        put("@LATER@", &later("s"));
+        put("@LATER@", &time_after("s"));
         put("@PREFIX@", &o.prefix);
         put("@NQ@", &o.nq.max(1).to_string());
         put("@NV@", &o.nv.max(1).to_string());

@@ -138,6 +138,6 @@ pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
 
 /// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
-    let at = |value| Placed { value, place: place.clone() };
-    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
+    let placed = |value| Placed { value, place: place.clone() };
+    Origin { xyz: placed(pose.at.map(|x| x + 0.0)), rpy: placed(roll_pitch_yaw(&pose.axes)) }
 }

@@ -92,8 +92,8 @@ impl<'a> Reader<'a> {
         let named = said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: place(node, cx) });
         let (path, rest) = if fixed {
             let terms = self.terms(node, cx);
-            let at = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
-            let rest = terms.iter().map(|(joint, weight)| weight * at(joint)).sum();
+            let rest_position = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
+            let rest = terms.iter().map(|(joint, weight)| weight * rest_position(joint)).sum();
             (Ok(DriveOn::Sum(terms)), rest)
         } else {
             let path = self.read_path(node, cx)?;

@@ -104,15 +104,16 @@ fn of_joints(
             continue;
         }
         let of = &joint.name.text;
-        let about = |what: &str| format!("{what} of the joint `{of}`.");
+        let description = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
             let Some(values) = placement(joint) else {
                 cx.report_lost(&joint.name);
                 continue;
             };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
-            let about = about(&format!("Place, on the parent {link},"));
-            let e = add(FileFieldKind::Placement, of, word, about, (values, units), &name.place, fields);
+            let description = description(&format!("Place, on the parent {link},"));
+            let e =
+                add(FileFieldKind::Placement, of, word, description, (values, units), &name.place, fields);
             let place = |e| Expr { kind: e, place: name.place.clone() };
             joint.parent.at = Some(place(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
@@ -132,8 +133,15 @@ fn of_joints(
             cx.report_lost(&joint.name);
             continue;
         };
-        let e =
-            add(FileFieldKind::Number, of, word, about(what), (vec![value], vec![unit]), &name.place, fields);
+        let e = add(
+            FileFieldKind::Number,
+            of,
+            word,
+            description(what),
+            (vec![value], vec![unit]),
+            &name.place,
+            fields,
+        );
         *slot = e.into_iter().next();
     }
 }

@@ -156,11 +156,12 @@ pub struct ConstraintHessian<'g> {
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
-    let given = |first: usize, n: usize| -> Vec<Expr<'g>> {
+    let arguments = |first: usize, n: usize| -> Vec<Expr<'g>> {
         (first..first + n).map(|k| Quantity::Given(k).expr(model.graph)).collect()
     };
     let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w, z, y) = (given(0, nc), given(nc, nv), given(nc + nv, nc), given(2 * nc + nv, nc));
+    let (lambda, w, z, y) =
+        (arguments(0, nc), arguments(nc, nv), arguments(nc + nv, nc), arguments(2 * nc + nv, nc));
     let (rows, a) = (constraints::jacobian(model), accelerations(model));
     let along: Vec<Expr<'g>> = rows.iter().map(|row| dot(row, &w)).collect();
     let biases = constraints::biases(model);
@@ -267,15 +268,15 @@ fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g
     let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
     let lever = (h.dot(a)) * 2.0;
     // Row i of J [b]× is (column i of J) × b.
-    let turned = |i: usize| Vec3([j.entry(i, 0), j.entry(i, 1), j.entry(i, 2)]).cross(b);
-    let rows = [turned(0), turned(1), turned(2)];
-    let at = |i: usize, k: usize| rows[i][k] + rows[k][i] + h[i] * a[k] + a[i] * h[k];
+    let cross_row = |i: usize| Vec3([j.entry(i, 0), j.entry(i, 1), j.entry(i, 2)]).cross(b);
+    let rows = [cross_row(0), cross_row(1), cross_row(2)];
+    let tensor_entry = |i: usize, k: usize| rows[i][k] + rows[k][i] + h[i] * a[k] + a[i] * h[k];
     Inertia {
         mass: body.mass.zero(),
         moment: -p,
         tensor: Sym3 {
-            diagonal: [at(0, 0) - lever, at(1, 1) - lever, at(2, 2) - lever],
-            off: [at(0, 1), at(0, 2), at(1, 2)],
+            diagonal: [tensor_entry(0, 0) - lever, tensor_entry(1, 1) - lever, tensor_entry(2, 2) - lever],
+            off: [tensor_entry(0, 1), tensor_entry(0, 2), tensor_entry(1, 2)],
         },
     }
 }

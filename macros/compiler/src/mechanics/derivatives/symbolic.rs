@@ -57,14 +57,14 @@ fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
 
 /// Returns the derivatives of expressions with respect to the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let by = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
-    columns(e, (0..model.nu()).map(by))
+    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
+    columns(e, (0..model.nu()).map(derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let by = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-    columns(e, (0..model.nv()).map(by))
+    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+    columns(e, (0..model.nv()).map(derivative))
 }
 
 fn columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {

@@ -99,7 +99,7 @@ impl<'g> Numbers<'g> {
     /// at rest is the identity.
     pub fn linear(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let n = self.nv;
-        let at = |k: usize, h: f64| {
+        let accelerations = |k: usize, h: f64| {
             let (mut q, mut v) = (q.to_vec(), vec![0.0; n]);
             match (k < n, self.quaternion && k >= 3) {
                 (true, true) => (q[k], q[6]) = ((h / 2.0).sin(), (h / 2.0).cos()),
@@ -110,7 +110,10 @@ impl<'g> Numbers<'g> {
         };
         let h = 1e-3;
         let slope = |k: usize| -> Vec<f64> {
-            let ((a, b), (c, d)) = ((at(k, h), at(k, -h)), (at(k, 2.0 * h), at(k, -2.0 * h)));
+            let ((a, b), (c, d)) = (
+                (accelerations(k, h), accelerations(k, -h)),
+                (accelerations(k, 2.0 * h), accelerations(k, -2.0 * h)),
+            );
             (0..n).map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * h)).collect()
         };
         let columns: Vec<Vec<f64>> = (0..2 * n).map(slope).collect();
