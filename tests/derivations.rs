@@ -156,7 +156,7 @@ fn ground_vector<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g G
     d.iter().fold(Vec3::zero(g), |sum, (link, v)| sum + link.map_or(*v, |l| world[l.0].0 * *v))
 }
 
-fn along<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let rates = lagrange::configuration_rates(model);
     rates.iter().enumerate().fold(model.graph.zero(), |sum, (k, rate)| {
         sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).differentiate(e)
@@ -165,12 +165,12 @@ fn along<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
 }
 
 fn velocity<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
-    p.map(|c| along(model, c))
+    p.map(|c| time_derivative(model, c))
 }
 
 /// Returns the angular velocity from `Ṙ Rᵀ = [ω]×`, in ground axes.
 fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
-    let rate = Mat3::from_fn(|i, j| along(model, r.0[i][j]));
+    let rate = Mat3::from_fn(|i, j| time_derivative(model, r.0[i][j]));
     let w = rate * r.transpose();
     Vec3([w.0[2][1], w.0[0][2], w.0[1][0]])
 }

@@ -360,14 +360,14 @@ fn check_canonical(model: &Model<'_>) -> String {
             _ => symbol(s),
         };
         let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
-        let momentum_symbol = |s: Symbol| match Quantity::of(s) {
+        let symbol_value = |s: Symbol| match Quantity::of(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
             Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
             _ => symbol(s),
         };
         let all = [&c.hamiltonian].into_iter().chain(&c.velocity).chain(&c.momentum_rate);
-        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &momentum_symbol)).collect();
+        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &symbol_value)).collect();
         assert_near(&found, &eval(&expected, &symbol), &model.name);
     }
     let written = written_canonical(model, &c);
