@@ -52,7 +52,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
             &equations.plain,
             match is_short {
                 true => {
-                    "The structure of the equations of motion as text, and how to ask for all of their terms."
+                    "The structure of the equations of motion as text, and the option that prints all of their terms."
                 }
                 false => {
                     "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the kinetic energy, the Hamiltonian or the Routhian before them."
@@ -62,7 +62,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         (
             "EQUATIONS_LATEX",
             &equations.latex,
-            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, every equation in lines of its own that fit a page, for where mathematics is displayed: between `\\[` and `\\]`.",
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with line breaks that fit a page, for display mathematics between `\\[` and `\\]`.",
         ),
     ];
     for (name, text, about) in texts {
@@ -105,8 +105,8 @@ fn structure(i: &Interface<'_>) -> Written {
         let _ = write!(latex, " \\\\\n& J({time}q)\\, \\dot v + b({time}q, v) = 0");
     }
     plain.push_str(match i.facts.requests.equations {
-        Printed::Structure => "\nThe argument `equations = structure` leaves the terms out.\n",
-        _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites up to some thousand; `kane`, `hamilton` and `routh` print other forms where there are such.\n",
+        Printed::Structure => "\nThe option `equations = structure` omits the terms.\n",
+        _ => "\nThere are too many terms to be readable. The option `equations = lagrange` of `#[mechanism]` prints\nup to some thousand; `kane`, `hamilton` and `routh` print other forms, if available.\n",
     });
     latex.push_str("\n\\end{aligned}\n");
     Written { plain, latex, mathml: String::new() }

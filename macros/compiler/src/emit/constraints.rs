@@ -122,7 +122,7 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     let _ = writeln!(
         out,
         "/// Number of scalar constraints.\npub const NC: usize = {};
-        /// Number of constraints on configurations: the first of all.\npub const NH: usize = {};
+        /// Number of holonomic constraints, which come first.\npub const NH: usize = {};
         /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {}] = {:?};
         /// Degrees of freedom: independent coordinates.\npub const NP: usize = {};
         /// Degrees of freedom: independent velocities.\npub const NS: usize = {};",
@@ -171,19 +171,19 @@ fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>
     let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
-        "/// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. Angles are found within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        "/// Returns a configuration near `q` that satisfies the constraints. The coordinates whose velocities have the indices `held` are not changed. Angles are within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if no such configuration is found, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {any} }}
-        /// A configuration around `q` in which the constraints hold, of the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
+        /// Returns a configuration around `q` that satisfies the constraints in the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
         ///
         /// # Errors
         ///
-        /// Those of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) where only other modes are found.
+        /// The errors of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) if only configurations in the other mode are found.
         pub fn assemble_in_mode(&self, {t}q: &{q}, held: &[usize], mode: i8) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {one} }}
-        /// The assembly mode of the configuration `q`, 1 or −1, by the coordinates whose velocities are not `held`; `None` where these do not determine one. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
+        /// Returns the assembly mode of the configuration `q`, 1 or −1, with respect to the coordinates whose velocities are not `held`; `None` if these do not determine a mode. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
         #[must_use]
         pub fn assembly_mode(&self, {t}q: &{q}, held: &[usize]) -> ::core::option::Option<i8> {{ {mode} }}"
     );
@@ -209,13 +209,13 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         out,
         "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
-        /// Lagrange multipliers by a sparse elimination. Near singular positions, and with masses so different that digits would be lost, by an orthogonal factorisation of `J` in the metric of the kinetic energy; in a singular position the motion goes on as before. Where constraints are redundant or contradict each other, least squares count.
+        /// The Lagrange multipliers follow from a sparse elimination. Near singular configurations, and if the elimination would lose digits because masses are very different, an orthogonal factorisation of `J` in the metric of the kinetic energy is used instead. Through a singular configuration the accelerations are continuous. Redundant or contradictory constraints are solved by least squares.
         #[inline]\n#[must_use]
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
         }}
         {solve}
-        /// The change of velocity of least kinetic energy that takes the rates `gap` of the constraints away: `J x = −gap`.
+        /// Returns the velocity change of minimum kinetic energy that removes the constraint velocities `gap`: `J x = −gap`.
         #[inline]\n#[must_use]
         pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
             self.__constraint_solution({pass}q, &[::linkwork::__private::constant::<{scalar}>(0.0); {nv}], &gap.data.0[0])
@@ -227,35 +227,35 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         }}
         #[doc(hidden)]
         pub const __STRUCTURE: ::linkwork::__private::Structure<{nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
-        /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints; what these leave open is nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
+        /// Returns the velocity that has the entries `held` (indices) of `v` and satisfies the constraints. If this does not determine it, it is the one nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_velocity(&self, {t}q: &{q}, v: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_velocity(self, {any}, q, v, held)
         }}
-        /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the constraints; what these leave open is nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
+        /// Returns the acceleration that has the entries `held` (indices) of `a` and satisfies the constraints. If this does not determine it, it is the one nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_acceleration(&self, {t}q: &{q}, v: &{v}, a: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_acceleration(self, {any}, q, v, a, held)
         }}
-        /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
+        /// Returns the configuration nearest to `q`, in the metric of the kinetic energy, that satisfies the constraints.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where Newton's method does not converge.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if Newton's method does not converge.
         pub fn project_configuration(&self, {t}q: &{q}) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_configuration(self, {any}, q)
         }}
-        /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
+        /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the constraints.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where none does.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if no velocity satisfies them.
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
@@ -275,11 +275,11 @@ fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) 
     let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
-        "/// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are driven as there are degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
+        "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that cause a motion, `M a + h = τ + Jᵀ λ`. The number of driven velocities is the number of degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that does not fulfil the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) where forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that violates the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) if forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn constrained_inverse_dynamics(&self, {t}q: &{q}, v: &{v}, a: &{v}, driven: &[usize]) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::constrained_inverse_dynamics(self, {any}, q, v, a, driven)
         }}"
@@ -311,7 +311,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
     let solution = solution(c, c.independent, &careful);
     format!(
-        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of redundant constraints have minimum norm.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let found = self.__constrained_dynamics({pass}q, v, tau);
@@ -325,16 +325,16 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
     let (scalar, slipping) = (s.scalar.name(), &c.slipping);
     format!(
-        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists. Those of contacts that slip are their normal forces, with friction in proportion to their magnitudes. NaN where [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of sliding contacts are normal forces; friction is proportional to their magnitudes. The result is NaN if [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let lost = ::linkwork::__private::constant::<{scalar}>(f64::NAN);
             self.try_constrained_dynamics({pass}q, v, tau).unwrap_or_else(|_| (<{v}>::repeat(lost), <{multipliers}>::repeat(lost)))
         }}
-        /// The same, or why there is no unique answer.
+        /// Returns the result of [`constrained_dynamics`](Self::constrained_dynamics), or an error if there is no unique solution.
         ///
         /// # Errors
-        /// `Jammed` where the normal force of a contact that slips does not follow from the motion (Painlevé's paradox: friction that presses harder than it yields); `Singular` where other constraints are redundant.
+        /// `Jammed` if the motion does not determine the normal force of a sliding contact (Painlevé's paradox); `Singular` if other constraints are redundant.
         #[inline]
         pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
             ::linkwork::__private::slipping_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
@@ -372,12 +372,12 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
             ::linkwork::__private::constrained_derivatives(&parts, {solve})
         }}
-        {multipliers}/// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
+        {multipliers}/// Linearises the motion about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and velocities. If the constraints permit a choice, the velocities `preferred` (indices) are independent.
         ///
         /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
         ///
         /// # Errors
-        /// `Singular` where constraints lose rank{jams}.
+        /// `Singular` if constraints lose rank{jams}.
         pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
             let inputs = self.__input_derivatives({pass}q, v, u);
             let (a, lambda) = self.{motion};
@@ -402,7 +402,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         } else {
             format!("try_constrained_dynamics({pass}q, v, &{forces})?")
         },
-        jams = if c.slipping.is_empty() { "" } else { ", `Jammed` where friction jams" },
+        jams = if c.slipping.is_empty() { "" } else { ", `Jammed` if friction jams" },
     );
 }
 
@@ -414,9 +414,9 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, t, any, .. } = Words::new(c, s);
     let rows = s.shape(Shape::Matrix(c.names.len(), s.nv));
     format!(
-        "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
+        "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
         ///
-        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Of redundant constraints the derivatives of least norm.
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Derivatives for redundant constraints have minimum norm.
         #[must_use]
         pub fn multiplier_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({rows}, {rows}, {rows}) {{
             ::linkwork::ConstrainedDerivatives::multiplier_derivatives(self, {any}, q, v, tau)

@@ -72,7 +72,7 @@ pub fn write_constants(out: &mut String, contacts: &[Touching]) {
     let _ = writeln!(
         out,
         "/// Name of every contact.\npub const CONTACTS: [&'static str; {count}] = {names:?};
-        /// Which of the rates belong to each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
+        /// Rows of the contact velocities of each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
         ranges.join(", ")
     );
 }
@@ -195,7 +195,7 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
         return;
     }
     text.push_str(
-        "\n# Contacts\n\nThey open and close: `linkwork::contact`. Without contact in the functions of the dynamics.\n\n| | contact | gap | rates of slip | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
+        "\n# Contacts\n\nUnilateral contacts, see `linkwork::contact`. The functions of the dynamics assume that all are separated.\n\n| | contact | gap | slip velocities | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
     );
     for (k, contact) in contacts.iter().enumerate() {
         let [friction, restitution, stiction] =
@@ -208,7 +208,7 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
         // A friction moment opposes the spinning or the rolling of its contact.
         let (slip, friction) = match contact.pressed_by {
             None => ((contact.rates - 1).to_string(), friction),
-            Some(_) => (format!("{} of turning", contact.rates), format!("{friction} m")),
+            Some(_) => (format!("{} angular", contact.rates), format!("{friction} m")),
         };
         let _ = writeln!(text, "| {k} | `{}` | {unit} | {slip} | {friction} | {restitution} |", contact.name);
     }

@@ -43,13 +43,13 @@ pub fn write_methods(
     for (name, about, arguments, first) in [
         (
             "integrate",
-            "`(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, at any `q`: how the result moves with `q` and with `dv`, for ball and free joints in body axes; identities for plain coordinates.",
+            "Returns the derivatives `(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, which are the same for all `q`. Displacements of ball and free joints are in body axes. The derivatives are identities for plain coordinates.",
             format!("dv: &{v}"),
             "identity",
         ),
         (
             "tangent_rate",
-            "`(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate); zero and the identity for plain coordinates.",
+            "Returns the derivatives `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate): zero and the identity for plain coordinates.",
             format!("dv: &{v}, v: &{v}"),
             "zeros",
         ),
@@ -127,12 +127,12 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
         let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
         let t = if s.time { "t" } else { &zero };
         (
-            "Those of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, along with how accelerations and multipliers change.",
+            "They combine the second derivatives of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, with the first derivatives of accelerations and multipliers.",
             format!("::linkwork::__private::constrained_second_derivatives(self, {t}, q, v, tau, lambda)"),
         )
     } else {
         (
-            "With `μ = M⁻¹ λ` they are those of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations change with `q` and `v` as [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) says.",
+            "With `μ = M⁻¹ λ` they are the second derivatives of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations depend on `q` and `v` by [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives).",
             format!(
                 "let first = self.forward_dynamics_derivatives({pass}q, v, tau);
             let a = self.forward_dynamics({pass}q, v, tau);
@@ -143,7 +143,7 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
     let _ = writeln!(
         out,
         "/// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`, with `v̇` by [`forward_dynamics`](Self::forward_dynamics): the Hessians of
-        /// its entries, contracted with the factors `lambda`. Of mixed ones the rows are those of `q`. Others are zero.
+        /// its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.
         ///
         /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and
         /// free joints `dq` is a motion in body axes.

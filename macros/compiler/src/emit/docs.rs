@@ -43,7 +43,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     }
     if interface.facts.speeds {
         text.push_str(
-            "- Generalized speeds are among the velocities: `rates_of_speeds` gives those of the joints\n",
+            "- Generalized speeds are among the velocities: `rates_of_speeds` returns the joint velocities\n",
         );
     }
     list(&mut text, "Inputs `u`", &interface.inputs);
@@ -58,13 +58,13 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     constraints(&mut text, interface);
     contacts::write_docs(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {
-        text.push_str("\n# Rounded numbers\n\nOther than in the file, by `snap`:\n\n");
+        text.push_str("\n# Rounded numbers\n\nNumbers of the file that `snap` has rounded:\n\n");
         for number in interface.snapped {
             let _ = writeln!(text, "- {number}");
         }
     }
     if !interface.left_out.is_empty() {
-        text.push_str("\n# Left out\n\nIn the file, and not in the mechanism:\n\n");
+        text.push_str("\n# Omitted\n\nElements of the file that are not in the mechanism:\n\n");
         for line in interface.left_out {
             let _ = writeln!(text, "- {line}");
         }
@@ -72,14 +72,14 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let about = match interface.facts.kinematic {
             true => {
-                "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
+                "There are no dynamics, by `inertia = none`: functions that need masses and inertias are omitted, and so is the trait `Mechanism`."
             }
             false if interface.velocities.is_empty() => "Nothing moves.",
             false if interface.facts.requests.equations == Printed::Structure => {
-                "`M(q) v̇ + h(q, v) = τ`, whose terms are left out by `equations = structure`."
+                "`M(q) v̇ + h(q, v) = τ`, whose terms are omitted by `equations = structure`."
             }
             false => {
-                "`M(q) v̇ + h(q, v) = τ`, whose terms are too many to be read; `equations = lagrange` among the attribute's arguments writes up to some thousand."
+                "`M(q) v̇ + h(q, v) = τ`, which has too many terms to be readable; the option `equations = lagrange` prints up to some thousand."
             }
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");
@@ -96,7 +96,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
         text.push_str("\n# Conserved\n\n");
-        text.push_str(if kept.list.is_empty() { "Nothing that is looked for.\n" } else { "" });
+        text.push_str(if kept.list.is_empty() { "None of the tested quantities.\n" } else { "" });
         kept.list.iter().for_each(|name| {
             let _ = writeln!(text, "- {}", name.trim_matches('"'));
         });
@@ -136,8 +136,8 @@ pub fn operations(functions: &[Function]) -> String {
     };
     for f in functions {
         let name = match f.id {
-            Id::PassiveForces => "passive forces, which others call".to_string(),
-            Id::PassiveDerivatives => "derivatives of these, which others call".to_string(),
+            Id::PassiveForces => "passive forces, called by other functions".to_string(),
+            Id::PassiveDerivatives => "their derivatives, called by other functions".to_string(),
             Id::ConstrainedDynamics => format!("`{}`", f.name.trim_start_matches('_')),
             _ if f.is_hidden() => continue,
             _ => format!("`{}`", f.name),
@@ -146,14 +146,14 @@ pub fn operations(functions: &[Function]) -> String {
             row(&name, &f.program);
         }
         if let Some(program) = &f.program.simd {
-            row("the same in lanes", program);
+            row("its variant in lanes", program);
         }
     }
     if lines.is_empty() {
         return lines;
     }
     format!(
-        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | held | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nStraight lines without loops and recursion. *Held* are the most numbers at once beside the arguments, those that are returned among them; with 8 bytes each (`f64`) they are what an optimised build needs of the stack, apart from copies of what is returned. *Branches* are taken for angles beyond 10⁵ rad (one for all of them), in tables and in functions of the library; none where it says 0. The chapter `speed` of the guide says how a worst case is reckoned.\n"
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | live values | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nThe code is straight-line, without loops and recursion. *Live values* is the maximum number of values that are live at once in addition to the arguments, including returned values. With 8 bytes each (`f64`) they are the stack that an optimised build needs, apart from copies of the result. *Branches* are possible for angles beyond 10⁵ rad (one for all angles), in tables and in functions of the math library. The chapter `speed` of the guide explains how to estimate a worst-case execution time.\n"
     )
 }
 
@@ -178,12 +178,12 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
         let _ = writeln!(text, "| `λ[{k}]` | `{name}` | {what} | {residual} | {multiplier} |");
     }
     text.push('\n');
-    list(text, "Left out, because they follow from these", &c.redundant);
+    list(text, "Omitted, because they depend on these", &c.redundant);
     let dependent = (speeds + c.names.len()).saturating_sub(i.velocities.len());
     if dependent > 0 {
         let _ = writeln!(
             text,
-            "- Redundant where the constraints hold: {dependent} of them; multipliers of least norm share the forces"
+            "- Redundant if the constraints hold: {dependent}; the multipliers have minimum norm"
         );
     }
 }
@@ -198,11 +198,11 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(
         text,
-        "\n# Lanes\n\nAlike limbs, or joints of one path to the root, are evaluated side by side, as the lanes of vectors, by {}. Operations on all lanes count once.",
+        "\n# Lanes\n\nIdentical limbs, or joints of one path to the root, are evaluated as SIMD lanes by {}. An operation on all lanes counts once.",
         names.join(", ")
     );
     if !most.gathers.is_empty() {
-        text.push_str("The coordinates of limbs that go together:\n\n");
+        text.push_str("Corresponding coordinates of the limbs:\n\n");
     }
     for gather in &most.gathers {
         let name = |s: &Symbol| match Quantity::of(*s) {
@@ -286,10 +286,7 @@ fn declaration(text: &mut String, i: &Interface<'_>) {
     }
     let code = format!("{fence}text\n{code}\n{fence}\n");
     let _ = match code.lines().count() > UNFOLDED {
-        true => writeln!(
-            text,
-            "# Declaration\n\n<details><summary>As it is written</summary>\n\n{code}\n</details>\n"
-        ),
+        true => writeln!(text, "# Declaration\n\n<details><summary>Source</summary>\n\n{code}\n</details>\n"),
         false => writeln!(text, "# Declaration\n\n{code}"),
     };
 }

@@ -67,12 +67,12 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if own.is_empty() && tables.is_empty() && !s.is_generic() {
         let _ = writeln!(
             out,
-            "/// The mechanism as the file says it is.\npub const FILE: Self = Self {{ {all} }};"
+            "/// The mechanism with the values of the file.\npub const FILE: Self = Self {{ {all} }};"
         );
     }
     let _ = writeln!(
         out,
-        "/// The mechanism with the figures of the file, and the parameters that it does not have.
+        "/// Returns the mechanism with the values of the file and the given values of the other parameters.
         #[inline]\n#[must_use]\npub {constant}fn from_file({}) -> Self {{\n{before}Self {{ {all} }}\n}}",
         arguments.join(", ")
     );
@@ -88,7 +88,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     let _ = writeln!(
         out,
         "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] = {names:?};
-        /// The mass properties of all links that have them as parameters, in the order of `LINKS`.
+        /// Returns the mass properties of all links that have them as parameters, in the order of `LINKS`.
         #[inline]\n#[must_use]\npub fn inertials(&self) -> {kind} {{ [{}] }}
         /// Sets the mass properties of all links that have them as parameters, in the order of `LINKS`.
         #[inline]\npub fn set_inertials(&mut self, links: &{kind}) {{ {} }}",
@@ -98,14 +98,13 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if i.facts.meet(Need::Asks(Word::Regressor)) {
         let _ = writeln!(
             out,
-            "/// Puts identified base parameters back: gives all of `LINKS` the mass properties with these base parameters that
-            /// differ least from those that they have, and which bodies can have. See
-            /// [`put_back`](::linkwork::identification::put_back).
+            "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these base parameters and
+            /// differ least from the current ones. See [`put_back`](::linkwork::identification::put_back).
             ///
             /// # Errors
             ///
-            /// If no bodies have these base parameters, or the links have mass properties to begin with that no body has. The
-            /// mechanism stays as it is then.
+            /// If no physically consistent mass properties have these base parameters, or the current mass properties are not
+            /// physically consistent. The mechanism is then not changed.
             #[inline(never)]
             pub fn set_base_parameters(&mut self, base: &::linkwork::nalgebra::SVector<{}, {}>) -> ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
                 ::linkwork::identification::put_back(self, base)

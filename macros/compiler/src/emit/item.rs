@@ -201,12 +201,12 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
         pub fn frame_placement(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {{
             ::linkwork::FrameName::placement(frame, self, {at}, q)
         }}
-        /// Velocity of a frame: of its origin, then angular; relative to the ground, resolved in ground axes.
+        /// Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.
         #[inline]\n#[must_use]
         pub fn frame_velocity(&self, frame: {frame}, {t}q: &{q}, v: &{v}) -> {six} {{
             ::linkwork::FrameName::velocity(frame, self, {at}, q, v)
         }}
-        /// Acceleration of a frame: of its origin, then angular; relative to the ground, resolved in ground axes; without gravity.
+        /// Acceleration of a frame relative to the ground, in ground axes: acceleration of its origin, then angular acceleration; without gravity.
         #[inline]\n#[must_use]
         pub fn frame_acceleration(&self, frame: {frame}, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {{
             ::linkwork::FrameName::acceleration(frame, self, {at}, q, v, a)

@@ -35,7 +35,7 @@ pub fn write_methods(
     for f in functions.iter().filter(is_batched) {
         let exact = match f.program.simd {
             None => "bit for bit",
-            Some(_) => "up to rounding: for a single state the lanes are limbs or joints",
+            Some(_) => "up to rounding: the function of a single state uses the lanes for limbs or joints",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let docs = if f.is_hidden() { Vec::new() } else { docs };
@@ -122,7 +122,7 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.constraints.overdetermined {
         let _ = writeln!(
             out,
-            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit; one after another.
+            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, computed one after another, bit for bit.
             #[inline]\n#[must_use]
             pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
                 use ::linkwork::__private::{{lane, lane_by_lane}};

@@ -75,8 +75,8 @@ pub fn write_prepared(
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} {ident}{arguments} {bounds} {{
-        /// This mechanism with all numbers computed that depend on its parameters alone. It has the same functions, and
-        /// does not notice if the parameters change afterwards.
+        /// Returns this mechanism with all values precomputed that depend only on its parameters. It has the same functions.
+        /// Later changes of the parameters have no effect on it.
         #[must_use]
         pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers(){tables} }} }}"
     );
@@ -98,8 +98,8 @@ fn write_struct(
     let (ident, generics) = (&i.shell.ident, &i.shell.generics);
     let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
     let docs = format!(
-        "[`{ident}`] with the numbers computed that depend on its parameters alone, made by [`prepare`]({ident}::prepare): \
-         its functions are the same and do only what depends on their arguments. Frames stay with the mechanism itself.\n{}",
+        "[`{ident}`] with precomputed values of everything that depends only on its parameters, created by \
+         [`prepare`]({ident}::prepare). It has the same functions, except those of frames.\n{}",
         operations(functions)
     );
     let tables: String = i

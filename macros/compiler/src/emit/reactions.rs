@@ -80,11 +80,11 @@ fn write_touched_diagram(
         _ => ("q, v, u", "u".to_string()),
     };
     let acting = format!(
-        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error where friction and constraints contradict each other.",
+        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error if friction and constraints contradict each other.",
         diagram_docs(diagram, s)
     );
     let under = format!(
-        "{} Under given forces of the contacts, N and N·m, in the order of `CONTACT_ROWS`.",
+        "{} Under the contact forces `forces`, N and N·m, in the order of `CONTACT_ROWS`.",
         diagram_docs(diagram, s)
     );
     let _ = writeln!(
@@ -179,10 +179,10 @@ fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
     };
     let contacts = match i.contacts.is_empty() {
         true => "",
-        false => " without the forces of contacts that open and close",
+        false => " without the forces of unilateral contacts",
     };
     format!(
-        "{motion}{contacts}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
+        "{motion}{contacts}: a reaction is the force or torque that the parent of a joint exerts on its child, at the origin of the joint's frame. Along the joint's own coordinate it includes the forces of its motor, springs and dashpots. It has no derivatives yet."
     )
 }
 
@@ -216,4 +216,4 @@ pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function]
 }
 
 /// Description of the function of an output that contains contact forces.
-const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error where friction and constraints contradict each other. It has no derivatives.";
+const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error if friction and constraints contradict each other. It has no derivatives.";

@@ -11,19 +11,19 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     let functions = [
         (
             "integrate",
-            "`q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant velocities of the joints that the speeds `dv` stand for at `q`; quaternions are normalised.",
+            "Returns `q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
             format!("self.__integrate{lanes}(q, &self.rates_of_speeds{lanes}(q, dv))"),
         ),
         (
             "difference",
-            "`to ⊖ from`: the speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            "Returns `to ⊖ from`: the generalized speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
             format!("self.speeds_of_rates{lanes}(from, &self.__difference{lanes}(from, to))"),
         ),
         (
             "displacement_rate",
-            "Rate of `dv` such that `q ⊕ dv` moves with the speeds `v`, from `q`.",
+            "Returns the rate of `dv` for which `q ⊕ dv` moves with the generalized speeds `v`.",
             format!("q: &{q}, dv: &{v}, v: &{v}) -> {v}"),
             format!(
                 "let way = self.rates_of_speeds{lanes}(q, dv);

@@ -34,15 +34,15 @@ pub fn write_method(out: &mut String, i: &Interface<'_>, failed: bool) {
         return;
     }
     out.push_str(
-        "/// Whether a mechanism with these parameters can be: whether they are finite, masses, sizes and coefficients are not
-        /// negative, and bodies can have their inertias (none of the principal moments exceeds the sum of the others). What is
-        /// an error of the compiler in a number is one here in a parameter. No other function looks at it: call it where
-        /// parameters are loaded, estimated or drawn at random. Of lanes, all must be sound. A parameter whose name begins
-        /// with `_` and which nothing uses may be what it likes.
+        "/// Checks that the parameters are physically valid: values are finite; masses, sizes and coefficients are not negative;
+        /// and no principal moment of inertia exceeds the sum of the other two. These are the conditions that the compiler
+        /// checks for numbers. No other function checks them: call this one for parameters that are loaded, estimated or
+        /// random. With lanes, the values of all lanes must be valid. Unused parameters whose names begin with `_` are not
+        /// checked.
         ///
         /// # Errors
         ///
-        /// The first figure that is not sound, with the parameters that it follows from.
+        /// The first invalid value, with the parameters on which it depends.
         #[inline(never)]\npub fn validate(&self) -> ::core::result::Result<(), ::linkwork::ParameterError> {\n",
     );
     if failed {

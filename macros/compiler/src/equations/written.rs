@@ -285,7 +285,7 @@ fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String
             _ => ("are the generalized forces", "their terms"),
         };
         format!(
-            "{} {are} of gravity, force elements and inputs; {terms} are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]` writes up to some thousand.",
+            "{} {are} of gravity, force elements and inputs; {terms} are too many to be readable. The option `equations = lagrange` of `#[mechanism]` prints up to some thousand.",
             all_of(&names)
         )
     });
