@@ -271,7 +271,7 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
     assert_close("momentum rate", &with.run("momentum_rate", ours), &lacking, DIFFERENCES);
     let matrix_of = |name: &str, state: &State, rows: usize| matrix(&with.run(name, state), rows);
     let still = State { a: vec![0.0; n], ..ours.clone() };
-    let steady = |e: f64| State { v: ours.v.clone(), ..at(e) };
+    let steady = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
     let bias = slope(|e| times(&matrix_of("centroidal_momentum_matrix", &steady(e), 6), &ours.v));
     assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
     // `Ṁ − 2 C` is skew-symmetric for the Coriolis matrix `C`.

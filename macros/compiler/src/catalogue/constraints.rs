@@ -12,25 +12,33 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(constraint_facts(f).holonomic),
-        docs: vec!["Residuals `φ(q)` of the constraints on configurations, m and rad: zero where they hold."],
+        docs: vec![
+            "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are satisfied.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
-        docs: vec!["Rates `J(q) v + …` of all constraints, m/s and rad/s: zero where they hold."],
+        docs: vec![
+            "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are satisfied.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Matrix(constraint_facts(f).all, f.nv),
-        docs: vec!["Jacobian `J(q)` of the constraints: how their rates change with the velocities."],
+        docs: vec![
+            "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to `v`.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
-        docs: vec!["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
+        docs: vec![
+            "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint velocities is `J v̇ + b`.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
