@@ -175,7 +175,7 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     let a = mechanics::accelerations(model);
     let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), Some(&a));
     let forces = symbolic::derivatives(model, &tau);
-    let known = invariance::known(model, &joints);
+    let known = invariance::invariant_columns(model, &joints);
     for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
         for (k, column) in columns {
             let inertia = mass
@@ -220,7 +220,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     let motion = ldl::solve(mass.clone(), rest, &joints);
     let mut found =
         derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
-    let known = invariance::known(model, &joints);
+    let known = invariance::invariant_columns(model, &joints);
     known.replace(&mut found.forces);
     let at = symbols(model, seed);
     let q: Vec<f64> = (0..model.nq()).map(|k| at(Quantity::Configuration(k).symbol())).collect();

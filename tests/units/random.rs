@@ -100,7 +100,7 @@ fn missing(mut by: Dimension) -> String {
 /// Returns a product of this dimension that contains a parameter, so that its numbers are dimensionless.
 fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let (mut text, mut has) = (String::from("n"), PLAIN);
-    for _ in 0..below(3, random) {
+    for _ in 0..random_index(3, random) {
         let (name, unit) = match random_index(4, random) {
             0 => pick(&INPUTS, random),
             1 | 2 => pick(&MOTION, random),
@@ -144,7 +144,7 @@ fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
 /// Returns a sum of terms of this dimension, one of which contains a parameter.
 fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let mut text = anchored(dimension, depth, random);
-    for _ in 0..below(3, random) {
+    for _ in 0..random_index(3, random) {
         let sign = if random_index(2, random) == 0 { '+' } else { '-' };
         text = match random_index(2, random) {
             0 => format!("{text} {sign} {}", term(dimension, depth, random)),

@@ -49,12 +49,12 @@ fn run() -> Result<(), Failure> {
     let arguments = format!("{format} = {file:?}{more}").parse()?;
     let mut cx = Diagnostics::new();
     let source = read(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
-    let told = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
-    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| told(&cx))?;
+    let reported = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
+    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| reported(&cx))?;
     let description = &source.mechanism.description;
     let graph = Graph::new();
-    let model = build_model(description, &graph, &mut cx).ok_or_else(|| told(&cx))?;
-    let derived = derive(&model, &mut cx).ok_or_else(|| told(&cx))?;
+    let model = build_model(description, &graph, &mut cx).ok_or_else(|| reported(&cx))?;
+    let derived = derive(&model, &mut cx).ok_or_else(|| reported(&cx))?;
     let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let mut out = std::io::stdout().lock();
@@ -67,13 +67,13 @@ fn run() -> Result<(), Failure> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-        let at = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+        let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
         let values = |name: &str, passive: &[f64]| {
             let symbol = |symbol: Symbol| match Quantity::of(symbol) {
-                Quantity::Configuration(k) => at(k),
-                Quantity::Velocity(k) => at(nq + k),
-                Quantity::Input(k) => at(nq + nv + k),
-                Quantity::Force(k) => at(nq + nv + nu + k),
+                Quantity::Configuration(k) => number(k),
+                Quantity::Velocity(k) => number(nq + k),
+                Quantity::Input(k) => number(nq + nv + k),
+                Quantity::Force(k) => number(nq + nv + nu + k),
                 Quantity::PassiveForce(k) => passive.get(k).copied().unwrap_or(f64::NAN),
                 _ => f64::NAN,
             };

@@ -81,7 +81,7 @@ fn run() -> Result<(), Failure> {
         if pass != "all" && !names.contains(&pass) {
             return Err(format!("there is no pass `{pass}`: {}", names.join(", ")).into());
         }
-        return after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
+        return print_after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
     }
     match mode {
         "--counts" => counts(&input),
@@ -250,7 +250,7 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
 }
 
 /// Prints the programs of one function after a pass, or after every pass.
-fn after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
+fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
     let (wanted, of) = (pass.to_string(), function.to_string());
     let print = move |function: &str, pass: &str, program: &Program, _: Duration| {
         if function == of && (pass == wanted || wanted == "all") {

@@ -76,13 +76,13 @@ impl Shapes<'_> {
                 "Functions jac_… with exact Jacobians are not there: {}.",
                 match (self.o.time, self.is_plain) {
                     (true, _) => "the equations contain time",
-                    (_, false) => "configurations with quaternions have fewer motions than numbers; transitions of steps have the Jacobians along motions",
+                    (_, false) => "configurations with quaternions have more entries than degrees of freedom; the transitions of steps have Jacobians along displacements",
                     _ => "parameters are arguments; fix them by --set NAME=VALUE",
                 }
             ));
         }
         if self.has_states() {
-            lines.push("For acados: …_expl_ode_fun, …_expl_vde_forw, …_expl_vde_adj, and by the classical method of Runge and Kutta …_dyn_disc_phi_fun and …_dyn_disc_phi_fun_jac, with x = (q, v); p has the length of the step (of disc alone), then the parameters that are not fixed.".to_string());
+            lines.push("For acados: …_expl_ode_fun, …_expl_vde_forw, …_expl_vde_adj, and by the classical method of Runge and Kutta …_dyn_disc_phi_fun and …_dyn_disc_phi_fun_jac, with x = (q, v); p holds the length of the step (only for disc), then the parameters that are not fixed.".to_string());
         }
         lines.iter().map(|line| format!("\n *\n{}", docs::wrapped(line, " * ", " * ").trim_end())).collect()
     }

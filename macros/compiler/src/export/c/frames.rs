@@ -24,26 +24,26 @@ const ACCESSES: [Access; 4] = [
     Access {
         name: "frame_placement",
         arguments: &[Argument::Q],
-        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in those of the ground), then the position of its origin, m",
+        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in ground axes), then the position of its origin, m",
         docs: "Placement of a frame in the ground.",
     },
     Access {
         name: "frame_velocity",
         arguments: &[Argument::Q, Argument::V],
         result: "out: 6 numbers, m/s, then rad/s",
-        docs: "Velocity of a frame relative to the ground, in ground axes: of its origin, then angular.",
+        docs: "Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.",
     },
     Access {
         name: "frame_acceleration",
         arguments: &[Argument::Q, Argument::V, Argument::A],
         result: "out: 6 numbers, m/s^2, then rad/s^2",
-        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: of its origin, then angular.",
+        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: acceleration of its origin, then angular acceleration.",
     },
     Access {
         name: "frame_jacobian",
         arguments: &[Argument::Q],
         result: "out: 6 by NV, column by column",
-        docs: "Jacobian of a frame: its velocity is this times `v`.",
+        docs: "Jacobian of a frame: the velocity of the frame is this matrix times `v`.",
     },
 ];
 

@@ -12,7 +12,7 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     (
         "integrate",
         ["q", "dv"],
-        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised. The result may be `q` itself.",
+        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time, with normalised quaternions. The result may be stored in `q`.",
     ),
     (
         "difference",
@@ -94,7 +94,7 @@ const TO_FIRST_ORDER: [ToFirstOrder; 2] = [
         arguments: &["dv"],
         results: ["by_q", "by_dv"],
         plain: "1.0",
-        docs: "How the result of `integrate` moves with `q` and with `dv`, at any `q`, for ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
+        docs: "Derivatives of the result of `integrate` by `q` and `dv`, which are the same for all `q`, with displacements of ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
     },
     ToFirstOrder {
         name: "tangent_rate",
