@@ -386,11 +386,11 @@ fn printed<'g>(
             let named = speeds.map_or(model, |speeds| &speeds.model);
             match kane::kane(model, joints, speeds) {
                 Ok(found) => Some(kane::written_kane(named, &found)),
-                Err(kane::Without::Choice) => refuse(
+                Err(kane::KaneFailure::Choice) => refuse(
                     "no velocities of this mechanism follow from the others by its constraints everywhere",
                     "write `equations = lagrange`, which keeps all constraints with multipliers",
                 ),
-                Err(kane::Without::Length) => refuse(
+                Err(kane::KaneFailure::Length) => refuse(
                     "Kane's equations of this mechanism have thousands of terms",
                     "write `equations = lagrange`, which keeps the constraints with multipliers, or declare generalized speeds in which they are short",
                 ),

@@ -149,9 +149,9 @@ impl Source {
                 .collect(),
             units: m.units.clone(),
             constraints: Constraints::from_model(m),
-            contacts: emit::Touching::from_model(m),
-            limits: emit::Limited::from_model(m),
-            figures: emit::Figure::from_model(m),
+            contacts: emit::UnilateralContact::from_model(m),
+            limits: emit::CoordinateLimits::from_model(m),
+            figures: emit::ParameterCondition::from_model(m),
             absent: emit::absent(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
@@ -246,7 +246,11 @@ impl Source {
             } else {
                 Constraints::default()
             },
-            contacts: if facts.contacts.count > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
+            contacts: if facts.contacts.count > 0 {
+                vec![emit::UnilateralContact::unknown()]
+            } else {
+                Vec::new()
+            },
             facts,
             ..bare
         };

@@ -14,7 +14,7 @@ const NESTED: usize = 3;
 
 /// Selection of the items of a sum from which common factors are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Among {
+pub enum FactorScope {
     /// Takes common factors out of all items: for an equation.
     All,
     /// Takes common factors out of items of the same nonzero degree in rates, but never rates and positions:
@@ -25,15 +25,15 @@ pub enum Among {
 }
 
 /// Takes common factors out of a sum and of the sums in its items.
-pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> {
-    let kept = if among == Among::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
+pub fn gathered(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
+    let kept = if scope == FactorScope::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };
     factor_sums(&rules, &mut items);
     let kind = |item: &Item| item.factor.only(order.rates).degree();
-    let mut kinds: Vec<u32> = match among {
-        Among::All => return gather(&rules, items),
-        Among::Kinds => items.iter().map(kind).collect(),
-        Among::None => return items,
+    let mut kinds: Vec<u32> = match scope {
+        FactorScope::All => return gather(&rules, items),
+        FactorScope::Kinds => items.iter().map(kind).collect(),
+        FactorScope::None => return items,
     };
     kinds.dedup();
     let mut out = Vec::new();

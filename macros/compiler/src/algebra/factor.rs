@@ -1,7 +1,7 @@
 //! Grouping of polynomials as in textbooks: by rates, then by functions of positions, with parameters as
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
-use super::common::{Among, gathered};
+use super::common::{FactorScope, gathered};
 use super::item::{Item, Order, Sum, common_number, is_close};
 use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
@@ -33,9 +33,9 @@ pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     Polynomial { terms: p.terms.iter().filter(keep).copied().collect() }
 }
 
-/// Returns the items of a polynomial in printing order. `among` selects the items from which common factors
+/// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
 /// are taken out.
-pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<Item> {
+pub fn items(ring: &Ring, order: &Order, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
     let mut items = Vec::new();
     let mut groups = grouped(&p.terms, order.rates);
     order.sort_groups(ring, &mut groups);
@@ -54,7 +54,7 @@ pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<It
             }
         }
     }
-    gathered(order, items, among)
+    gathered(order, items, scope)
 }
 
 /// Groups terms by the factors that are in a mask.

@@ -175,7 +175,7 @@ struct Parts<'a, 'g> {
     /// Lane counts, in addition to scalar code, for the recursion towards the root.
     wide: &'static [usize],
     /// Columns of the derivatives of forward dynamics that follow from invariance.
-    known: invariance::Known<'g>,
+    known: invariance::InvariantColumns<'g>,
 }
 
 /// A mechanism with identical limbs in SIMD lanes.
@@ -198,7 +198,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             trunk: None,
             limbs: None,
             wide: &[],
-            known: invariance::Known::default(),
+            known: invariance::InvariantColumns::default(),
         }
     }
 

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 /// A unilateral contact.
 #[derive(Clone, Debug)]
-pub struct Touching {
+pub struct UnilateralContact {
     /// Name of the contact.
     name: String,
     /// Number of contact velocities: the normal velocity and the slip velocities, or the angular velocities
@@ -27,10 +27,10 @@ pub struct Touching {
     has_stiction: bool,
 }
 
-impl Touching {
+impl UnilateralContact {
     /// Returns the contacts of a model.
-    pub fn from_model(model: &Model<'_>) -> Vec<Touching> {
-        let touching = |c: &crate::mechanism::Contact<'_>| Touching {
+    pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
+        let touching = |c: &crate::mechanism::Contact<'_>| UnilateralContact {
             name: c.name.clone(),
             rates: c.rates.len(),
             pressed_by: c.pressed_by,
@@ -43,8 +43,8 @@ impl Touching {
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
-    pub fn unknown() -> Touching {
-        Touching {
+    pub fn unknown() -> UnilateralContact {
+        UnilateralContact {
             name: String::new(),
             rates: 1,
             pressed_by: None,
@@ -57,7 +57,7 @@ impl Touching {
 }
 
 /// Writes the constants for the names of the contacts and the rows of their velocities.
-pub fn write_constants(out: &mut String, contacts: &[Touching]) {
+pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
     if contacts.is_empty() {
         return;
     }
@@ -190,7 +190,7 @@ fn carry(i: &Interface<'_>, s: &Signature<'_>) -> String {
 }
 
 /// Adds a table of the contacts to the documentation of the struct.
-pub fn write_docs(text: &mut String, contacts: &[Touching]) {
+pub fn write_docs(text: &mut String, contacts: &[UnilateralContact]) {
     if contacts.is_empty() {
         return;
     }

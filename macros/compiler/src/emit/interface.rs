@@ -1,10 +1,10 @@
 //! Public interface of a mechanism, and the heads of generated implementations.
 
 use super::constraints::Constraints;
-use super::contacts::Touching;
-use super::limits::Limited;
+use super::contacts::UnilateralContact;
+use super::limits::CoordinateLimits;
 use super::signature::Signature;
-use super::validate::Figure;
+use super::validate::ParameterCondition;
 use crate::catalogue::{Argument, Facts, Row};
 use crate::mechanism::{Diagram, Units};
 use crate::syntax::{ScalarType, Shell};
@@ -29,11 +29,11 @@ pub struct Interface<'a> {
     /// The constraints.
     pub constraints: Constraints,
     /// Unilateral contacts.
-    pub contacts: Vec<Touching>,
+    pub contacts: Vec<UnilateralContact>,
     /// The limits of coordinates.
-    pub limits: Vec<Limited>,
+    pub limits: Vec<CoordinateLimits>,
     /// Conditions on values that depend on parameters.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<ParameterCondition>,
     /// States of first order, each with its index among the parameters.
     pub states: Vec<(String, usize)>,
     /// Names of the outputs.

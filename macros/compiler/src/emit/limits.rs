@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
 #[derive(Clone, Debug)]
-pub struct Limited {
+pub struct CoordinateLimits {
     /// Index of the coordinate in `q`.
     q: usize,
     /// Index of the velocity in `v`.
@@ -19,9 +19,9 @@ pub struct Limited {
     bounds: [Option<(usize, Option<f64>)>; 4],
 }
 
-impl Limited {
+impl CoordinateLimits {
     /// Returns all limits of a model, in the order of the values.
-    pub fn from_model(model: &Model<'_>) -> Vec<Limited> {
+    pub fn from_model(model: &Model<'_>) -> Vec<CoordinateLimits> {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
             let bounds = limit.bounds().map(|bound| {
@@ -31,7 +31,7 @@ impl Limited {
             });
             let names = model.speeds.as_ref().map_or(&model.velocities, |speeds| &speeds.velocities);
             let name = names.get(limit.v.0).map_or(String::new(), |(name, _)| name.clone());
-            Limited { q: limit.q.0, v: limit.v.0, name, bounds }
+            CoordinateLimits { q: limit.q.0, v: limit.v.0, name, bounds }
         };
         model.limits.iter().map(&mut place).collect()
     }
@@ -51,7 +51,7 @@ const FUNCTIONS: [(&str, &str); 4] = [
 ];
 
 /// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
-pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool, s: &Signature<'_>) {
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
@@ -109,7 +109,7 @@ pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Sign
 }
 
 /// Adds a table of the limits to the documentation of the struct.
-pub fn write_docs(text: &mut String, limited: &[Limited]) {
+pub fn write_docs(text: &mut String, limited: &[CoordinateLimits]) {
     if limited.is_empty() {
         return;
     }

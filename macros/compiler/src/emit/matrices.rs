@@ -131,7 +131,7 @@ fn completed(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let additional_values = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
+    let additional_values = |width: usize| TrailingRows { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
         InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).completion(place, trunk, s),
@@ -145,7 +145,7 @@ fn completed(
 type Span = (usize, usize);
 
 /// Outputs that follow a matrix: a row of additional values for each velocity.
-struct Beside<'a> {
+struct TrailingRows<'a> {
     /// Index of the first output.
     first: usize,
     /// Number of rows.
@@ -155,7 +155,7 @@ struct Beside<'a> {
     outputs: &'a Outputs<'a>,
 }
 
-impl Beside<'_> {
+impl TrailingRows<'_> {
     /// Returns the indices of the outputs of a row.
     fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.first + row * self.width..self.first + (row + 1) * self.width

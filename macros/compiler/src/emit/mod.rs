@@ -37,9 +37,9 @@ mod validate;
 
 pub use absent::absent;
 pub use constraints::Constraints;
-pub use contacts::Touching;
+pub use contacts::UnilateralContact;
 pub use derived::a_mistake_in_a_type;
 pub use interface::{Absent, Interface};
 pub use item::{Emitted, emit_failed, emit_mechanism};
-pub use limits::Limited;
-pub use validate::Figure;
+pub use limits::CoordinateLimits;
+pub use validate::ParameterCondition;

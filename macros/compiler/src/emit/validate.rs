@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// A condition on values that depend on parameters.
 #[derive(Clone, Debug)]
-pub struct Figure {
+pub struct ParameterCondition {
     /// Name of the condition in the runtime.
     rule: &'static str,
     /// Description of the values.
@@ -15,11 +15,11 @@ pub struct Figure {
     parameters: Vec<String>,
 }
 
-impl Figure {
+impl ParameterCondition {
     /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
-    pub fn from_model(model: &Model<'_>) -> Vec<Figure> {
+    pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
         let name = |k: &usize| model.parameters.get(*k).cloned();
-        let figure = |requirement: &Requirement<'_>| Figure {
+        let figure = |requirement: &Requirement<'_>| ParameterCondition {
             rule: requirement.rule.name(),
             name: requirement.figure.clone(),
             parameters: requirement.parameters.iter().filter_map(name).collect(),

@@ -1,6 +1,6 @@
 //! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::replace_all;
@@ -59,7 +59,7 @@ pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>)
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
     let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?;
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());

@@ -10,7 +10,7 @@
 //! quasi-velocities).
 
 use super::written::{filled, name, names_with, rate_name, rates};
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::{Diagnostics, all_of};
@@ -61,7 +61,7 @@ pub struct Kane {
 }
 
 /// Reason for the absence of equations in independent velocities.
-pub enum Without {
+pub enum KaneFailure {
     /// No choice of dependent velocities was found.
     Choice,
     /// The equations would be too long.
@@ -75,16 +75,16 @@ pub fn kane<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     speeds: Option<&InSpeeds<'g>>,
-) -> Result<Kane, Without> {
+) -> Result<Kane, KaneFailure> {
     let own = speeds.map_or(model, |speeds| &speeds.model);
     let rows = constraints::jacobian(own);
     let dependent = match &model.dependent {
         Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
             pivots.iter().map(|pivot| pivot.velocity.0).collect()
         }
-        _ => chosen(model, own, &rows).ok_or(Without::Choice)?,
+        _ => chosen(model, own, &rows).ok_or(KaneFailure::Choice)?,
     };
-    let solved = Solved::new(own, &rows, dependent).ok_or(Without::Choice)?;
+    let solved = Solved::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
     let v = velocities(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
     let mut inputs = forces::generalized_forces(model, joints);
@@ -97,7 +97,7 @@ pub fn kane<'g>(
     let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
     let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
     let lists = [motion, forces, solved.values, rates, residuals];
-    let (ring, found) = polynomials(own, &lists).ok_or(Without::Length)?;
+    let (ring, found) = polynomials(own, &lists).ok_or(KaneFailure::Length)?;
     let [motion, forces, values, rates, residuals] = found;
     Ok(Kane {
         ring,
@@ -122,7 +122,7 @@ fn polynomials<'g, const N: usize>(
     let mut normal = Normal::new(model.graph, rank);
     normal.ring.allow_more();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
     let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?.into_iter();
     let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
     Some((short.ring, lists))

@@ -7,7 +7,7 @@
 //! `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, with all coefficients evaluated at rest. The contribution of the
 //! multipliers to `f_q` is their geometric stiffness.
 
-use super::{Limits, Short, right_sides};
+use super::{Limits, Simplifier, right_sides};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::diag::Diagnostics;
@@ -151,7 +151,7 @@ fn written_out<'g>(
     let values = rest.values(model, at);
     let values: Vec<(Quantity, Polynomial)> =
         values.into_iter().map(|(what, e)| Some((what, normal.normal_form(e)?))).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, Vec::new(), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, Vec::new(), &Limits::ASKED);
     let motion = motion.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
     let forces = forces.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
     let values: Option<Vec<_>> = values.iter().map(|(what, p)| Some((*what, short.shorten(p)?))).collect();

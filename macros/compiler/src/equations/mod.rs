@@ -136,7 +136,7 @@ pub fn derive<'g>(
         rates.push((k, normal.normal_form(speeds.rates[k])?));
     }
     let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates, without_forces: false };
-    shortened(Short::new(normal.ring, quaternions(model), limits), found)
+    shortened(Simplifier::new(normal.ring, quaternions(model), limits), found)
 }
 
 /// Derives the equations of a mechanism without constraints whose forces are too long to be readable: only
@@ -233,7 +233,7 @@ fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynom
 }
 
 /// Simplifies polynomials within a maximum total number of terms.
-struct Short {
+struct Simplifier {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
@@ -243,10 +243,10 @@ struct Short {
     written_left: usize,
 }
 
-impl Short {
-    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Short {
+impl Simplifier {
+    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Simplifier {
         let written_left = limits.terms * NESTED_TERMS;
-        Short { ring, quaternions, long: limits.long, left: limits.terms, written_left }
+        Simplifier { ring, quaternions, long: limits.long, left: limits.terms, written_left }
     }
 
     fn shorten(&mut self, p: &Polynomial) -> Option<Polynomial> {
@@ -262,7 +262,7 @@ impl Short {
 }
 
 /// Simplifies all equations. `None` if they are too long.
-fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
+fn shortened(mut short: Simplifier, found: Equations) -> Option<Equations> {
     let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all().map(|p| p.terms.len()).sum::<usize>() > short.long {

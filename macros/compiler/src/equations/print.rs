@@ -1,6 +1,6 @@
 //! Formatting of expressions and polynomials, as plain text or typeset.
 
-use crate::algebra::common::Among;
+use crate::algebra::common::FactorScope;
 use crate::algebra::factor::items;
 use crate::algebra::item::{Item, Order};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
@@ -93,17 +93,17 @@ impl<'a, S: Style> Writer<'a, S> {
 
     /// Formats a polynomial with grouped terms and extracted common factors.
     pub fn polynomial(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::All))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::All))
     }
 
     /// Formats an energy. Terms of different degree in rates are not factored together.
     pub fn energy(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::Kinds))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::Kinds))
     }
 
     /// Formats a linear form. Its coefficients are not factored together.
     pub fn linear(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::None))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::None))
     }
 
     fn sum(&self, items: &[Item]) -> String {

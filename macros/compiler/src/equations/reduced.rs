@@ -3,7 +3,7 @@
 
 use super::canonical::{determinant, velocities_of};
 use super::written::{about_inertias, determinants, filled, name, names_with, rates};
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
@@ -84,7 +84,7 @@ pub fn reduced<'g>(
     for list in &lists {
         found.push(list.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?);
     }
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
     let mut found = found
         .iter()
         .map(|list| list.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>())

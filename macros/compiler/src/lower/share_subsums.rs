@@ -168,7 +168,7 @@ impl Sums {
             ends: vec![None; n],
             wanted: Vec::new(),
         };
-        let mut known = Known { values: vec![None; n], others: BTreeMap::new() };
+        let mut known = AtomNumbers { values: vec![None; n], others: BTreeMap::new() };
         for (k, op) in program.instructions.iter().enumerate() {
             let Some(signed) = op.terms() else { continue };
             let mut terms = Terms::new();
@@ -231,7 +231,7 @@ impl Sums {
     }
 
     /// Returns the key of an operand that is not a sum.
-    fn atom(&mut self, o: Operand, known: &mut Known) -> Key {
+    fn atom(&mut self, o: Operand, known: &mut AtomNumbers) -> Key {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -310,7 +310,7 @@ impl Sums {
 }
 
 /// Atoms that already have an index.
-struct Known {
+struct AtomNumbers {
     /// Atom of each instruction.
     values: Vec<Option<usize>>,
     /// Atom of each other operand, by kind and number.

@@ -46,18 +46,18 @@ struct Factor<'g> {
 /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. Returns `None` unless each row
 /// depends on one limb of a group of identical limbs, and all limbs of a group have the same number of rows.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
-    let alike = limbs.limb_rows(rows)?;
+    let groups = limbs.limb_rows(rows)?;
     let factor = Factor::new(limbs, limbs.groups());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
-    for LimbRows { group, width, rows: numbers } in alike {
+    for LimbRows { group, width, rows: numbers } in groups {
         for (row, lanes) in numbers.iter().enumerate() {
             for (lane, i) in lanes.iter().enumerate() {
                 places.insert(*i, Place { family: families.len(), row, lane });
             }
         }
         let all = numbers.iter().map(|lanes| {
-            let alike: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
-            factor.row(limbs.side_by_side(&alike), group)
+            let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
+            factor.row(limbs.side_by_side(&lane_rows), group)
         });
         families.push(Family { group, width, rows: all.collect() });
     }

@@ -2,7 +2,7 @@
 //! ch. 5). The acceleration of the points of a link is given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
-use super::alike::Alike;
+use super::shared_motions::SharedMotions;
 use super::{added_mass, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
@@ -22,17 +22,17 @@ pub fn inverse_dynamics<'g>(
     if let Some(a) = a {
         added_mass::subtract_from_forces(model, a, &mut tau);
     }
-    let alike = Alike::new(model, joints);
+    let shared = SharedMotions::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !alike.has(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.has(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
             wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
-    alike.add_forces(&wrenches, &mut tau);
+    shared.add_forces(&wrenches, &mut tau);
     tau
 }
 

@@ -55,8 +55,8 @@ fn factored_sums_are_what_they_were() {
         let order = Order::new(&ring);
         let plain: usize =
             p.terms.iter().map(|t| order.size(&[Item::single(t.coefficient, t.monomial)])).sum();
-        for among in [Among::All, Among::Kinds, Among::None] {
-            let found = items(&ring, &order, &p, among);
+        for scope in [FactorScope::All, FactorScope::Kinds, FactorScope::None] {
+            let found = items(&ring, &order, &p, scope);
             let size = p.terms.iter().map(|t| t.coefficient.abs()).sum::<f64>().max(1.0);
             assert!((value(&found, &atoms) - expected).abs() < 1e-10 * size, "{found:?}");
             assert!(order.size(&found) <= plain, "{found:?}");
@@ -73,7 +73,7 @@ fn products_of_sums_are_found() {
     let mut ring = ring();
     let sum = |i, j, sign| Polynomial::sum(vec![term(i, 1.0), term(j, sign)]);
     let p = times(&mut ring, &[&sum(0, 1, 1.0), &sum(2, 3, -1.0)]);
-    let found = items(&ring, &Order::new(&ring), &p, Among::All);
+    let found = items(&ring, &Order::new(&ring), &p, FactorScope::All);
     assert!(found.len() == 1 && found[0].sums.len() == 2, "{found:?}");
 }
 
@@ -90,7 +90,7 @@ fn what_is_apart_stays_apart() {
     let potential = times(&mut ring, &[&m, &g, &x]);
     let energy = kinetic.plus(&potential);
     let order = Order::new(&ring);
-    assert_eq!(items(&ring, &order, &energy, Among::Kinds).len(), 2);
-    assert_eq!(items(&ring, &order, &energy, Among::None).len(), 2);
-    assert_eq!(items(&ring, &order, &energy, Among::All).len(), 1);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::Kinds).len(), 2);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::None).len(), 2);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::All).len(), 1);
 }

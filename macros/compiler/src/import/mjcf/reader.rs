@@ -4,7 +4,7 @@ use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
 use super::mesh::Meshes;
 use super::settings::Settings;
-use super::touch::{Plane, Touching};
+use super::touch::{CollisionShape, Plane};
 use crate::diag::Place;
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, roll_pitch_yaw, scale};
@@ -55,7 +55,7 @@ pub(super) struct Reader<'a> {
     /// Planes of the world.
     pub(super) planes: Vec<Plane>,
     /// Collision shapes of bodies.
-    pub(super) touching: Vec<Touching>,
+    pub(super) touching: Vec<CollisionShape>,
 }
 
 impl<'a> Reader<'a> {

@@ -27,7 +27,7 @@ pub(super) struct Plane {
 }
 
 /// Collision shape of a body.
-pub(super) struct Touching {
+pub(super) struct CollisionShape {
     pub(super) link: usize,
     /// Index among the shapes of the body.
     pub(super) number: usize,
@@ -87,7 +87,7 @@ impl Law {
     }
 }
 
-impl Touching {
+impl CollisionShape {
     /// Returns the contact of the shape with a plane.
     pub(super) fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
         let at = &self.place;
