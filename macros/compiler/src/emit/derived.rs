@@ -11,7 +11,7 @@ use quote::{format_ident, quote};
 /// them, hence no struct suits both. If a robot's file is missing, no sizes suit the code that uses the
 /// robot. For a type with an error in its arguments, however, rustc reports no further errors about fields
 /// and methods.
-pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream {
+pub fn error_type(shell: &Shell, error: &TokenStream) -> TokenStream {
     let Shell { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
     let hidden = format_ident!("__{}Mistaken", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
@@ -29,7 +29,7 @@ pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream 
         #(#attributes)*
         #visibility struct #hidden<#(#bounds,)* const MISTAKE: bool> #condition { #(#fields),* }
         #[allow(type_alias_bounds, reason = "the bounds of the struct")]
-        #visibility type #ident #all = #hidden<#(#names,)* { #mistake }>;
+        #visibility type #ident #all = #hidden<#(#names,)* { #error }>;
         #value
     }
 }

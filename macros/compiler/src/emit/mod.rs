@@ -38,7 +38,7 @@ mod validate;
 pub use absent::absent;
 pub use constraints::Constraints;
 pub use contacts::UnilateralContact;
-pub use derived::a_mistake_in_a_type;
+pub use derived::error_type;
 pub use interface::{Absent, Interface};
 pub use item::{Emitted, emit_failed, emit_mechanism};
 pub use limits::CoordinateLimits;
