@@ -111,14 +111,14 @@ fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
-    let along = |k: usize| {
+    let column = |k: usize| {
         slope(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
         })
     };
-    (0..K).flat_map(|k| along(k).as_slice().to_vec()).collect()
+    (0..K).flat_map(|k| column(k).as_slice().to_vec()).collect()
 }
 
 struct Case<const NQ: usize, const NV: usize, const NU: usize> {
@@ -208,15 +208,15 @@ fn derivatives_agree_with_differences() {
         let tau = whole.generalized_forces(t, &q, &v, &u);
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let forward = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
-        let moved = |by| whole.integrate(&q, &by);
-        let found = slopes(still, |by| forward(&moved(by), &v, &tau));
+        let displaced = |by| whole.integrate(&q, &by);
+        let found = slopes(still, |by| forward(&displaced(by), &v, &tau));
         assert_similar("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
         let found = slopes(step, |by| forward(&q, &(v + by), &tau));
         assert_similar("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
         let found = slopes([1e2; 7], |by| forward(&q, &v, &(tau + by)));
         assert_similar("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let found = slopes(still, |by| whole.inverse_dynamics(t, &moved(by), &v, &a));
+        let found = slopes(still, |by| whole.inverse_dynamics(t, &displaced(by), &v, &a));
         assert_similar("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
         let found = slopes(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
         assert_similar("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
@@ -244,16 +244,16 @@ fn linear_motions_agree_with_differences() {
 #[test]
 fn derivatives_by_parameters_agree_with_differences() {
     for Case { t, q, v, a, .. } in coupled() {
-        let with = |by: SVector<f64, 4>| {
+        let perturbed = |by: SVector<f64, 4>| {
             let Coupled { gain, share, reach, added } = COUPLED;
             Coupled { gain: gain + by[0], share: share + by[1], reach: reach + by[2], added: added + by[3] }
         };
         let by = COUPLED.inverse_dynamics_by_parameters(t, &q, &v, &a);
-        let found = slopes([1e-2; 4], |s| with(s).inverse_dynamics(t, &q, &v, &a));
+        let found = slopes([1e-2; 4], |s| perturbed(s).inverse_dynamics(t, &q, &v, &a));
         assert_similar("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
         let tau = a;
         let by = COUPLED.forward_dynamics_by_parameters(t, &q, &v, &tau);
-        let found = slopes([1e-2; 4], |s| with(s).forward_dynamics(t, &q, &v, &tau));
+        let found = slopes([1e-2; 4], |s| perturbed(s).forward_dynamics(t, &q, &v, &tau));
         assert_similar("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
     }
 }

@@ -58,8 +58,10 @@ macro_rules! check {
             let momentum = robot.momentum(&q, &v);
             assert_similar("momentum", (matrix * v).as_slice(), momentum.as_slice(), EXACT);
             let h = 1e-4;
-            let at = |s: f64| robot.momentum(&robot.integrate(&q, &(v * s)), &v);
-            let rate = ((at(h) - at(-h)) * 8.0 - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+            let momentum_after = |s: f64| robot.momentum(&robot.integrate(&q, &(v * s)), &v);
+            let rate = ((momentum_after(h) - momentum_after(-h)) * 8.0
+                - (momentum_after(2.0 * h) - momentum_after(-2.0 * h)))
+                / (12.0 * h);
             let bias = robot.centroidal_momentum_bias(&q, &v);
             assert_similar("bias", bias.as_slice(), rate.as_slice(), DIFFERENCE);
         }

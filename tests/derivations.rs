@@ -74,7 +74,7 @@ fn check_momentum_rate<'g>(
     for (k, rate) in rates.iter().enumerate() {
         let mut d = Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph);
         for (sum, p) in expected.iter_mut().zip(p) {
-            *sum += d.of(*p) * *rate;
+            *sum += d.differentiate(*p) * *rate;
         }
     }
     let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
@@ -106,7 +106,7 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     };
     let direct = eval(tau, &symbol);
     let program = lower::lower(tau);
-    let (plain, fused) = (program.run(&symbol), program.through(lower::pipeline::PART).run(&symbol));
+    let (plain, fused) = (program.run(&symbol), program.run_passes(lower::pipeline::PART).run(&symbol));
     let scale = direct.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for k in 0..direct.len() {
         assert!((plain[k] - direct[k]).abs() <= 1e-13 * scale, "{} and {}", plain[k], direct[k]);
@@ -138,7 +138,7 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
         };
     }
     let expected: Vec<Expr<'g>> = (0..model.nv())
-        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).of(power))
+        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).differentiate(power))
         .collect();
     assert_close("inputs", model, seed, &forces::generalized_forces(model, &joints), &expected);
 }
@@ -156,20 +156,21 @@ fn ground_vector<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g G
     d.iter().fold(Vec3::zero(g), |sum, (link, v)| sum + link.map_or(*v, |l| world[l.0].0 * *v))
 }
 
-fn along<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let rates = lagrange::configuration_rates(model);
     rates.iter().enumerate().fold(model.graph.zero(), |sum, (k, rate)| {
-        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).of(e) * *rate
+        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).differentiate(e)
+            * *rate
     })
 }
 
 fn velocity<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
-    p.map(|c| along(model, c))
+    p.map(|c| time_derivative(model, c))
 }
 
 /// Returns the angular velocity from `Ṙ Rᵀ = [ω]×`, in ground axes.
 fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
-    let rate = Mat3::from_fn(|i, j| along(model, r.0[i][j]));
+    let rate = Mat3::from_fn(|i, j| time_derivative(model, r.0[i][j]));
     let w = rate * r.transpose();
     Vec3([w.0[2][1], w.0[0][2], w.0[1][0]])
 }

@@ -54,10 +54,10 @@ macro_rules! robot {
                     continue;
                 }
                 cases += 1;
-                let of = |what: &str| format!("{name}, case {i}: {what}");
+                let label = |what: &str| format!("{name}, case {i}: {what}");
                 let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
                 let close = |what: &str, actual: &[f64], expected: &[f64]| {
-                    assert_similar(&of(what), actual, expected, REFERENCE);
+                    assert_similar(&label(what), actual, expected, REFERENCE);
                 };
                 let expected = |key: &str| -> Square { case.matrix(key) };
                 let (by_q, by_v) = $robot.inverse_dynamics_derivatives(q, v, a);
@@ -65,12 +65,12 @@ macro_rules! robot {
                 close("∂τ/∂v", by_v.as_slice(), expected("dtau_dv").as_slice());
                 let [given_q, given_v] = &mut forces;
                 $robot.inverse_dynamics_derivatives_into(q, v, a, given_q, given_v);
-                assert!(forces == [by_q, by_v], "{}", of("∂τ into matrices"));
+                assert!(forces == [by_q, by_v], "{}", label("∂τ into matrices"));
                 let (by_q, by_v, inverse) = $robot.forward_dynamics_derivatives(q, v, tau);
                 let [given_q, given_v, given] = &mut motion;
                 let a = $robot.forward_dynamics_derivatives_into(q, v, tau, given_q, given_v, given);
                 close("v̇ with its derivatives", a.as_slice(), $robot.forward_dynamics(q, v, tau).as_slice());
-                assert!(motion == [by_q, by_v, inverse], "{}", of("∂v̇ into matrices"));
+                assert!(motion == [by_q, by_v, inverse], "{}", label("∂v̇ into matrices"));
                 close("∂v̇/∂q", by_q.as_slice(), expected("dddq_dq").as_slice());
                 close("∂v̇/∂v", by_v.as_slice(), expected("dddq_dv").as_slice());
                 let expected: Square = case.symmetric("Minv");
@@ -144,7 +144,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
 fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
-    let factor = derivatives::Factor::of(&mass, &joints);
+    let factor = derivatives::Factor::new(&mass, &joints);
     let a = mechanics::accelerations(model);
     let times = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
         let zero = model.graph.zero();
@@ -153,9 +153,9 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     let forces = times(&mass, &a);
     assert_same("inverse", model, seed, &times(&factor.inverse(), &forces), &a);
     assert_same("solution", model, seed, &factor.solve(forces.clone()), &a);
-    let trunk = Trunk::of(&joints, &mass, &Trunk::branching(&joints, model.nv()));
+    let trunk = Trunk::new(&joints, &mass, &Trunk::branching(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
-    let parts = derivatives::Inverse::of(&mass, &trunk);
+    let parts = derivatives::Inverse::new(&mass, &trunk);
     assert_same("solution in parts", model, seed, &parts.solve(&forces), &a);
     let (mut whole, factors) = (parts.columns(), parts.factors());
     for row in &mut whole {
@@ -175,7 +175,7 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     let a = mechanics::accelerations(model);
     let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), Some(&a));
     let forces = symbolic::derivatives(model, &tau);
-    let known = invariance::known(model, &joints);
+    let known = invariance::invariant_columns(model, &joints);
     for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
         for (k, column) in columns {
             let inertia = mass
@@ -190,15 +190,16 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
 }
 
 /// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
-fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
-    let along = |s| match Quantity::of(s) {
+fn displaced(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
+    let symbol_value = |s| match Quantity::of(s) {
         Quantity::Configuration(i) => q[i],
         Quantity::Velocity(i) => f64::from(u8::from(i == k)),
         _ => 0.0,
     };
     let rates: Vec<Expr<'_>> =
         (0..model.nq()).map(|i| kinematics::configuration_rate(model.space(), i)).collect();
-    let mut moved: Vec<f64> = q.iter().zip(eval(&rates, &along)).map(|(q, rate)| q + h * rate).collect();
+    let mut moved: Vec<f64> =
+        q.iter().zip(eval(&rates, &symbol_value)).map(|(q, rate)| q + h * rate).collect();
     for first in model.charts.iter().filter_map(Chart::quaternion) {
         let length = moved[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
         moved[first.and_next(4)].iter_mut().for_each(|c| *c /= length);
@@ -219,14 +220,14 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     let motion = ldl::solve(mass.clone(), rest, &joints);
     let mut found =
         derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
-    let known = invariance::known(model, &joints);
+    let known = invariance::invariant_columns(model, &joints);
     known.replace(&mut found.forces);
     let at = symbols(model, seed);
     let q: Vec<f64> = (0..model.nq()).map(|k| at(Quantity::Configuration(k).symbol())).collect();
     let n = model.nv();
     let inverse = eval(&found.inverse.concat(), &at);
     let (mut worst, mut scale) = (0.0_f64, 1.0_f64);
-    let given = |forces: &crba::Matrix<'_>, known: &[usize], by_q: bool| {
+    let largest_error = |forces: &crba::Matrix<'_>, known: &[usize], by_q: bool| {
         let forces = eval(&forces.concat(), &at);
         let mut worst = (0.0_f64, 1.0_f64);
         for k in 0..n {
@@ -234,13 +235,13 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
             let product = |i: usize| -(0..n).map(|j| inverse[i * n + j] * column[j]).sum::<f64>();
             let column: Vec<f64> = if known.contains(&k) { column } else { (0..n).map(product).collect() };
             let side = |h: f64| {
-                let q = if by_q { moved(model, &q, k, h) } else { q.clone() };
-                let near = |s| match Quantity::of(s) {
+                let q = if by_q { displaced(model, &q, k, h) } else { q.clone() };
+                let displaced_value = |s| match Quantity::of(s) {
                     Quantity::Configuration(i) => q[i],
                     Quantity::Velocity(i) if i == k && !by_q => at(s) + h,
                     _ => at(s),
                 };
-                eval(&motion, &near)
+                eval(&motion, &displaced_value)
             };
             for ((found, after), before) in column.iter().zip(side(STEP)).zip(side(-STEP)) {
                 let error = (found - (after - before) / (2.0 * STEP)).abs();
@@ -250,7 +251,9 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
         worst
     };
     let [by_q, by_v] = known.indices();
-    for (error, size) in [given(&found.forces.by_q, &by_q, true), given(&found.forces.by_v, &by_v, false)] {
+    for (error, size) in
+        [largest_error(&found.forces.by_q, &by_q, true), largest_error(&found.forces.by_v, &by_v, false)]
+    {
         (worst, scale) = (worst.max(error), scale.max(size));
     }
     (worst / scale, by_q.len() + by_v.len())
@@ -258,7 +261,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
 
 #[test]
 fn forces_from_the_ground_are_not_forgotten() {
-    let of = |element: &str| {
+    let invariant_columns = |element: &str| {
         let mut found = None;
         let fields = format!(
             "#[body(mass = 2, inertia = diagonal(1, 2, 3))] hull: Body, #[joint(ground -> hull)] pose: Free,
@@ -269,30 +272,36 @@ fn forces_from_the_ground_are_not_forgotten() {
         found.expect("it compiles")
     };
     let (all, none) = (|| [vec![3, 4, 5], vec![0, 1, 2]], Vec::new);
-    assert_eq!(of(""), all());
-    assert_eq!(of("#[acts(on = elbow, stiffness = 3, free_angle = 1)] spring: Spring,"), all());
-    assert_eq!(of("#[acts(between = (hull, arm.at(z)), damping = 3)] inside: Dashpot,"), all());
+    assert_eq!(invariant_columns(""), all());
+    assert_eq!(
+        invariant_columns("#[acts(on = elbow, stiffness = 3, free_angle = 1)] spring: Spring,"),
+        all()
+    );
+    assert_eq!(
+        invariant_columns("#[acts(between = (hull, arm.at(z)), damping = 3)] inside: Dashpot,"),
+        all()
+    );
     let spring = "#[acts(between = (ground.at(3 * x), arm.at(z)), stiffness = 3)] mooring: Spring,";
-    assert_eq!(of(spring), [none(), vec![0, 1, 2]]);
+    assert_eq!(invariant_columns(spring), [none(), vec![0, 1, 2]]);
     let dashpot = "#[acts(between = (ground.at(3 * x), arm.at(z)), damping = 3)] mooring: Dashpot,";
-    assert_eq!(of(dashpot), [none(), none()]);
+    assert_eq!(invariant_columns(dashpot), [none(), none()]);
     // Invariance does not hold for an inerter between bodies, which has inertia but no weight, nor for a load
     // that moves along an axis of the ground.
     let inerter = "#[acts(between = (ground.at(3 * x), arm.at(z)), inertance = 3)] mooring: Inerter,";
-    assert_eq!(of(inerter), [none(), none()]);
-    assert_eq!(of("#[acts(on = elbow, inertance = 3)] inside: Inerter,"), all());
+    assert_eq!(invariant_columns(inerter), [none(), none()]);
+    assert_eq!(invariant_columns("#[acts(on = elbow, inertance = 3)] inside: Inerter,"), all());
     let other =
         "#[body(mass = 2, inertia = diagonal(1, 2, 3))] ship: Body, #[joint(ground -> ship)] course: Free,";
     let inerter = "#[acts(between = (ship.at(x), arm.at(z)), inertance = 3)] towing: Inerter,";
-    assert_eq!(of(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
-    assert_eq!(of(&format!("{other} {inerter}")), [none(), none()]);
+    assert_eq!(invariant_columns(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
+    assert_eq!(invariant_columns(&format!("{other} {inerter}")), [none(), none()]);
     let particle = |axis: &str| {
         format!(
             "way: Coordinate, #[particle(mass = 1, at = hull.at(way * {axis} + 0.3 * y))] load: Particle,"
         )
     };
-    assert_eq!(of(&particle("ground.x")), [none(), none()]);
-    assert_eq!(of(&particle("x")), all());
+    assert_eq!(invariant_columns(&particle("ground.x")), [none(), none()]);
+    assert_eq!(invariant_columns(&particle("x")), all());
 }
 
 proptest! {
@@ -366,7 +375,7 @@ fn programs(arguments: &str) -> [Program; 2] {
 /// after products are fused into sums.
 #[test]
 fn operation_counts_in_lanes() {
-    let of = |robot: &str| {
+    let counts = |robot: &str| {
         let all = programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         all.map(|program| {
             let program = program.simd.expect("its limbs are alike");
@@ -379,7 +388,7 @@ fn operation_counts_in_lanes() {
     };
     // Each row has the derivatives of inverse dynamics, then the inverse of the mass matrix.
     let expected = [[(1303, 845), (794, 497)], [(6108, 4115), (6301, 3682)]];
-    assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
+    assert_eq!(["solo12", "simple_humanoid"].map(counts), expected);
 }
 
 #[test]

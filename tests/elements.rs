@@ -41,12 +41,12 @@ impl State {
     }
 
     fn values(&self, e: &[Expr<'_>]) -> Vec<f64> {
-        self.later(0.0, &[], e)
+        self.values_after(0.0, &[], e)
     }
 
     /// Returns the values of expressions after a short time along the motion with the given rates of `q`, to
     /// first order.
-    fn later(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
+    fn values_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
         let other = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
         eval(e, &|s| match Quantity::of(s) {
             Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
@@ -59,9 +59,9 @@ impl State {
     /// Returns the rates of expressions along the motion, by differences.
     fn slope(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
         let rates = self.values(&lagrange::configuration_rates(model));
-        let at = |s: f64| self.later(s, &rates, e);
+        let values_at = |s: f64| self.values_after(s, &rates, e);
         let h = 1e-3;
-        let (near, far) = ((at(h), at(-h)), (at(2.0 * h), at(-2.0 * h)));
+        let (near, far) = ((values_at(h), values_at(-h)), (values_at(2.0 * h), values_at(-2.0 * h)));
         (0..e.len()).map(|k| (8.0 * (near.0[k] - near.1[k]) - (far.0[k] - far.1[k])) / (12.0 * h)).collect()
     }
 }
@@ -109,8 +109,8 @@ fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     m.iter().flatten().copied().collect()
 }
 
-fn by<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
-    Derivative::with_respect_to(quantity.symbol(), model.graph).of(e)
+fn derivative<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
+    Derivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
@@ -132,7 +132,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     close("energies", &[kinetic, potential], &[reference.kinetic, reference.potential]);
     let p = momentum::generalized_momentum(model, &joints, &v);
     let expected: Vec<_> =
-        (0..model.nv()).map(|k| by(model, Quantity::Velocity(k), reference.kinetic)).collect();
+        (0..model.nv()).map(|k| derivative(model, Quantity::Velocity(k), reference.kinetic)).collect();
     close("momentum", &p, &expected);
     // The reference is ṗ = Ṗ(q, v, t) + M a with τ = M a + h.
     let rate = momentum::momentum_rate(model, &joints, &v);
@@ -154,19 +154,20 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
     let potential = energy::potential_energy(model, joints);
     let p = momentum::generalized_momentum(model, joints, &v);
     let jacobi = dot(&p, &v) - kinetic + potential;
-    let along = |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
+    let velocity_derivative =
+        |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
     let mut power = dot(tau, &v);
     for dashpot in &model.dashpots {
         power -= dashpot.damping * kinematics::rate(model, &dashpot.on).square();
     }
     for function in &model.dissipations {
-        power -= along(*function);
+        power -= velocity_derivative(*function);
     }
     for load in &model.loads {
         let idle = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
-        power += replace(load.force, &idle) * along(load.rate);
+        power += replace(load.force, &idle) * velocity_derivative(load.rate);
     }
-    let expected = power - by(model, Quantity::Time, kinetic - potential);
+    let expected = power - derivative(model, Quantity::Time, kinetic - potential);
     assert_close("energy", &state.slope(model, &[jacobi]), &state.values(&[expected]), DIFFERENCE);
 }
 

@@ -57,8 +57,8 @@ static ANGLES: [f64; 4] = [-1.6, -0.1, 0.4, 1.7];
 static ELEVATOR: [f64; 3] = [-1.5, 0.2, 1.5];
 
 fn fighter() -> Fighter<f64> {
-    let of = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
-    let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| of(*a, d))).collect();
+    let coefficient = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
+    let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| coefficient(*a, d))).collect();
     let lift = Table::new([&ANGLES, &ELEVATOR], values.leak()).unwrap().smooth();
     Fighter { mass: 900.0, area: 12.0, arm: 0.8, lag: 0.7, lift, power: 3e3, sensed: 0.1 }
 }
@@ -97,14 +97,14 @@ fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
-    let along = |k: usize| {
+    let column = |k: usize| {
         slope(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
         })
     };
-    (0..K).flat_map(|k| along(k).as_slice().to_vec()).collect()
+    (0..K).flat_map(|k| column(k).as_slice().to_vec()).collect()
 }
 
 const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
@@ -163,7 +163,7 @@ fn derivatives_agree_with_differences() {
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
-        let moved = |by| whole.integrate(&q, &by);
+        let displaced = |by| whole.integrate(&q, &by);
         let mut still = STEP;
         still[6..].fill(1.0);
 
@@ -172,7 +172,7 @@ fn derivatives_agree_with_differences() {
         assert_similar(
             "∂v̇/∂q",
             by_q.as_slice(),
-            &slopes(still, |by| forward(&moved(by), &v, &tau)),
+            &slopes(still, |by| forward(&displaced(by), &v, &tau)),
             DIFFERENCE,
         );
         assert_similar(
@@ -186,12 +186,17 @@ fn derivatives_agree_with_differences() {
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
         let inverse = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
-        assert_similar("∂τ/∂q", by_q.as_slice(), &slopes(still, |by| inverse(&moved(by), &v)), DIFFERENCE);
+        assert_similar(
+            "∂τ/∂q",
+            by_q.as_slice(),
+            &slopes(still, |by| inverse(&displaced(by), &v)),
+            DIFFERENCE,
+        );
         assert_similar("∂τ/∂v", by_v.as_slice(), &slopes(STEP, |by| inverse(&q, &(v + by))), DIFFERENCE);
 
         let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
         let forces = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
-        let found = slopes(still, |by| forces(&moved(by), &v, &u));
+        let found = slopes(still, |by| forces(&displaced(by), &v, &u));
         assert_similar("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
         let found = slopes(STEP, |by| forces(&q, &(v + by), &u));
         assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
@@ -205,16 +210,16 @@ fn outputs_change_with_them() {
     let fighter = fighter();
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in cases() {
-        let of = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
+        let outputs = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
-        let by_v = slopes(STEP, |by| of(&(v + by), &a, &u));
+        let by_v = slopes(STEP, |by| outputs(&(v + by), &a, &u));
         assert_similar("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
-        let by_a = slopes([1.0; 8], |by| of(&v, &(a + by), &u));
+        let by_a = slopes([1.0; 8], |by| outputs(&v, &(a + by), &u));
         assert_similar("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
-        let by_u = slopes([1e-2; 2], |by| of(&v, &a, &(u + by)));
+        let by_u = slopes([1e-2; 2], |by| outputs(&v, &a, &(u + by)));
         assert_similar("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
-        let along = |by: SVector<f64, 8>| whole.integrate(&q, &by);
-        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &along(by), &v, &a, &u));
+        let displaced = |by: SVector<f64, 8>| whole.integrate(&q, &by);
+        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &displaced(by), &v, &a, &u));
         assert_similar("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
     }
 }
@@ -309,8 +314,9 @@ fn constrained_mechanisms_have_them() {
     let late = Late { lag, torque: 0.0 };
     let command = |_, _: &_, _: &_| [12.0].into();
     let run = simulate(&late.extended()).from(q, [0.0; 4]).inputs(command).duration(1.0).finish().unwrap();
-    let given = |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
-    let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(given).duration(1.0).finish().unwrap();
+    let lagged_command =
+        |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
+    let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(lagged_command).duration(1.0).finish().unwrap();
     assert_similar("q", run.q.as_slice(), other.q.as_slice(), 1e-5);
     assert_similar("v", run.v.fixed_rows::<3>(0).as_slice(), other.v.as_slice(), 1e-5);
     assert!(other.v[0].abs() > 1.0, "it moves");

@@ -123,13 +123,13 @@ fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
     let mut most = 0.0_f64;
     for k in 0..NODES {
         for i in 0..2 {
-            let at = |s: f64| {
+            let cost = |s: f64| {
                 let mut moved = inputs.to_vec();
                 moved[k][i] += s;
                 motion(start, &moved).1
             };
             let h = 1e-2;
-            let pair = |n: f64| at(n * h) - at(-n * h);
+            let pair = |n: f64| cost(n * h) - cost(-n * h);
             most = most.max(((45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * h)).abs());
         }
     }

@@ -386,8 +386,8 @@ where
     ) -> SMatrix<f64, N, K> {
         let columns: Vec<SVector<f64, N>> = (0..K)
             .map(|k| {
-                let at = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
-                let slope = |h: f64| (at(h) - at(-h)) / (2.0 * h);
+                let value = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
+                let slope = |h: f64| (value(h) - value(-h)) / (2.0 * h);
                 (slope(5e-4) * 4.0 - slope(1e-3)) / 3.0
             })
             .collect();
@@ -455,10 +455,11 @@ fn lanes_have_derivatives() {
     let cart = Cart {};
     let lanes = cart.lanes::<4>();
     let splat = Lanes::<f64, 4>::splat;
-    let of = |k: usize| (SVector::from([0.01 * k as f64, 0.4]), SVector::from([0.0, 1.0 - 0.3 * k as f64]));
+    let lane_state =
+        |k: usize| (SVector::from([0.01 * k as f64, 0.4]), SVector::from([0.0, 1.0 - 0.3 * k as f64]));
     let [q, v] = [0, 1].map(|part| {
         SVector::<Lanes<f64, 4>, 2>::from_fn(|i, _| {
-            Lanes(std::array::from_fn(|k| if part == 0 { of(k).0[i] } else { of(k).1[i] }))
+            Lanes(std::array::from_fn(|k| if part == 0 { lane_state(k).0[i] } else { lane_state(k).1[i] }))
         })
     });
     let u = SVector::from([splat(0.3)]);
@@ -468,7 +469,7 @@ fn lanes_have_derivatives() {
     let end = simulate(&lanes).from(q, v).method(Rosenbrock::step(splat(1e-3))).duration(splat(0.1));
     let end = end.finish().unwrap();
     for k in 0..4 {
-        let (q, v) = of(k);
+        let (q, v) = lane_state(k);
         let alone = Hooks::acceleration_derivatives(&cart, 0.0, &q, &v, &[0.3].into()).unwrap();
         let motion = cart.linear_motion(&q, &v, &[0.3].into());
         assert_eq!(motion.acceleration, linear.acceleration.map(|x| x.0[k]));

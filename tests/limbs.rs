@@ -152,19 +152,23 @@ fn differences(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatri
 #[test]
 fn derivatives_are_limits_of_differences() {
     let (robot, mut random) = (quadruped::<f64>(), Random::new(5));
-    let near = |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
+    let is_close =
+        |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
     for _ in 0..5 {
         let (q, [v, a]) = state(&mut random);
-        let moved = |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
+        let displaced = |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
         let tau = robot.inverse_dynamics(&q, &v, &a);
         let (by_q, by_v) = robot.inverse_dynamics_derivatives(&q, &v, &a);
-        assert!(near(&by_q, &differences(|h, axis| robot.inverse_dynamics(&moved(h, axis), &v, &a))));
-        assert!(near(&by_v, &differences(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))));
+        assert!(is_close(&by_q, &differences(|h, axis| robot.inverse_dynamics(&displaced(h, axis), &v, &a))));
+        assert!(is_close(&by_v, &differences(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))));
         let (by_q, by_v, inverse) = robot.forward_dynamics_derivatives(&q, &v, &tau);
-        assert!(near(&by_q, &differences(|h, axis| robot.forward_dynamics(&moved(h, axis), &v, &tau))));
-        assert!(near(&by_v, &differences(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))));
-        assert!(near(&(inverse * robot.mass_matrix(&q)), &SMatrix::identity()));
-        assert!(near(&robot.mass_matrix_inverse(&q), &inverse));
+        assert!(is_close(
+            &by_q,
+            &differences(|h, axis| robot.forward_dynamics(&displaced(h, axis), &v, &tau))
+        ));
+        assert!(is_close(&by_v, &differences(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))));
+        assert!(is_close(&(inverse * robot.mass_matrix(&q)), &SMatrix::identity()));
+        assert!(is_close(&robot.mass_matrix_inverse(&q), &inverse));
     }
 }
 
@@ -177,10 +181,10 @@ fn every_type_of_scalars_gives_the_same() {
         let (q, [v, a]) = state(&mut random);
         let (tau, m) = (double.inverse_dynamics(&q, &v, &a), double.mass_matrix(&q));
         let (q32, v32, a32) = (q.map(|x| x as f32), v.map(|x| x as f32), a.map(|x| x as f32));
-        let near = |x: f32, y: f64, scale: f64| (f64::from(x) - y).abs() < 2e-5 * (1.0 + scale);
+        let is_close = |x: f32, y: f64, scale: f64| (f64::from(x) - y).abs() < 2e-5 * (1.0 + scale);
         let found = single.inverse_dynamics(&q32, &v32, &a32);
-        assert!(found.iter().zip(&tau).all(|(x, y)| near(*x, *y, tau.amax())));
-        assert!(single.mass_matrix(&q32).iter().zip(&m).all(|(x, y)| near(*x, *y, m.amax())));
+        assert!(found.iter().zip(&tau).all(|(x, y)| is_close(*x, *y, tau.amax())));
+        assert!(single.mass_matrix(&q32).iter().zip(&m).all(|(x, y)| is_close(*x, *y, m.amax())));
         let [q2, v2, a2] = [q.as_slice(), v.as_slice(), a.as_slice()].map(<[f64]>::to_vec);
         let wide = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
         let found = lanes.inverse_dynamics(

@@ -46,14 +46,14 @@ where
 
 #[test]
 fn robots_have_the_limits_of_their_files() {
-    let of = |file: &str| {
+    let text = |file: &str| {
         std::fs::read_to_string(format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    assert_eq!(compare(&Ur5, &of("ur5")), 24);
-    assert_eq!(compare(&PandaArm, &of("panda")), 28);
-    assert_eq!(compare(&Solo12, &of("solo12")), 48);
-    assert!(compare(&AnymalB, &of("anymal_b")) > 0);
-    assert!(compare(&SimpleHumanoid, &of("simple_humanoid")) > 0);
+    assert_eq!(compare(&Ur5, &text("ur5")), 24);
+    assert_eq!(compare(&PandaArm, &text("panda")), 28);
+    assert_eq!(compare(&Solo12, &text("solo12")), 48);
+    assert!(compare(&AnymalB, &text("anymal_b")) > 0);
+    assert!(compare(&SimpleHumanoid, &text("simple_humanoid")) > 0);
 }
 
 /// The limits of the arm are those of Franka Emika's *Robot and interface specifications* (2021).

@@ -105,14 +105,18 @@ fn moments_of_inertia_are_those_of_energies() {
     for _ in 0..5 {
         let q: SVector<f64, 9> = random.configuration(&m);
         let place = m.frame_placement(frame!(Bodies, "hull"), &q);
-        let turned = |w: [f64; 3]| {
+        let rotation_rates = |w: [f64; 3]| {
             let w = linkwork::nalgebra::Vector3::from(w);
             let (own, v) =
                 (place.rotation.inverse() * w, place.rotation.inverse() * w.cross(&place.translation.vector));
             let v = SVector::from([v.x, v.y, v.z, own.x, own.y, own.z, 0.0, 0.0]);
             m.kinetic_energy(&q, &v)
         };
-        let (x, y, both) = (turned([1.0, 0.0, 0.0]), turned([0.0, 1.0, 0.0]), turned([1.0, 1.0, 0.0]));
+        let (x, y, both) = (
+            rotation_rates([1.0, 0.0, 0.0]),
+            rotation_rates([0.0, 1.0, 0.0]),
+            rotation_rates([1.0, 1.0, 0.0]),
+        );
         same(m.about_x(&q), 2.0 * x);
         same(m.of_x_and_y(&q), both - x - y);
         same(m.beside(&q), 0.15 * m.mass + m.mass * (0.3 * 0.3 + 0.1 * 0.1));
@@ -147,8 +151,8 @@ fn slopes<const N: usize, const NY: usize>(
 ) -> SMatrix<f64, NY, N> {
     let step = 2e-3;
     let columns: [SVector<f64, NY>; N] = std::array::from_fn(|k| {
-        let at = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let part = |s: f64| at(s) - at(-s);
+        let value = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let part = |s: f64| value(s) - value(-s);
         (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
     });
     SMatrix::from_fn(|i, j| columns[j][i])
@@ -209,13 +213,13 @@ fn measurements_change_with_parameters() {
     let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
     let (v, a) = (random.vector(1.0), random.vector(1.0));
     assert_eq!(Carrier::PARAMETERS, ["mass", "reach"]);
-    let at = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
-    close("altitude", &m.altitude_by_parameters(&q), &slopes(|d| SVector::from([at(d).altitude(&q)])));
-    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| at(d).camera(&q, &v)));
+    let perturbed = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
+    close("altitude", &m.altitude_by_parameters(&q), &slopes(|d| SVector::from([perturbed(d).altitude(&q)])));
+    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| perturbed(d).camera(&q, &v)));
     close(
         "accelerometer",
         &m.accelerometer_by_parameters(&q, &v, &a),
-        &slopes(|d| at(d).accelerometer(&q, &v, &a)),
+        &slopes(|d| perturbed(d).accelerometer(&q, &v, &a)),
     );
 }
 
@@ -324,10 +328,10 @@ fn elements_deliver_what_energies_gain() {
         same(m.applied(&q, &v), m.disturbance_power(&q, &v));
         same(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
         // Potential energy decreases along the motion by the power that springs deliver.
-        let moved = |h: f64| m.integrate(&q, &(v * h));
+        let displaced = |h: f64| m.integrate(&q, &(v * h));
         let energy = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
         let h = 1e-5;
-        let slope = (energy(&moved(h)) - energy(&moved(-h))) / (2.0 * h);
+        let slope = (energy(&displaced(h)) - energy(&displaced(-h))) / (2.0 * h);
         assert!((m.stored(&q, &v) + slope).abs() < 1e-6 * (1.0 + slope.abs()));
     }
 }

@@ -26,23 +26,23 @@ where
     let cases = Record::load(&format!("mujoco/{name}.json")).records("cases");
     assert!(cases.len() >= 4);
     for (i, case) in cases.iter().enumerate() {
-        let of = |what: &str| format!("{name}, case {i}: {what}");
+        let label = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, u) = (&case.vector("q"), &case.vector("v"), &case.vector("u"));
         let mass_matrix = case.symmetric::<NV>("M");
         assert_close(
-            of("mass matrix"),
+            label("mass matrix"),
             robot.mass_matrix(0.0, q).as_slice(),
             mass_matrix.as_slice(),
             TOLERANCE,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(of("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
+        assert_close(label("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
         let forces = robot.generalized_forces(0.0, q, v, u);
-        assert_close(of("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
+        assert_close(label("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
         // MuJoCo's friction is a constraint and is not part of these reference values; here it is a force.
         let tau = forces + case.vector("friction");
         let a = robot.forward_dynamics(0.0, q, v, &tau);
-        assert_close(of("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
+        assert_close(label("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
     }
 }
 
@@ -52,7 +52,7 @@ macro_rules! check_frames {
         for (i, case) in Record::load(concat!("mujoco/", $name, ".json")).records("cases").iter().enumerate()
         {
             let placements = $robot.frame_placements(&case.vector("q"));
-            for (frame, expected) in case.named("frames") {
+            for (frame, expected) in case.named_lists("frames") {
                 let index = $robot::FRAMES.iter().position(|known| *known == frame);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{frame}`"))];
                 let rotation = placement.rotation.matrix().transpose();
@@ -138,12 +138,12 @@ fn conditions() {
     // `right` is a function of `left`, since their sum is constrained.
     assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
     for (i, case) in Record::load("mujoco/conditions.json").records("cases").iter().enumerate() {
-        let of = |what: &str| {
+        let arms = |what: &str| {
             let all = case.numbers(what);
             let kept: Vec<f64> = all.iter().copied().take(7).collect();
             (all, kept)
         };
-        let ((q, own_q), (v, own_v), (a, own_a)) = (of("q"), of("v"), of("a"));
+        let ((q, own_q), (v, own_v), (a, own_a)) = (arms("q"), arms("v"), arms("a"));
         assert!((q[7] - (-0.2 + 2.0 * q[6] - 0.4)).abs() < 1e-12 && (v[7] - 2.0 * v[6]).abs() < 1e-12);
         let (q, v) = (SVector::from_vec(own_q), SVector::from_vec(own_v));
         assert!(Conditions.constraint_residuals(&q).amax() < 1e-12, "case {i}");

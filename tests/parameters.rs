@@ -216,8 +216,8 @@ fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
         || Inertial::point(link.mass * (0.06 + random.uniform(0.05)), random.vector::<3>(0.06).into());
     let (a, b) = (point(), point());
     let [x, y, z] = link.com;
-    let at = |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
-    link.scaled(0.95).plus(&at(a)).plus(&at(b))
+    let placed = |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
+    link.scaled(0.95).plus(&placed(a)).plus(&placed(b))
 }
 
 /// Checks that two robots have the same torques in random motions: they may differ only in parameters without
@@ -331,8 +331,8 @@ fn one_link_takes_what_reaches_it() {
 fn calibration_moves_frames() {
     let mut arm = Arm::<f64>::from_file(0.0);
     let q = [0.0; 3].into();
-    let at = |arm: &Arm<f64>| arm.frame_placement(frame!(Arm<f64>, "fore"), &q).translation.vector;
-    let before = at(&arm);
+    let position = |arm: &Arm<f64>| arm.frame_placement(frame!(Arm<f64>, "fore"), &q).translation.vector;
+    let before = position(&arm);
     arm.elbow_placement.xyz[0] += 0.01;
-    assert_close("moved", (at(&arm) - before).as_slice(), &[0.01, 0.0, 0.0], 1e-15);
+    assert_close("moved", (position(&arm) - before).as_slice(), &[0.01, 0.0, 0.0], 1e-15);
 }

@@ -214,7 +214,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         let groups = find(&variant.model, &variant.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
         let Some(limbs) =
-            Limbs::of(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
+            Limbs::new(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
         else {
             // Limbs with numeric values always become lanes; expressions of parameters may have a different
             // structure in each limb.

@@ -24,27 +24,27 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     for (i, case) in table(name).records("cases").iter().enumerate() {
-        let of = |what: &str| format!("{name}, case {i}: {what}");
+        let label = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
         let mass_matrix = case.symmetric::<NV>("M");
 
         assert_close(
-            of("mass matrix"),
+            label("mass matrix"),
             robot.mass_matrix(0.0, q).as_slice(),
             mass_matrix.as_slice(),
             DYNAMICS,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(of("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
+        assert_close(label("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
         let inverse = robot.inverse_dynamics(0.0, q, v, a);
-        assert_close(of("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
+        assert_close(label("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
         let forward = robot.forward_dynamics(0.0, q, v, tau);
-        assert_close(of("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
+        assert_close(label("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
         let energies = [robot.kinetic_energy(0.0, q, v), robot.potential_energy(0.0, q)];
         let expected = [case.number("kinetic_energy"), case.number("potential_energy")];
-        assert_close(of("energies"), &energies, &expected, DYNAMICS);
+        assert_close(label("energies"), &energies, &expected, DYNAMICS);
         let momentum = robot.generalized_momentum(0.0, q, v);
-        assert_close(of("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
+        assert_close(label("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
     }
 }
 
@@ -72,7 +72,7 @@ macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
         for (i, case) in table($name).records("cases").iter().enumerate() {
             let placements = $robot.frame_placements(&case.vector("q"));
-            for (link, expected) in case.named("frames") {
+            for (link, expected) in case.named_lists("frames") {
                 let index = $robot::FRAMES.iter().position(|frame| *frame == link);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{link}`"))];
                 let rotation = placement.rotation.matrix().transpose();
@@ -89,26 +89,31 @@ macro_rules! check_kinematics {
         assert_eq!(table($name).string("last_link"), $last);
         let last = frame!($robot, $last);
         for (i, case) in table($name).records("cases").iter().enumerate() {
-            let of = |what: &str| format!("{}, case {i}: {what}", $name);
+            let label = |what: &str| format!("{}, case {i}: {what}", $name);
             let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
 
             let velocity = $robot.frame_velocity(last, q, v);
-            assert_close(of("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
+            assert_close(label("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
             let acceleration = $robot.frame_acceleration(last, q, v, a);
             assert_close(
-                of("acceleration"),
+                label("acceleration"),
                 acceleration.as_slice(),
                 &case.numbers("a_last_classical"),
                 KINEMATICS,
             );
             let jacobian = $robot.frame_jacobian(last, q);
             let expected = case.matrix::<6, { $robot::NV }>("J_last");
-            assert_close(of("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
+            assert_close(label("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
 
             let center = $robot.center_of_mass(q);
-            assert_close(of("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
+            assert_close(label("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
             let momentum = $robot.momentum(q, v);
-            assert_close(of("momentum"), momentum.as_slice(), &case.numbers("centroidal_momentum"), DYNAMICS);
+            assert_close(
+                label("momentum"),
+                momentum.as_slice(),
+                &case.numbers("centroidal_momentum"),
+                DYNAMICS,
+            );
         }
     };
 }
@@ -160,25 +165,25 @@ mod panda_mimic {
     fn dynamics() {
         let robot = PandaMimic;
         for (i, case) in table("panda_mimic").records("cases").iter().enumerate() {
-            let of = |what: &str| format!("panda with mimic, case {i}: {what}");
+            let label = |what: &str| format!("panda with mimic, case {i}: {what}");
             let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
             let mass_matrix = case.symmetric::<{ PandaMimic::NV }>("M");
             assert_close(
-                of("mass matrix"),
+                label("mass matrix"),
                 robot.mass_matrix(q).as_slice(),
                 mass_matrix.as_slice(),
                 DYNAMICS,
             );
             assert_close(
-                of("bias forces"),
+                label("bias forces"),
                 robot.bias_forces(q, v).as_slice(),
                 &case.numbers("nle"),
                 DYNAMICS,
             );
             let forces = robot.inverse_dynamics(q, v, a);
-            assert_close(of("inverse dynamics"), forces.as_slice(), &case.numbers("rnea"), DYNAMICS);
+            assert_close(label("inverse dynamics"), forces.as_slice(), &case.numbers("rnea"), DYNAMICS);
             let acceleration = robot.forward_dynamics(q, v, &case.vector("rnea"));
-            assert_close(of("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
+            assert_close(label("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
         }
     }
 
@@ -218,8 +223,8 @@ mod panda_mimic {
 fn locked_joints_stay_at_zero() {
     for case in table("panda").records("cases") {
         let [q, v, a] = ["q", "v", "a"].map(|key| case.vector::<9>(key).fixed_rows::<7>(0).into_owned());
-        let still = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
-        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| still(x)[i]));
+        let with_fingers = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| with_fingers(x)[i]));
 
         let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
         assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);

@@ -51,8 +51,8 @@ fn the_same_tree_of_nested_frames() {
             ["base", "upper", "plate", "carriage", "wheel", "hand::palm", "hand::tip::pad", "deck", "socket"]
         {
             let twin = link.rsplit("::").next().unwrap_or(link);
-            let at = |names: &[&str], name: &str| names.iter().position(|known| *known == name).unwrap();
-            let (a, b) = (all[at(&Sdf::FRAMES, link)], twins[at(&Urdf::FRAMES, twin)]);
+            let index = |names: &[&str], name: &str| names.iter().position(|known| *known == name).unwrap();
+            let (a, b) = (all[index(&Sdf::FRAMES, link)], twins[index(&Urdf::FRAMES, twin)]);
             assert_close(link, a.to_homogeneous().as_slice(), b.to_homogeneous().as_slice(), TOLERANCE);
         }
     }

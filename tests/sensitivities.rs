@@ -79,12 +79,14 @@ fn slopes<M: Copy, const NV: usize, const NP: usize>(
 ) -> SMatrix<f64, NV, NP> {
     SMatrix::from_columns(&parameters.map(|parameter| {
         let h = 1e-3;
-        let moved = |s: f64| {
+        let perturbed_value = |s: f64| {
             let mut other = at;
             *parameter(&mut other) += s * h;
             f(&other)
         };
-        ((moved(1.0) - moved(-1.0)) * 8.0 - (moved(2.0) - moved(-2.0))) / (12.0 * h)
+        ((perturbed_value(1.0) - perturbed_value(-1.0)) * 8.0
+            - (perturbed_value(2.0) - perturbed_value(-2.0)))
+            / (12.0 * h)
     }))
 }
 

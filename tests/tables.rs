@@ -188,16 +188,16 @@ fn several_states_at_once_look_up_each_for_itself() {
     let aircraft = tabulated(900.0, 16.0);
     let wide = tabulated(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
     let states = states();
-    let put = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
-    let q = SVector::<_, 7>::from_fn(|i, _| put(&|s| s.q[i]));
-    let v = SVector::<_, 6>::from_fn(|i, _| put(&|s| s.v[i]));
-    let u = SVector::<_, 2>::from_fn(|i, _| put(&|s| s.u[i]));
+    let lanes = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
+    let q = SVector::<_, 7>::from_fn(|i, _| lanes(&|s| s.q[i]));
+    let v = SVector::<_, 6>::from_fn(|i, _| lanes(&|s| s.v[i]));
+    let u = SVector::<_, 2>::from_fn(|i, _| lanes(&|s| s.u[i]));
     let (all, batched) = (wide.generalized_forces(&q, &v, &u), aircraft.generalized_forces_lanes(&q, &v, &u));
     for (lane, state) in states.iter().enumerate() {
         let one = aircraft.generalized_forces(&state.q, &state.v, &state.u);
-        let of = |all: &SVector<Lanes<f64, 4>, 6>| all.map(|x| x.0[lane]);
-        assert_similar("numbers of lanes", of(&all).as_slice(), one.as_slice(), 1e-12);
-        assert_similar("functions of lanes", of(&batched).as_slice(), one.as_slice(), 1e-12);
+        let lane_values = |all: &SVector<Lanes<f64, 4>, 6>| all.map(|x| x.0[lane]);
+        assert_similar("numbers of lanes", lane_values(&all).as_slice(), one.as_slice(), 1e-12);
+        assert_similar("functions of lanes", lane_values(&batched).as_slice(), one.as_slice(), 1e-12);
     }
 }
 

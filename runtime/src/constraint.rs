@@ -350,7 +350,10 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         if h != nalgebra::zero() {
             let residuals =
                 self.constraint_residuals(t + h, &self.integrate(q, &(way * constant::<Self::Scalar>(2.0))));
-            gap.iter_mut().zip(residuals.iter()).take(holonomic).for_each(|(gap, residual)| *gap = *residual / h);
+            gap.iter_mut()
+                .zip(residuals.iter())
+                .take(holonomic)
+                .for_each(|(gap, residual)| *gap = *residual / h);
         }
         self.constraint_response(t, q, p, &gap)
     }

@@ -80,11 +80,11 @@ pub use lawful::{Law, Restitution};
 use layout::Layout;
 #[doc(hidden)]
 pub use overlap::start;
-#[doc(hidden)]
-pub use response::responses;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::{Equations, Problem, entry};
+#[doc(hidden)]
+pub use response::responses;
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};

@@ -199,9 +199,9 @@ pub mod __private {
     pub use crate::constraint::{
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
         Structure, assemble, assembly_mode, careful_dynamics, careful_response, constrained_derivatives,
-        constrained_second_derivatives, independent_solution, least_violation, least_solution, nearly_singular,
-        pressing_solution, regular_solution, slipping_response, slipping_solution, stabilized_derivatives,
-        with_curvature,
+        constrained_second_derivatives, independent_solution, least_solution, least_violation,
+        nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
+        stabilized_derivatives, with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::contact::held_derivatives;

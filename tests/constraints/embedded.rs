@@ -216,13 +216,13 @@ fn a_solved_six_bar_transmits_what_it_does_with_multipliers() {
         });
         let mut all = SVector::from([angle, coupler.0 - angle, rocker.0, 0.0, 0.0]);
         let order = SixBar::VELOCITIES;
-        let at = |name: &str| order.iter().position(|v| *v == name).expect("a joint of the tree");
-        all[at("guide")] = slide.1;
-        all[at("third")] = rod.0 - rocker.0;
+        let index = |name: &str| order.iter().position(|v| *v == name).expect("a joint of the tree");
+        all[index("guide")] = slide.1;
+        all[index("third")] = rod.0 - rocker.0;
         assert!(bar.constraint_residuals(&all).amax() < 1e-13, "{}", bar.constraint_residuals(&all));
         let v = bar.project_velocity(&all, &SVector::from([3.0, 0.0, 0.0, 0.0, 0.0])).expect("regular");
         let here = SVector::from([v[0]]);
-        assert!((solved.sliding(&q, &here).x - v[at("guide")]).abs() < 1e-12);
+        assert!((solved.sliding(&q, &here).x - v[index("guide")]).abs() < 1e-12);
         let a = solved.forward_dynamics(&q, &here, &SVector::zeros());
         let b = bar.forward_dynamics(&all, &v, &SVector::zeros());
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b[0].abs()), "{a} and {b} at {angle}");

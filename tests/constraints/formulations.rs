@@ -90,8 +90,8 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     let source = chain.source(arguments);
     if let Err(messages) = try_model(&source, |_, model| check(model)) {
         let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
-        let known = |m: &String| known.iter().any(|k| m.contains(k));
-        assert!(messages.iter().all(known), "{}\n{}", messages.join("\n"), source.1);
+        let is_expected = |m: &String| known.iter().any(|k| m.contains(k));
+        assert!(messages.iter().all(is_expected), "{}\n{}", messages.join("\n"), source.1);
     }
 }
 
@@ -99,7 +99,7 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
 /// compares the pivots of the elimination, which follow the accelerations and multipliers in `found`, with
 /// their values before the elimination.
 fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
-    fn by<const NC: usize>(found: &[f64]) -> bool {
+    fn has_solution<const NC: usize>(found: &[f64]) -> bool {
         let part = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
         let (pivots, before) = (part(1), part(2));
         let all = Elimination { accelerations: [], multipliers: part(0), pivots, before };
@@ -107,12 +107,12 @@ fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
     }
     let found = &found[nv..];
     match nc {
-        1 => by::<1>(found),
-        2 => by::<2>(found),
-        3 => by::<3>(found),
-        4 => by::<4>(found),
-        5 => by::<5>(found),
-        6 => by::<6>(found),
+        1 => has_solution::<1>(found),
+        2 => has_solution::<2>(found),
+        3 => has_solution::<3>(found),
+        4 => has_solution::<4>(found),
+        5 => has_solution::<5>(found),
+        6 => has_solution::<6>(found),
         _ => panic!("a joint has at most six constraints, found {nc}"),
     }
 }
@@ -188,18 +188,18 @@ proptest! {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
             let speed = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
-            let at = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::of(s) {
+            let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::of(s) {
                 Quantity::Configuration(k) => q[k] + step * speed(k),
                 Quantity::Velocity(k) => speed(k),
                 _ => 0.0,
             });
             let slope = |e: &[Expr<'_>]| -> Vec<f64> {
                 let h = 1e-5;
-                at(e, h).iter().zip(at(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+                values_after(e, h).iter().zip(values_after(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
             };
             let (residuals, rates) = (constraints::residuals(model), constraints::rates(model));
             let scale = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            for (derivative, of) in [(at(&rates, 0.0), slope(&residuals)), (at(&constraints::biases(model), 0.0), slope(&rates))] {
+            for (derivative, of) in [(values_after(&rates, 0.0), slope(&residuals)), (values_after(&constraints::biases(model), 0.0), slope(&rates))] {
                 for (d, o) in derivative.iter().zip(&of) {
                     assert!((d - o).abs() < 1e-6 * scale(&derivative), "{d} and {o} of {chain:?}");
                 }

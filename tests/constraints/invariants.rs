@@ -31,7 +31,7 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         let missing = Mechanism::inverse_dynamics(m, 0.0, &q, &v, &a) - tau - j.transpose() * lambda;
         assert!(missing.amax() < 1e-9 * scale.max(lambda.amax()), "{missing}");
         // The constraints do no work: the power of the forces is the rate of the energy.
-        let (before, after) = (moved(m, &q, &v, &a, -1e-5), moved(m, &q, &v, &a, 1e-5));
+        let (before, after) = (energy_after(m, &q, &v, &a, -1e-5), energy_after(m, &q, &v, &a, 1e-5));
         let power = (after - before) / 2e-5;
         let energy = after.abs().max(1.0);
         assert!((power - tau.dot(&v)).abs() < 1e-5 * energy * scale, "{power} for {}", tau.dot(&v));
@@ -81,7 +81,7 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
 }
 
 /// Returns the energy after a short time `h`.
-fn moved<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn energy_after<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,

@@ -249,13 +249,15 @@ fn distances_are_the_least() {
         assert!((gaps[0] - (lines - 0.15)).abs() < 1e-6, "{case}: {} {}", gaps[0], lines - 0.15);
         let center = place(1, [0.0, 0.0, 0.3]);
         // The distance to the box is convex along each of its axes.
-        let along = |axis: usize, half: f64| {
+        let axis_distance = |axis: usize, half: f64| {
             let mut unit = [0.0; 3];
             unit[axis] = 1.0;
             let x = (center - place(2, [0.0; 3])).dot(&(place(2, unit) - place(2, [0.0; 3])));
             (x.abs() - half).max(0.0)
         };
-        let cuboid = (along(0, 0.2).powi(2) + along(1, 0.15).powi(2) + along(2, 0.1).powi(2)).sqrt();
+        let cuboid =
+            (axis_distance(0, 0.2).powi(2) + axis_distance(1, 0.15).powi(2) + axis_distance(2, 0.1).powi(2))
+                .sqrt();
         assert!((gaps[1] - (cuboid - 0.05)).abs() < 1e-6, "{case}: {} {}", gaps[1], cuboid - 0.05);
         // Contact velocities are the rates of the gap functions.
         let v = SVector::<f64, 18>::from_fn(|_, _| random());

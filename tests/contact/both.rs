@@ -102,10 +102,10 @@ fn time_stepping_leads_to_the_same() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
     let (_, end) = follow(&m, &q, &v, 0.3);
-    let away = |h: f64| {
+    let distance = |h: f64| {
         let run = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.3);
         (run.finish().unwrap().q - end).norm()
     };
-    let [coarse, fine, finest] = [1e-3, 1e-4, 1e-5].map(away);
+    let [coarse, fine, finest] = [1e-3, 1e-4, 1e-5].map(distance);
     assert!(coarse < 1e-2 && fine < 1e-3 && finest < 1e-4, "{coarse} {fine} {finest}");
 }

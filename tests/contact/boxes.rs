@@ -247,13 +247,13 @@ fn boxes_strike_by_the_laws() {
         let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
         let far = Vector3::from(random.vector::<3>(1.0)).normalize();
         // Both boxes are above the floor.
-        let at = |place: Vector3<f64>| {
+        let configuration = |place: Vector3<f64>| {
             let mut q = placed(&m, [place[0], place[1], place[2] + 1.0], turn);
             q[2] = 1.0;
             q
         };
-        let place = met(|place| m.contact_gaps(&at(place)).rows(0, 13).min(), far, 0.0);
-        let (q, v) = (at(place), random.vector(2.0));
+        let place = met(|place| m.contact_gaps(&configuration(place)).rows(0, 13).min(), far, 0.0);
+        let (q, v) = (configuration(place), random.vector(2.0));
         check(&m, &q, &v);
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let moment = |v: &SVector<f64, 12>| {

@@ -79,10 +79,10 @@ pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usi
     let held = motion(q, v, tau);
     assert!(found.a == held.a && found.forces == held.forces);
     for k in 0..NV {
-        let along = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-        let of_q = |s: f64| motion(&m.integrate(q, &along(s)), v, tau);
-        let of_v = |s: f64| motion(q, &(v + along(s)), tau);
-        let of_tau = |s: f64| motion(q, v, &(tau + along(s)));
+        let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let of_q = |s: f64| motion(&m.integrate(q, &unit_step(s)), v, tau);
+        let of_v = |s: f64| motion(q, &(v + unit_step(s)), tau);
+        let of_tau = |s: f64| motion(q, v, &(tau + unit_step(s)));
         for (what, expected, column) in [
             ("∂v̇/∂q", slope(|s| of_q(s).a), found.by_q.column(k)),
             ("∂v̇/∂v", slope(|s| of_v(s).a), found.by_v.column(k)),
@@ -217,13 +217,13 @@ fn a_table_shares_its_weight() {
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
     let motion = |q, v, tau| contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap().a;
     for k in 0..7 {
-        let along = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let unit_step = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
         let mut columns = vec![
-            (slope(|s| motion(m.integrate(&q, &along(s)), v, tau)), found.by_q.column(k)),
-            (slope(|s| motion(q, v, tau + along(s))), found.by_tau.column(k)),
+            (slope(|s| motion(m.integrate(&q, &unit_step(s)), v, tau)), found.by_q.column(k)),
+            (slope(|s| motion(q, v, tau + unit_step(s))), found.by_tau.column(k)),
         ];
         if !(3..6).contains(&k) {
-            columns.push((slope(|s| motion(q, v + along(s), tau)), found.by_v.column(k)));
+            columns.push((slope(|s| motion(q, v + unit_step(s), tau)), found.by_v.column(k)));
         }
         for (expected, column) in columns {
             let off = (column - expected).amax();
@@ -379,10 +379,11 @@ fn steps_of_a_held_quadruped() {
         };
         let (a, b) = (next.a::<36>(), next.b::<36>());
         for k in 0..36 {
-            let along = |s: f64, first: usize| {
+            let unit_step = |s: f64, first: usize| {
                 SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
             };
-            let expected = slope(|s| step(&OnPoints {}.integrate(q, &along(s, 0)), &(v + along(s, 18)), &u));
+            let expected =
+                slope(|s| step(&OnPoints {}.integrate(q, &unit_step(s, 0)), &(v + unit_step(s, 18)), &u));
             let off = (a.column(k) - expected).amax();
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
         }
@@ -424,9 +425,9 @@ fn landings_have_derivatives() {
             m.mass_matrix(0.0, q) * (found.v - v) - m.contact_jacobian(0.0, q).transpose() * found.impulses;
         assert!(M::CONSTRAINED || balance.amax() < 1e-10, "{balance}");
         for k in 0..NV {
-            let along = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-            let of_q = |s: f64| landed(&m.integrate(q, &along(s)), v);
-            let of_v = |s: f64| landed(q, &(v + along(s)));
+            let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
+            let of_q = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
+            let of_v = |s: f64| landed(q, &(v + unit_step(s)));
             let of_velocity =
                 [(slope(|s| of_q(s).v), found.by_q.column(k)), (slope(|s| of_v(s).v), found.by_v.column(k))];
             let of_impulses = [

@@ -129,8 +129,9 @@ fn a_motor_presses_a_piston_onto_its_stop() {
     assert!(m.contact_gaps(&start)[0].abs() < 1e-9);
     let load = m.load(&start, &SVector::zeros(), &[1.5].into()).unwrap();
     // Virtual work: derivative of the piston's position with respect to the crank's angle.
-    let far = |angle: f64| 0.04 * angle.cos() + (0.13_f64.powi(2) - (0.04 * angle.sin()).powi(2)).sqrt();
-    let slope = (far(-angle + 1e-6) - far(-angle - 1e-6)) / 2e-6;
+    let piston_position =
+        |angle: f64| 0.04 * angle.cos() + (0.13_f64.powi(2) - (0.04 * angle.sin()).powi(2)).sqrt();
+    let slope = (piston_position(-angle + 1e-6) - piston_position(-angle - 1e-6)) / 2e-6;
     assert!((load + 1.5 / slope).abs() < 1e-5 * load.abs(), "{load} {slope}");
 }
 

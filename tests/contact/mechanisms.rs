@@ -191,7 +191,7 @@ struct Gears {
 /// stay in contact.
 #[test]
 fn gears_rattle_in_their_play() {
-    let kept = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
+    let conserved_momentum = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
     let teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
     let start = SVector::from([3.0, 1.0]);
     for (restitution, impacts) in [(1.0, 4), (0.5, 3), (0.0, 1)] {
@@ -209,7 +209,7 @@ fn gears_rattle_in_their_play() {
         let end = run.finish().unwrap();
         let wanted = speed * restitution.powi(impacts) * if impacts % 2 == 0 { 1.0 } else { -1.0 };
         assert!((teeth(&end.v) - wanted).abs() < 1e-9, "{} {wanted}", teeth(&end.v));
-        assert!((kept(&end.v) - kept(&start)).abs() < 1e-12);
+        assert!((conserved_momentum(&end.v) - conserved_momentum(&start)).abs() < 1e-12);
         assert!(m.contact_gaps(&end.q).min() > -1e-9);
     }
 }

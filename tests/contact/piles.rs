@@ -71,15 +71,15 @@ fn cards_lean_on_each_other() {
         lean,
     ]);
     let needed = [lean.tan() / 2.0, lean.tan()];
-    let moved = |floor: f64, faces: f64| {
+    let displacement = |floor: f64, faces: f64| {
         let m = Cards { floor: needed[0] * floor, faces: needed[1] * faces };
         assert!(m.contact_gaps(&q).amax() < 1e-16);
         let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(0.2);
         (run.finish().unwrap().q - q).amax()
     };
-    assert!(moved(1.02, 1.02) < 1e-9, "{:e}", moved(1.02, 1.02));
-    assert!(moved(0.98, 1.02) > 1e-3, "{:e}", moved(0.98, 1.02));
-    assert!(moved(1.02, 0.98) > 1e-3, "{:e}", moved(1.02, 0.98));
+    assert!(displacement(1.02, 1.02) < 1e-9, "{:e}", displacement(1.02, 1.02));
+    assert!(displacement(0.98, 1.02) > 1e-3, "{:e}", displacement(0.98, 1.02));
+    assert!(displacement(1.02, 0.98) > 1e-3, "{:e}", displacement(1.02, 0.98));
 }
 
 /// House of seven cards: two pairs that lean on each other support a roof, on which a third pair stands.
@@ -124,14 +124,14 @@ fn a_house_of_cards_stands() {
         q.fixed_rows_mut::<3>(9 + 3 * k).copy_from_slice(&[x + 0.05 * sine, y + 0.05 * cosine, lean]);
     }
     q[19] = 0.1 * cosine;
-    let moved = |friction: f64| {
+    let displacement = |friction: f64| {
         let m = House { friction };
         assert!(m.contact_gaps(&q).amax() < 1e-15, "{}", m.contact_gaps(&q));
         let run = simulate(&m).from(q, [0.0; 21]).method(TimeStepping::step(1e-3)).duration(1.0);
         (run.finish().unwrap().q - q).amax()
     };
-    assert!(moved(1.0) < 1e-9, "{:e}", moved(1.0));
-    assert!(moved(0.1) > 1e-2, "{:e}", moved(0.1));
+    assert!(displacement(1.0) < 1e-9, "{:e}", displacement(1.0));
+    assert!(displacement(0.1) > 1e-2, "{:e}", displacement(0.1));
 }
 
 /// Newton's cradle: balls on threads of equal length.

@@ -27,7 +27,7 @@ rod!(Velocities, e);
 
 /// Returns the normal and slip velocities of the end after an impact of a rod that does not rotate, and the
 /// loss of kinetic energy. The argument `rates` holds the velocities of the end before the impact.
-fn after<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
+fn impact<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
 {
@@ -66,11 +66,11 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
             let pressed = (tt + nt * w[(0, 1)].signum() * slip) / (nn * tt - nt * nt);
             let along = (-nt * w[(0, 1)].signum() - nn * slip) / (nn * tt - nt * nt);
             assert!(along.abs() < friction * pressed && share.abs() < friction);
-            let (found, taken) = after(&poisson, angle, [-1.0, slip]);
+            let (found, taken) = impact(&poisson, angle, [-1.0, slip]);
             let wanted = e * (1.0 + share * slip);
             assert!((found[0] - wanted).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?} {wanted}");
             assert!(taken > 0.0);
-            let (found, _) = after(&newton, angle, [-1.0, slip]);
+            let (found, _) = impact(&newton, angle, [-1.0, slip]);
             assert!((found[0] - e).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?}");
         }
     }
@@ -83,8 +83,8 @@ fn while_a_rod_slips_both_laws_are_one() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
     for angle in [0.6, 0.8, 1.0] {
         for slip in [-3.0, 3.0] {
-            let (poisson, _) = after(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
-            let (newton, _) = after(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
+            let (poisson, _) = impact(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
+            let (newton, _) = impact(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
             assert!((poisson[0] - e).abs() < 1e-12, "{poisson:?}");
             assert!(
                 (poisson[1] - newton[1]).abs() < 1e-12 && poisson[1] * slip > 0.0,

@@ -64,14 +64,14 @@ fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64)
 fn impacts_last_as_long_as_closed_forms_say() {
     let method = || DormandPrince::new().tolerance(1e-12, 1e-14);
     let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation: 0.0 };
-    let at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
-    let (time, speed) = rebound(at, half * 1.5);
+    let (time, speed) = rebound(state_at, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
     let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
-    let at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
-    let (time, speed) = rebound(at, 4.0 * depth);
+    let (time, speed) = rebound(state_at, 4.0 * depth);
     assert!(
         (time / depth - 2.943_274).abs() < 1e-5 && (speed - 1.0).abs() < 1e-8,
         "{} {speed}",
@@ -86,11 +86,11 @@ fn restitution_falls_with_the_speed() {
     for dissipation in [0.003, 0.03] {
         let restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
-        let at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, linear) = rebound(at, 0.05);
+        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, linear) = rebound(state_at, 0.05);
         let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
-        let at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, round) = rebound(at, 0.05);
+        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, round) = rebound(state_at, 0.05);
         for found in [linear, round] {
             assert!((found - restitution(1.0)).abs() < dissipation * dissipation, "{dissipation}: {found}");
         }

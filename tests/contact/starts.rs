@@ -113,12 +113,12 @@ struct Crank {
 #[test]
 fn loops_stay_closed() {
     let m = Crank {};
-    let at = |angle: f64| {
+    let configuration = |angle: f64| {
         let rod = -(angle.sin() / 3.0).asin();
         SVector::from([angle, rod - angle, 0.1 * angle.cos() + 0.3 * rod.cos()])
     };
-    let q = contact::project(&m, 0.0, &at(0.3)).unwrap();
-    assert!(contact::check(&m, 0.0, &at(0.3)).is_err());
+    let q = contact::project(&m, 0.0, &configuration(0.3)).unwrap();
+    assert!(contact::check(&m, 0.0, &configuration(0.3)).is_err());
     assert!(m.constraint_residuals(&q).amax() < 1e-12, "{}", m.constraint_residuals(&q));
     assert!((q[2] - 0.37).abs() < 1e-10, "{q}");
     let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);

@@ -24,10 +24,10 @@ fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     };
     let (mut best, mut size) = ([x, y], 0.2);
     while size > 1e-10 {
-        let near = |k: i32| {
+        let grid_point = |k: i32| {
             [best[0] + size * f64::from(k % 9 - 4) / 4.0, best[1] + size * f64::from(k / 9 - 4) / 4.0]
         };
-        let least = (0..81).map(near).min_by(|a, b| square(a[0], a[1]).total_cmp(&square(b[0], b[1])));
+        let least = (0..81).map(grid_point).min_by(|a, b| square(a[0], a[1]).total_cmp(&square(b[0], b[1])));
         best = least.unwrap();
         size *= 0.6;
     }

@@ -80,9 +80,10 @@ fn slopes<const NV: usize, const NU: usize, const R: usize>(
 ) -> Vec<SVector<f64, R>> {
     let h = 1e-3;
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let along = |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
+    let value_along =
+        |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
     let slope = |k| {
-        let change = |x: f64| along(k, x) - along(k, -x);
+        let change = |x: f64| value_along(k, x) - value_along(k, -x);
         weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| change(x) * (w / h)).sum()
     };
     (0..2 * NV + NU).map(slope).collect()
@@ -134,12 +135,16 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let off = (m.difference(&next_q, &found.q).amax(), (next_v - found.v).amax());
     let change = (found.v - v).amax().max(1.0);
     assert!(off.0 < 1e-14 && off.1 < 2e-14 * change, "{name}: {off:?}, {change}");
-    let moved = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
+    let displaced_step = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
         step(&m.integrate(q, dq), &(v + dv), &(u + du))
     };
-    let by_q: Vec<f64> =
-        slopes(|dq, dv, du| m.difference(&next_q, &moved(dq, dv, du).0)).iter().flatten().copied().collect();
-    let by_v: Vec<f64> = slopes(|dq, dv, du| moved(dq, dv, du).1).iter().flatten().copied().collect();
+    let by_q: Vec<f64> = slopes(|dq, dv, du| m.difference(&next_q, &displaced_step(dq, dv, du).0))
+        .iter()
+        .flatten()
+        .copied()
+        .collect();
+    let by_v: Vec<f64> =
+        slopes(|dq, dv, du| displaced_step(dq, dv, du).1).iter().flatten().copied().collect();
     let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
     let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
     let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));

@@ -62,7 +62,7 @@ pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point 
 
 /// Returns the ground coordinates of a body's point (`x`, `y`), in the body's frame with origin `a` and x
 /// axis towards `b`.
-fn on(a: Point, b: Point, x: f64, y: f64) -> Point {
+fn body_point(a: Point, b: Point, x: f64, y: f64) -> Point {
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
     let e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
     [a[0] + x * e[0] - y * e[1], a[1] + x * e[1] + y * e[0]]
@@ -76,7 +76,7 @@ fn skeleton(angle: f64) -> Skeleton {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
     let top = corner(pivot, pin, 0.415, 0.5, 1.0);
-    let left = on(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
+    let left = body_point(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
     let bottom = corner(pivot, pin, 0.393, 0.619, -1.0);
     let rear = corner(left, bottom, 0.394, 0.367, -1.0);
     let rod = |m: f64, l: f64| m * l * l / 12.0;
@@ -99,7 +99,7 @@ impl Skeleton {
 
     fn centre(&self, k: usize) -> Point {
         let (_, com, _, [a, b]) = self.0[k];
-        on(a, b, com[0], com[1])
+        body_point(a, b, com[0], com[1])
     }
 }
 

@@ -135,7 +135,7 @@ struct ByHand {
 }
 
 impl ByHand {
-    fn at(theta: f64, omega: f64) -> ByHand {
+    fn new(theta: f64, omega: f64) -> ByHand {
         let (s, c) = theta.sin_cos();
         // The closure condition is r sin θ + l sin β = 0.
         let beta = (-R * s / L).asin();
@@ -186,7 +186,7 @@ fn turn() -> impl Iterator<Item = f64> {
 macro_rules! check {
     ($m:expr, $t:expr) => {{
         let (m, t) = (&$m, $t);
-        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let hand = ByHand::new(OMEGA * t, OMEGA);
         let guess = [OMEGA * t, hand.rod[0] + 0.2, hand.piston[0] - 0.02].into();
         let q = m.assemble(t, &guess, &[0]).unwrap();
         let v = m.complete_velocity(t, &q, &[OMEGA, 0.0, 0.0].into(), &[]).unwrap();
@@ -228,7 +228,7 @@ fn a_given_rate_drives() {
     assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
     let m = Rated { omega: OMEGA };
     for t in turn() {
-        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &SVector::zeros(), &[]).unwrap();
         assert_close("v", &v.data.0[0], &[OMEGA, hand.rod[1], hand.piston[1]], 1e-11);
@@ -244,7 +244,7 @@ fn a_given_rate_drives() {
 fn inverse_dynamics_find_the_torque_of_a_motion() {
     let m = Motorised {};
     for t in turn() {
-        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
         let a = m.complete_acceleration(&q, &v, &SVector::zeros(), &[0]).unwrap();
@@ -259,13 +259,20 @@ fn inverse_dynamics_find_the_torque_of_a_motion() {
     let q = m.assemble(&[0.7, -0.9, 0.15].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
     let a = m.complete_acceleration(&q, &v, &SVector::zeros(), &[0]).unwrap();
-    let by = |v: &_, a: &_, driven: &[usize]| m.constrained_inverse_dynamics(&q, v, a, driven);
-    assert!(matches!(by(&v, &a, &[]), Err(ConstraintError::Undriven { .. })));
-    assert!(matches!(by(&v, &SVector::zeros(), &[0]), Err(ConstraintError::Acceleration { .. })));
-    assert!(matches!(by(&[1.0, 1.0, 1.0].into(), &a, &[0]), Err(ConstraintError::Velocity { .. })));
-    assert_eq!(by(&v, &a, &[3]), Err(ConstraintError::Held { index: 3, velocities: 3 }));
+    let inverse_dynamics = |v: &_, a: &_, driven: &[usize]| m.constrained_inverse_dynamics(&q, v, a, driven);
+    assert!(matches!(inverse_dynamics(&v, &a, &[]), Err(ConstraintError::Undriven { .. })));
+    assert!(matches!(
+        inverse_dynamics(&v, &SVector::zeros(), &[0]),
+        Err(ConstraintError::Acceleration { .. })
+    ));
+    assert!(matches!(
+        inverse_dynamics(&[1.0, 1.0, 1.0].into(), &a, &[0]),
+        Err(ConstraintError::Velocity { .. })
+    ));
+    assert_eq!(inverse_dynamics(&v, &a, &[3]), Err(ConstraintError::Held { index: 3, velocities: 3 }));
     // Crank or piston may be the actuated joint: the power is equal.
-    let (by_crank, by_piston) = (by(&v, &a, &[0]).unwrap().0, by(&v, &a, &[2]).unwrap().0);
+    let (by_crank, by_piston) =
+        (inverse_dynamics(&v, &a, &[0]).unwrap().0, inverse_dynamics(&v, &a, &[2]).unwrap().0);
     assert_close("power", &[by_piston.dot(&v)], &[by_crank.dot(&v)], 1e-10);
     assert_eq!((by_piston[0], by_piston[1]), (0.0, 0.0));
 }
@@ -278,7 +285,7 @@ fn frames_drive_loops() {
     assert_eq!(ClosedForm::NV, 0);
     let (none, rest) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
     for t in turn() {
-        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(t, &[hand.rod[0] - 0.2, hand.piston[0]].into(), &[]).unwrap();
         let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
         assert_close("q", &q.data.0[0], &[hand.rod[0], hand.piston[0]], 1e-10);
@@ -301,8 +308,8 @@ fn frames_drive_loops() {
 #[test]
 fn simulations_follow_the_drive() {
     let end = 2.2 * std::f64::consts::TAU / OMEGA;
-    let hand = ByHand::at(OMEGA * end, OMEGA);
-    let (start, m) = (ByHand::at(0.0, OMEGA), Positioned { omega: OMEGA });
+    let hand = ByHand::new(OMEGA * end, OMEGA);
+    let (start, m) = (ByHand::new(0.0, OMEGA), Positioned { omega: OMEGA });
     let (q, v) = ([0.0, start.rod[0], start.piston[0]], [OMEGA, start.rod[1], start.piston[1]]);
     let found = simulate(&m).from(q, v).duration(end).finish().unwrap();
     let turned = OMEGA * end;
@@ -321,7 +328,7 @@ fn simulations_follow_the_drive() {
 #[test]
 fn linear_systems_are_empty() {
     let m = Positioned { omega: OMEGA };
-    let hand = ByHand::at(0.6, OMEGA);
+    let hand = ByHand::new(0.6, OMEGA);
     let t = 0.6 / OMEGA;
     let q = m.assemble(t, &[0.6, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
     let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
@@ -345,7 +352,7 @@ fn drives_that_disagree_are_reported() {
 #[test]
 fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };
-    let (t, hand) = (0.9 / OMEGA, ByHand::at(0.9, OMEGA));
+    let (t, hand) = (0.9 / OMEGA, ByHand::new(0.9, OMEGA));
     let q = m.assemble(t, &[0.9, hand.rod[0], hand.piston[0]].into(), &[]).unwrap();
     let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
     let u = [70.0].into();

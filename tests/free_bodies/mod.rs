@@ -76,26 +76,26 @@ macro_rules! free_body {
             for _ in 0..5 {
                 let q = random.configuration(&m);
                 let (v, tau) = (random.vector::<NV>(1.0), random.vector::<NV>(2.0));
-                let near = |what: &str, found: &SMatrix<f64, NV, NV>, limit: &SMatrix<f64, NV, NV>| {
+                let assert_near = |what: &str, found: &SMatrix<f64, NV, NV>, limit: &SMatrix<f64, NV, NV>| {
                     let error = (found - limit).amax() / (1.0 + limit.amax());
                     assert!(error < 1e-7, "{what}: off by {error:e}");
                 };
                 let by_q = differences(|e| m.forward_dynamics(&m.integrate(&q, e), &v, &tau));
                 let by_v = differences(|e| m.forward_dynamics(&q, &(v + e), &tau));
                 let found = m.forward_dynamics_derivatives(&q, &v, &tau);
-                near("∂v̇/∂q", &found.0, &by_q);
-                near("∂v̇/∂v", &found.1, &by_v);
+                assert_near("∂v̇/∂q", &found.0, &by_q);
+                assert_near("∂v̇/∂v", &found.1, &by_v);
                 let found = prepared.forward_dynamics_derivatives(&q, &v, &tau);
-                near("∂v̇/∂q, prepared", &found.0, &by_q);
-                near("∂v̇/∂v, prepared", &found.1, &by_v);
+                assert_near("∂v̇/∂q, prepared", &found.0, &by_q);
+                assert_near("∂v̇/∂v, prepared", &found.1, &by_v);
                 let u = random.vector::<{ $type::NU }>(2.0);
-                let moved = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
-                let by_q = differences(|e| moved(&m.integrate(&q, e), &v));
-                let by_v = differences(|e| moved(&q, &(v + e)));
+                let accelerations = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
+                let by_q = differences(|e| accelerations(&m.integrate(&q, e), &v));
+                let by_v = differences(|e| accelerations(&q, &(v + e)));
                 let (a, _) = m.linearize(&q, &v, &u);
                 let block = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
-                near("linearised by q", &block(0), &by_q);
-                near("linearised by v", &block(NV), &by_v);
+                assert_near("linearised by q", &block(0), &by_q);
+                assert_near("linearised by v", &block(NV), &by_v);
             }
         }
     };

@@ -182,8 +182,8 @@ fn each_action_is_what_its_element_says() {
     assert!(action("wheel").force.norm() < 1e-14 && (action("wheel").torque.norm() - 4.0).abs() < 1e-12);
     // The origin of the second body is at (0.4, 0.3, 0) + R (0, −0.1, 0), with R of half a radian about z.
     let (s, c) = 0.5_f64.sin_cos();
-    let turned = |x: f64, y: f64, z: f64| Vector3::new(c * x - s * y, s * x + c * y, z);
-    let end = Vector3::new(0.4, 0.3, 0.0) + turned(0.3, -0.1, 0.0);
+    let rotated = |x: f64, y: f64, z: f64| Vector3::new(c * x - s * y, s * x + c * y, z);
+    let end = Vector3::new(0.4, 0.3, 0.0) + rotated(0.3, -0.1, 0.0);
     let apart = Vector3::new(1.0, 0.0, 0.0) - end;
     let pull = apart * (60.0 * (apart.norm() - 0.4) / apart.norm());
     assert!((action("stay").force - pull).norm() < 1e-12);
@@ -193,8 +193,8 @@ fn each_action_is_what_its_element_says() {
     for name in ["cylinder", "attraction", "inerter", "field"] {
         let other = on_free.get(name).unwrap_or_else(|| panic!("no {name}"));
         assert!((action(name).force + other.force).norm() < 1e-10, "{name}");
-        let about = |a: &linkwork::free_body::Action<f64>, c: SVector<f64, 3>| a.torque_about(&-c);
-        let sum = about(&action(name), m.c_second(&q)) + about(other, m.c_free(&q));
+        let torque_about = |a: &linkwork::free_body::Action<f64>, c: SVector<f64, 3>| a.torque_about(&-c);
+        let sum = torque_about(&action(name), m.c_second(&q)) + torque_about(other, m.c_free(&q));
         assert!(sum.norm() < 1e-10, "{name}");
     }
     assert!(on_free.get("flight").is_none());

@@ -67,17 +67,17 @@ fn places_hold_what_moves_on_them() {
         let q = m.integrate(&m.neutral(), &random.vector(0.7));
         let (v, u) = (random.vector(1.5), random.vector(4.0));
         let a = m.forward_dynamics(t, &q, &v, &m.generalized_forces(t, &q, &u));
-        let at = |h: f64| (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
+        let state_after = |h: f64| (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
         check(&m.on_arm(t, &q, &v, &u), |h| {
-            let (q, v) = at(h);
+            let (q, v) = state_after(h);
             [m.p_arm(t + h, &q, &v), m.h_arm(t + h, &q, &v), m.c_arm(t + h, &q)]
         });
         check(&m.on_bead(t, &q, &v, &u), |h| {
-            let (q, v) = at(h);
+            let (q, v) = state_after(h);
             [m.p_bead(t + h, &q, &v), m.h_bead(t + h, &q, &v), m.c_bead(t + h, &q)]
         });
         check(&m.on_plate(t, &q, &v, &u), |h| {
-            let (q, v) = at(h);
+            let (q, v) = state_after(h);
             [m.p_plate(t + h, &q, &v), m.h_plate(t + h, &q, &v), m.c_plate(t + h, &q)]
         });
         let (on_arm, on_bead) = (m.on_arm(t, &q, &v, &u), m.on_bead(t, &q, &v, &u));
@@ -94,8 +94,9 @@ fn places_hold_what_moves_on_them() {
         assert_eq!(here.origin, Origin::Constraint);
         assert!((here.force + there.force).norm() < 1e-9 && here.torque.norm() < 1e-9);
         // Along the bead's free direction the placement exerts no force.
-        let along = |x: f64| m.c_bead(t, &(q + SVector::from_fn(|k, _| if k == 0 { x } else { 0.0 })));
-        let tangent = (along(1e-5) - along(-1e-5)).normalize();
+        let bead_position =
+            |x: f64| m.c_bead(t, &(q + SVector::from_fn(|k, _| if k == 0 { x } else { 0.0 })));
+        let tangent = (bead_position(1e-5) - bead_position(-1e-5)).normalize();
         assert!(here.force.dot(&tangent).abs() < 1e-6 * (1.0 + here.force.norm()));
     }
 }

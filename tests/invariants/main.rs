@@ -191,7 +191,7 @@ macro_rules! check_kinematics {
         for _ in 0..4 {
             let q = random.configuration(&m);
             let (v, a) = (random.vector(1.0), random.vector(1.0));
-            let at = |s: f64| (m.integrate(&q, &(v * s)), v + a * s);
+            let state_after = |s: f64| (m.integrate(&q, &(v * s)), v + a * s);
             let (velocity, turning) = {
                 let velocity = m.frame_velocity(frame, &q, &v);
                 (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned())
@@ -204,18 +204,18 @@ macro_rules! check_kinematics {
                 m.frame_velocity(frame, &q, &v).as_slice(),
                 IDENTITY,
             );
-            let moving = rate(|s| m.frame_placement(frame, &at(s).0).translation.vector);
+            let moving = rate(|s| m.frame_placement(frame, &state_after(s).0).translation.vector);
             assert_close("velocity", velocity.as_slice(), moving.as_slice(), RATE);
             let rotation = m.frame_placement(frame, &q).rotation.into_inner();
-            let rotating = rate(|s| m.frame_placement(frame, &at(s).0).rotation.into_inner());
+            let rotating = rate(|s| m.frame_placement(frame, &state_after(s).0).rotation.into_inner());
             let expected = turning.cross_matrix() * rotation;
             assert_close("angular velocity", expected.as_slice(), rotating.as_slice(), RATE);
-            let accelerating = rate(|s| m.frame_velocity(frame, &at(s).0, &at(s).1));
+            let accelerating = rate(|s| m.frame_velocity(frame, &state_after(s).0, &state_after(s).1));
             let acceleration = m.frame_acceleration(frame, &q, &v, &a);
             assert_close("acceleration", acceleration.as_slice(), accelerating.as_slice(), RATE);
 
             let momentum = m.momentum(&q, &v);
-            let drift = rate(|s| m.center_of_mass(&at(s).0)) * m.total_mass();
+            let drift = rate(|s| m.center_of_mass(&state_after(s).0)) * m.total_mass();
             assert_close("momentum", &momentum.as_slice()[..3], drift.as_slice(), RATE);
         }
     };

@@ -59,7 +59,7 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
         false if name.starts_with("__") => Vec::new(),
         false => run(output, other, state).unwrap_or_default(),
     });
-    let at = |s| match Quantity::of(s) {
+    let symbol_value = |s| match Quantity::of(s) {
         Quantity::Configuration(k) => state[0][k],
         Quantity::Velocity(k) => state[1][k],
         Quantity::Acceleration(k) => state[2][k],
@@ -67,7 +67,7 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
         Quantity::PassiveDerivative(k) => called[1][k],
         _ => f64::NAN,
     };
-    Some(f.program.run(&at))
+    Some(f.program.run(&symbol_value))
 }
 
 /// Forces of springs add up. With few springs every function contains their forces; with many springs one
@@ -83,15 +83,15 @@ fn many_springs_are_the_sum_of_few() {
     for _ in 0..5 {
         let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.vector::<3>(1.5).into());
         for name in ["bias_forces", "inverse_dynamics", "inverse_dynamics_derivatives", "momentum_rate"] {
-            let of = |output: &Output| run(output, name, &state).expect("the function is there");
-            let without = of(&none);
+            let outputs = |output: &Output| run(output, name, &state).expect("the function is there");
+            let without = outputs(&none);
             let mut sum = without.clone();
             for part in &parts {
-                for (k, x) in of(part).into_iter().enumerate() {
+                for (k, x) in outputs(part).into_iter().enumerate() {
                     sum[k] += x - without[k];
                 }
             }
-            assert_similar(name, &of(&whole), &sum, 1e-11);
+            assert_similar(name, &outputs(&whole), &sum, 1e-11);
         }
     }
 }

@@ -56,7 +56,7 @@ struct Compiled<'g> {
 }
 
 impl<'g> Compiled<'g> {
-    fn of((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
+    fn compile((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
         let tokens = |text: &str| text.parse().expect("the generated source is Rust");
         let mut cx = Diagnostics::new();
         let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
@@ -131,7 +131,7 @@ fn slope(f: impl Fn(f64) -> Vector) -> Vector {
     sum
 }
 
-fn along(x: &[f64], e: f64, d: &[f64]) -> Vector {
+fn displaced(x: &[f64], e: f64, d: &[f64]) -> Vector {
     x.iter().zip(d).map(|(x, d)| x + e * d).collect()
 }
 
@@ -180,7 +180,7 @@ fn check(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.source();
     let arguments = format!("{arguments}, {WORDS}");
     let graph = Graph::new();
-    let plain = Compiled::of(&(arguments.clone(), item.clone()), &graph);
+    let plain = Compiled::compile(&(arguments.clone(), item.clone()), &graph);
     // Other tests cover trees that the compiler rejects.
     let Ok(plain) = plain else { return false };
     let mut random = Random::new(seed);
@@ -189,7 +189,7 @@ fn check(tree: &Tree, seed: u64) -> bool {
         return false;
     }
     let item = item.trim_end().trim_end_matches('}').to_string() + &speeds + "}";
-    let with = Compiled::of(&(arguments, item.clone()), &graph);
+    let with = Compiled::compile(&(arguments, item.clone()), &graph);
     let with = with.unwrap_or_else(|messages| panic!("{}\n{item}", messages.join("\n")));
     check_functions(&plain, &with, &mut random, seed);
     true
@@ -220,8 +220,8 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
         ..ours.clone()
     };
     let rates = |e: f64| {
-        let moved = along(&q, e, &plain.moving(&q, &theirs.v));
-        with.run("rates_of_speeds", &State { q: moved, v: along(&ours.v, e, &ours.a), ..ours.clone() })
+        let moved = displaced(&q, e, &plain.moving(&q, &theirs.v));
+        with.run("rates_of_speeds", &State { q: moved, v: displaced(&ours.v, e, &ours.a), ..ours.clone() })
     };
     assert_close("accelerations of the joints", &theirs.a, &slope(rates), DIFFERENCES);
     let same = |name: &str| assert_close(name, &with.run(name, &ours), &plain.run(name, &theirs), TOLERANCE);
@@ -263,18 +263,19 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
 fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: &State) {
     let n = plain.model.nv();
     let way = plain.moving(&ours.q, &theirs.v);
-    let at = |e: f64| State { q: along(&ours.q, e, &way), v: along(&ours.v, e, &ours.a), ..ours.clone() };
-    let rate = slope(|e| with.run("generalized_momentum", &at(e)));
+    let state_after =
+        |e: f64| State { q: displaced(&ours.q, e, &way), v: displaced(&ours.v, e, &ours.a), ..ours.clone() };
+    let rate = slope(|e| with.run("generalized_momentum", &state_after(e)));
     let lacking: Vector =
         with.run("inverse_dynamics", ours).iter().zip(&rate).map(|(tau, rate)| rate - tau).collect();
     assert_close("momentum rate", &with.run("momentum_rate", ours), &lacking, DIFFERENCES);
     let matrix_of = |name: &str, state: &State, rows: usize| matrix(&with.run(name, state), rows);
     let still = State { a: vec![0.0; n], ..ours.clone() };
-    let steady = |e: f64| State { v: ours.v.clone(), ..at(e) };
+    let steady = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
     let bias = slope(|e| times(&matrix_of("centroidal_momentum_matrix", &steady(e), 6), &ours.v));
     assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
     // `Ṁ − 2 C` is skew-symmetric for the Coriolis matrix `C`.
-    let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &at(e))), n);
+    let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &state_after(e))), n);
     let coriolis = matrix_of("coriolis_matrix", ours, n);
     let skew = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
     let sums: Vector = (0..n * n).map(|k| skew(k / n, k % n) + skew(k % n, k / n)).collect();
@@ -288,11 +289,11 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
     let column = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
     let by_q = |name: &str, i: usize| {
         let way = plain.moving(&ours.q, &column(i));
-        slope(|e| with.run(name, &State { q: along(&ours.q, e, &way), ..ours.clone() }))
+        slope(|e| with.run(name, &State { q: displaced(&ours.q, e, &way), ..ours.clone() }))
     };
     let unit = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
     let by_v = |name: &str, i: usize| {
-        slope(|e| with.run(name, &State { v: along(&ours.v, e, &unit(i)), ..ours.clone() }))
+        slope(|e| with.run(name, &State { v: displaced(&ours.v, e, &unit(i)), ..ours.clone() }))
     };
     let expected = |name: &str| -> Vector {
         let q = (0..n).flat_map(|i| by_q(name, i));
@@ -327,7 +328,8 @@ proptest! {
 fn printed(arguments: &str, fields: &str) -> String {
     let graph = Graph::new();
     let source = (arguments.to_string(), format!("pub struct Printed {{ {fields} }}"));
-    let found = Compiled::of(&source, &graph).unwrap_or_else(|messages| panic!("{}", messages.join("\n")));
+    let found =
+        Compiled::compile(&source, &graph).unwrap_or_else(|messages| panic!("{}", messages.join("\n")));
     found.output.equations.plain
 }
 

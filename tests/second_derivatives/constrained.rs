@@ -89,7 +89,7 @@ struct Driven {
 /// Returns the accelerations of `Driven` by Lagrange's equations with multipliers; `x` has configuration,
 /// velocity and forces.
 fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
-    let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, Hyper::of);
+    let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, Hyper::constant);
     let (masses, reach, gravity) =
         ([number(0.8), number(0.7), number(0.4)], [0.9, 0.7].map(number), number(9.81));
     let ((s, c), (s2, c2), zero) = (q1.sin_cos(), (q1 + q2).sin_cos(), number(0.0));
@@ -103,9 +103,10 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     let end = [middle[0] - reach[1] * s2 * both, middle[1] + reach[1] * c2 * both];
     let own = [[zero; 2], middle, end];
     let dot = |a: [Hyper; 2], b: [Hyper; 2]| a[0] * b[0] + a[1] * b[1];
-    let over = |f: &dyn Fn(usize) -> Hyper| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
-    let mass = |i: usize, j: usize| over(&|k| dot(columns[k][i], columns[k][j]));
-    let bias = |i: usize| over(&|k| dot(columns[k][i], own[k]) + gravity * columns[k][i][1]);
+    let weighted_sum =
+        |f: &dyn Fn(usize) -> Hyper| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
+    let mass = |i: usize, j: usize| weighted_sum(&|k| dot(columns[k][i], columns[k][j]));
+    let bias = |i: usize| weighted_sum(&|k| dot(columns[k][i], own[k]) + gravity * columns[k][i][1]);
     // Squared distance from the peg.
     let (wave, slope) = (sway * t).sin_cos();
     let peg = [number(1.0), number(0.2 * wave - 1.1)];
@@ -133,8 +134,8 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
 /// Returns the second derivatives of `λᵀ v̇` with respect to configuration, velocity and forces.
 fn hessian(sway: f64, t: f64, x: &SVector<f64, 9>, lambda: &SVector<f64, 3>) -> SMatrix<f64, 9, 9> {
     SMatrix::from_fn(|i, j| {
-        let along = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
-        let seeded = |k: usize| Hyper { value: x[k], first: [along(k, i), along(k, j)], second: 0.0 };
+        let unit = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
+        let seeded = |k: usize| Hyper { value: x[k], first: [unit(k, i), unit(k, j)], second: 0.0 };
         let a = accelerations(sway, t, &std::array::from_fn(seeded));
         a.iter().zip(lambda.iter()).map(|(a, factor)| a.second * factor).sum()
     })
@@ -148,7 +149,7 @@ fn equations_by_hand_have_the_second_derivatives_of_generated_ones() {
         let (q, v) = (random.vector::<3>(1.2), random.vector::<3>(2.0));
         let (tau, lambda) = (random.vector::<3>(5.0), random.vector::<3>(1.0));
         let x = SVector::from_fn(|k, _| [q[k % 3], v[k % 3], tau[k % 3]][k / 3]);
-        let values = accelerations(2.0, t, &std::array::from_fn(|k| Hyper::of(x[k]))).map(|a| a.value);
+        let values = accelerations(2.0, t, &std::array::from_fn(|k| Hyper::constant(x[k]))).map(|a| a.value);
         let off = (m.forward_dynamics(t, &q, &v, &tau) - SVector::from(values)).amax();
         assert!(off < 1e-10 * (1.0 + values.iter().fold(0.0_f64, |s, a| s.max(a.abs()))), "{off:e}");
 

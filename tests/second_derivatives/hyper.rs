@@ -14,7 +14,7 @@ pub struct Hyper {
 
 impl Hyper {
     /// Returns a constant.
-    pub fn of(value: f64) -> Hyper {
+    pub fn constant(value: f64) -> Hyper {
         Hyper { value, first: [0.0; 2], second: 0.0 }
     }
 

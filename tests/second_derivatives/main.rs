@@ -71,13 +71,13 @@ const TOLERANCE: f64 = 2e-9;
 fn slopes<const N: usize, const R: usize, const C: usize>(
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
 ) -> Vec<SMatrix<f64, R, C>> {
-    let along = |k: usize| {
+    let derivative = |k: usize| {
         let step = 1.2e-3;
-        let at = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let part = |s: f64| at(s) - at(-s);
+        let value = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let part = |s: f64| value(s) - value(-s);
         (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
     };
-    (0..N).map(along).collect()
+    (0..N).map(derivative).collect()
 }
 
 /// Returns the derivatives of `λᵀ A` by differences: entry `(i, j)` is the derivative along `j` of the
@@ -113,13 +113,13 @@ where
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
         let at_q = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
         // Maps changes of `dq` to changes of `q ⊕ dq`.
-        let moved = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
+        let displacement_map = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
         let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
         let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
         let first = |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
-            contracted(&lambda, |d| first(&at_q(d), &v, &a).0 * moved(d)),
+            contracted(&lambda, |d| first(&at_q(d), &v, &a).0 * displacement_map(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).0),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).1),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(a + d)).0),
@@ -134,7 +134,7 @@ where
         let (qq, qv, vv, qf) = m.forward_dynamics_second_derivatives(t, &q, &v, &tau, &lambda);
         let first = |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
-            contracted(&lambda, |d| first(&at_q(d), &v, &tau).0 * moved(d)),
+            contracted(&lambda, |d| first(&at_q(d), &v, &tau).0 * displacement_map(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).0),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).1),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(tau + d)).0),
@@ -151,7 +151,7 @@ where
         let first = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
         let by_u = |d: &SVector<f64, NU>| first(&q, &v, &(u + d));
         let states = [
-            (qq, contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q * moved(d))),
+            (qq, contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q * displacement_map(d))),
             (qv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_q)),
             (vv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_v)),
         ];

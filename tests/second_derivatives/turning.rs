@@ -42,7 +42,7 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         let dq = random.vector::<NV>(weights[0]);
         let dv = random.vector::<NV>(weights[1]);
         let du = random.vector::<NU>(weights[2]);
-        let along = |s: f64| {
+        let scalar_value = |s: f64| {
             let (q, v) = (m.integrate(q, &(dq * s)), v + dv * s);
             let found = discrete::step(m, method, t, &q, &v, &(u + du * s)).expect("it moves");
             of_q.dot(&m.difference(&end.0, &found.0)) + of_v.dot(&(found.1 - end.1))
@@ -50,7 +50,7 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         let step = 0.02;
         let mut expected = 0.0;
         for (k, weight) in (1..).zip(&WEIGHTS) {
-            expected += weight * (along(f64::from(k) * step) + along(f64::from(-k) * step));
+            expected += weight * (scalar_value(f64::from(k) * step) + scalar_value(f64::from(-k) * step));
         }
         expected /= step * step;
         let form = dq.dot(&(qq * dq)) + dv.dot(&(vv * dv)) + du.dot(&(uu * du));

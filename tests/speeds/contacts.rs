@@ -188,21 +188,25 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     let tau: SVector<f64, 6> = Random::new(6).vector(3.0);
     let touches = [Touch::Slips, Touch::Sticks, Touch::Open, Touch::Open];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &u, &tau, &touches).unwrap();
-    let held = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
+    let motion = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
         contact::forward_dynamics(&m, 0.0, q, u, tau, &touches).unwrap()
     };
-    let moved = |e: &SVector<f64, 6>| m.integrate(&q, e);
+    let displaced = |e: &SVector<f64, 6>| m.integrate(&q, e);
     let check = |what: &str, found: &[f64], expected: &[f64]| {
         assert_similar(what, found, expected, DIFFERENCE * 10.0);
     };
-    check("∂u̇/∂q", found.by_q.as_slice(), slopes(|e| held(&moved(&e), &u, &tau).a).as_slice());
-    check("∂u̇/∂u", found.by_v.as_slice(), slopes(|e| held(&q, &(u + e), &tau).a).as_slice());
-    check("∂u̇/∂τ", found.by_tau.as_slice(), slopes(|e| held(&q, &u, &(tau + e)).a).as_slice());
-    check("∂f/∂q", found.forces_by_q.as_slice(), slopes(|e| held(&moved(&e), &u, &tau).forces).as_slice());
-    check("∂f/∂u", found.forces_by_v.as_slice(), slopes(|e| held(&q, &(u + e), &tau).forces).as_slice());
+    check("∂u̇/∂q", found.by_q.as_slice(), slopes(|e| motion(&displaced(&e), &u, &tau).a).as_slice());
+    check("∂u̇/∂u", found.by_v.as_slice(), slopes(|e| motion(&q, &(u + e), &tau).a).as_slice());
+    check("∂u̇/∂τ", found.by_tau.as_slice(), slopes(|e| motion(&q, &u, &(tau + e)).a).as_slice());
+    check(
+        "∂f/∂q",
+        found.forces_by_q.as_slice(),
+        slopes(|e| motion(&displaced(&e), &u, &tau).forces).as_slice(),
+    );
+    check("∂f/∂u", found.forces_by_v.as_slice(), slopes(|e| motion(&q, &(u + e), &tau).forces).as_slice());
     let landed = contact::land_derivatives(&m, 0.0, &q, &u, &touches).unwrap();
     let land = |q: &SVector<f64, 7>, u: &SVector<f64, 6>| contact::land(&m, 0.0, q, u, &touches).unwrap().v;
-    check("∂u⁺/∂q", landed.by_q.as_slice(), slopes(|e| land(&moved(&e), &u)).as_slice());
+    check("∂u⁺/∂q", landed.by_q.as_slice(), slopes(|e| land(&displaced(&e), &u)).as_slice());
     check("∂u⁺/∂u", landed.by_v.as_slice(), slopes(|e| land(&q, &(u + e))).as_slice());
     let push = [0.7].into();
     let motion = contact::linear_motion(&m, 0.0, &q, &u, &push, &touches).unwrap();

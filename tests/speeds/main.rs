@@ -159,10 +159,10 @@ fn slopes<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) -> SMatrix<f64, R, C> {
     let h = 1e-3;
-    let along = |e: SVector<f64, C>| {
+    let column = |e: SVector<f64, C>| {
         ((f(e * h) - f(e * -h)) * 8.0 - (f(e * (2.0 * h)) - f(e * (-2.0 * h)))) / (12.0 * h)
     };
-    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| along(unit(i))))
+    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| column(unit(i))))
 }
 
 /// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
@@ -181,17 +181,18 @@ where
         let back = slopes::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
         assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
         let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
-        let moved = |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
+        let displacement =
+            |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
         assert_similar(
             "∂(q ⊕ dv)/∂q",
             by_q.as_slice(),
-            slopes(|e| moved(&m.integrate(q, &e), &dv)).as_slice(),
+            slopes(|e| displacement(&m.integrate(q, &e), &dv)).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂(q ⊕ dv)/∂dv",
             by_dv.as_slice(),
-            slopes(|e| moved(q, &(dv + e))).as_slice(),
+            slopes(|e| displacement(q, &(dv + e))).as_slice(),
             DIFFERENCE,
         );
         let (by_q, by_dv, by_v) = m.displacement_rate_derivatives(q, &dv, &v);
@@ -243,8 +244,9 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     // Displacement φ between two neighbouring motions with the same generalized speeds: φ(h) = (1 + h T) φ +
     // O(h²).
     let (h, turning) = (1e-5, m.linear_motion(q, v, &u).turning);
-    let later = |q: &SVector<f64, NQ>| discrete::step(m, &Rk4::step(h), 0.0, q, v, &u).unwrap().0;
-    let grown = slopes(|e| m.difference(&later(q), &later(&m.integrate(q, &e))));
+    let configuration_after =
+        |q: &SVector<f64, NQ>| discrete::step(m, &Rk4::step(h), 0.0, q, v, &u).unwrap().0;
+    let grown = slopes(|e| m.difference(&configuration_after(q), &configuration_after(&m.integrate(q, &e))));
     let rate = (grown - SMatrix::<f64, NV, NV>::identity()) / h;
     assert_similar("turning", turning.as_slice(), rate.as_slice(), 1e-4);
 }
@@ -433,7 +435,8 @@ fn constrained_methods_keep_their_orders() {
     let order = (euler(0.002) / euler(0.001)).log2();
     assert!((0.9..1.1).contains(&order), "{order}");
     let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let lost = |(at, v): (SVector<f64, 6>, SVector<f64, 6>)| (energy(&at, &v) - energy(&q, &u)).abs();
-    let (early, late) = (lost(midpoint(0.01, 1.0)), lost(midpoint(0.01, 20.0)));
+    let energy_change =
+        |(at, v): (SVector<f64, 6>, SVector<f64, 6>)| (energy(&at, &v) - energy(&q, &u)).abs();
+    let (early, late) = (energy_change(midpoint(0.01, 1.0)), energy_change(midpoint(0.01, 20.0)));
     assert!(late < 20.0 * early.max(1e-5), "{early:e} {late:e}");
 }

@@ -73,7 +73,7 @@ impl Record {
     }
 
     /// Returns the entries of an object of lists of numbers, with their names.
-    pub fn named(&self, key: &str) -> Vec<(String, Vec<f64>)> {
+    pub fn named_lists(&self, key: &str) -> Vec<(String, Vec<f64>)> {
         let object = self.entry(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
         object.iter().map(|(name, value)| (name.clone(), numbers(value))).collect()
     }

@@ -200,8 +200,10 @@ struct Cables {
 fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length = |[alpha, beta, za, zb]: [f64; 4]| {
         let point = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
-        let between = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-        between(a, point(alpha, za)) + (radius * (beta - alpha)).hypot(zb - za) + between(point(beta, zb), b)
+        let distance = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+        distance(a, point(alpha, za))
+            + (radius * (beta - alpha)).hypot(zb - za)
+            + distance(point(beta, zb), b)
     };
     let (from, to) = (a[1].atan2(a[0]), b[1].atan2(b[0]));
     let to = if to < from { to + 2.0 * PI } else { to };
@@ -223,7 +225,8 @@ fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
 #[test]
 fn cables_take_the_shortest_way_around() {
     let m = Cables { radius: 0.5 };
-    let at = |a: [f64; 3], b: [f64; 3]| SVector::from([a[0] + 0.1, a[1], a[2], b[0] + 0.1, b[1], b[2]]);
+    let configuration =
+        |a: [f64; 3], b: [f64; 3]| SVector::from([a[0] + 0.1, a[1], a[2], b[0] + 0.1, b[1], b[2]]);
     // The cable passes the far side from below to above, level and rising, with more than half a turn of
     // contact.
     for (a, b) in [
@@ -231,18 +234,18 @@ fn cables_take_the_shortest_way_around() {
         ([0.2, -0.9, 0.3], [-0.1, 1.2, 1.1]),
         ([0.1, 0.8, 0.0], [0.9, -0.6, -0.7]),
     ] {
-        let q = at(a, b);
+        let q = configuration(a, b);
         let found = m.drum(&q);
         assert!((found - shortest_around(a, b, 0.5)).abs() < 1e-7, "{found} {}", shortest_around(a, b, 0.5));
         assert!((m.back(&q) - found).abs() < 1e-14);
         assert!(found > m.straight(&q));
     }
     // Half a turn of a level cable with ends that hang straight down: two weights over a pulley.
-    let q = at([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
+    let q = configuration([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
     assert!((m.drum(&q) - (2.0 + 3.0 + 0.5 * PI)).abs() < 1e-14);
     // A cable without contact with the drum is straight; a cable without contact with the ball is straight,
     // too.
-    let free = at([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
+    let free = configuration([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
     assert!((m.drum(&free) - m.straight(&free)).abs() < 1e-14);
     let q = SVector::from([1.0, 0.0, 0.0, 0.0, 0.8, 0.6]);
     assert!((m.ball(&q) - m.straight(&q)).abs() < 1e-14);

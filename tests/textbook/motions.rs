@@ -34,8 +34,9 @@ fn a_ladder_turns_about_its_instantaneous_centre() {
         assert!((m.unmoved(&q, &[0.0].into(), &a) - corner).amax() < 1e-12);
         let frame = frame!(Ladder, "ladder");
         let (twist, rates) = (m.frame_velocity(frame, &q, &v), m.frame_acceleration(frame, &q, &v, &a));
-        let of = |t: &SVector<f64, 6>| (t.fixed_rows::<3>(0).into_owned(), t.fixed_rows::<3>(3).into_owned());
-        let ((_, w), (linear, angular)) = (of(&twist), of(&rates));
+        let linear_and_angular =
+            |t: &SVector<f64, 6>| (t.fixed_rows::<3>(0).into_owned(), t.fixed_rows::<3>(3).into_owned());
+        let ((_, w), (linear, angular)) = (linear_and_angular(&twist), linear_and_angular(&rates));
         let p = m.unmoved(&q, &v, &a) - m.frame_placement(frame, &q).translation.vector;
         assert!((linear + angular.cross(&p) + w.cross(&w.cross(&p))).amax() < 1e-10);
     }

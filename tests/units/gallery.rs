@@ -264,7 +264,7 @@ fn is_refused(messages: &[String], parameter: &str) -> bool {
     messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 
-/// Examples of the language reference are accepted, as far as they are compiled.
+/// Examples of the language reference that are compiled are accepted.
 #[test]
 fn the_page_of_the_language_is_accepted() {
     for (name, arguments, fields, expected) in PAGE {

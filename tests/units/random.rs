@@ -72,7 +72,7 @@ fn messages(more: &str) -> Vec<String> {
 }
 
 /// Returns a random integer less than `n`.
-fn below(n: usize, random: &mut Random) -> usize {
+fn random_index(n: usize, random: &mut Random) -> usize {
     ((random.uniform(0.5) + 0.5) * n as f64) as usize % n
 }
 
@@ -81,7 +81,7 @@ fn times(a: Dimension, b: Dimension, power: i32) -> Dimension {
 }
 
 fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
-    from[below(from.len(), random)]
+    from[random_index(from.len(), random)]
 }
 
 /// Returns a factor of this dimension: powers of the first three parameters.
@@ -100,21 +100,21 @@ fn missing(mut by: Dimension) -> String {
 /// Returns a product of this dimension that contains a parameter, so that its numbers are dimensionless.
 fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let (mut text, mut has) = (String::from("n"), PLAIN);
-    for _ in 0..below(3, random) {
-        let (name, unit) = match below(4, random) {
+    for _ in 0..random_index(3, random) {
+        let (name, unit) = match random_index(4, random) {
             0 => pick(&INPUTS, random),
             1 | 2 => pick(&MOTION, random),
             _ => pick(&PARAMETERS, random),
         };
-        let below = below(3, random) == 0;
+        let below = random_index(3, random) == 0;
         text = format!("{text} {} {name}", if below { '/' } else { '*' });
         has = times(has, unit, if below { -1 } else { 1 });
     }
-    if below(2, random) == 0 {
+    if random_index(2, random) == 0 {
         text = format!("{} * {text}", pick(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
     }
     text.push_str(&missing(times(dimension, has, -1)));
-    match depth.checked_sub(1).map(|depth| (depth, below(6, random))) {
+    match depth.checked_sub(1).map(|depth| (depth, random_index(6, random))) {
         Some((depth, 0)) => format!("{text} * sin({})", expression(PLAIN, depth, random)),
         Some((depth, 1)) => {
             let square = times(dimension, dimension, 1);
@@ -130,7 +130,7 @@ fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
 /// coefficient.
 fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let with_coefficient = [MOTION.as_slice(), INPUTS.as_slice()].concat();
-    match below(8, random) {
+    match random_index(8, random) {
         0 => "0.7".to_string(),
         1 => format!("30 * {}", pick(&with_coefficient, random).0),
         2 => match with_coefficient.iter().find(|(_, unit)| *unit == dimension) {
@@ -144,9 +144,9 @@ fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
 /// Returns a sum of terms of this dimension, one of which contains a parameter.
 fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let mut text = anchored(dimension, depth, random);
-    for _ in 0..below(3, random) {
-        let sign = if below(2, random) == 0 { '+' } else { '-' };
-        text = match below(2, random) {
+    for _ in 0..random_index(3, random) {
+        let sign = if random_index(2, random) == 0 { '+' } else { '-' };
+        text = match random_index(2, random) {
             0 => format!("{text} {sign} {}", term(dimension, depth, random)),
             _ => format!("{} {sign} {text}", term(dimension, depth, random)),
         };
@@ -157,7 +157,7 @@ fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String
 /// Returns another dimension.
 fn another(dimension: Dimension, random: &mut Random) -> Dimension {
     loop {
-        let other = std::array::from_fn(|k| dimension[k] + below(5, random) as i32 - 2);
+        let other = std::array::from_fn(|k| dimension[k] + random_index(5, random) as i32 - 2);
         if other != dimension {
             return other;
         }
@@ -167,7 +167,7 @@ fn another(dimension: Dimension, random: &mut Random) -> Dimension {
 /// Returns a sum in which the unit of one term is inconsistent.
 fn wrong(dimension: Dimension, random: &mut Random) -> String {
     let (good, bad) = (expression(dimension, 1, random), anchored(another(dimension, random), 1, random));
-    match below(6, random) {
+    match random_index(6, random) {
         0 => format!("{bad} + {good}"),
         1 => format!("{good} - {bad}"),
         2 => format!("({good}) * cos({})", anchored(another(PLAIN, random), 1, random)),
@@ -189,7 +189,7 @@ fn wrong(dimension: Dimension, random: &mut Random) -> String {
 
 /// Returns an element that uses an expression of this dimension, directly or through definitions.
 fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
-    match below(if dimension == FORCE || dimension == ENERGY { 6 } else { 4 }, random) {
+    match random_index(if dimension == FORCE || dimension == ENERGY { 6 } else { 4 }, random) {
         0 => format!("#[output({e})] o: Scalar"),
         1 => format!("#[define({e})] d: Scalar, #[output(2 * d)] o: Scalar"),
         2 => format!("#[output(r2 + d)] o: Scalar, #[define(d - d)] r2: Scalar, #[define({e})] d: Scalar"),
@@ -204,10 +204,10 @@ fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
 }
 
 fn dimension(random: &mut Random) -> Dimension {
-    match below(3, random) {
+    match random_index(3, random) {
         0 => FORCE,
         1 => ENERGY,
-        _ => std::array::from_fn(|_| below(4, random) as i32 - 2),
+        _ => std::array::from_fn(|_| random_index(4, random) as i32 - 2),
     }
 }
 
@@ -240,7 +240,7 @@ fn places_refuse_other_units() {
     for _ in 0..600 {
         let (kind, place) = pick(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);
         let dimension = another(place, &mut random);
-        let e = match INPUTS.iter().find(|(_, unit)| *unit != place && below(4, &mut random) == 0) {
+        let e = match INPUTS.iter().find(|(_, unit)| *unit != place && random_index(4, &mut random) == 0) {
             Some((name, _)) => name.to_string(),
             None => anchored(dimension, 2, &mut random),
         };

@@ -96,7 +96,9 @@ impl Assembly<'_, '_> {
                 unreached[1][k] &= column(k).iter().all(|entry| *entry == 0.0);
                 let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
                 let speeds = match self.model.speeds.is_some() {
-                    true => self.evaluated("speeds_of_rates", &[("q", beside), ("v", &unit), ("rates", &unit)]),
+                    true => {
+                        self.evaluated("speeds_of_rates", &[("q", beside), ("v", &unit), ("rates", &unit)])
+                    }
                     false => Some(unit),
                 };
                 let speeds = speeds.unwrap_or_else(|| vec![1.0; n]);

@@ -9,9 +9,7 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::passes::Passes;
-use linkwork_compiler::{
-    DeclaredStruct, Source, compile, compile_with, declarations, derive_above, read,
-};
+use linkwork_compiler::{DeclaredStruct, Source, compile, compile_with, declarations, derive_above, read};
 use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
 use std::io::{ErrorKind, Read};

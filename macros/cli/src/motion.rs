@@ -206,7 +206,9 @@ impl<'a, 'g> Start<'a, 'g> {
         }
         if step.is_some() && !has_step && name != "automatic" {
             let method = name.replace('_', "-");
-            return Err(Stop::Failure(format!("`--step`: the method {method} chooses its steps (`--tolerance`)")));
+            return Err(Stop::Failure(format!(
+                "`--step`: the method {method} chooses its steps (`--tolerance`)"
+            )));
         }
         let setting = if has_step { step } else { Some(tolerance.unwrap_or(1e-8).max(1e-13)) };
         Ok(Method::named(&name, setting)?)
@@ -256,7 +258,9 @@ impl<'a, 'g> Start<'a, 'g> {
         } else if let Some(first) = samples.first() {
             let moved = self.moves(&first.q, &first.v);
             if !moved.is_empty() && !self.model.contacts.is_empty() {
-                crate::note!("linkwork: surfaces overlap at the beginning; the motion begins near it, at {moved}");
+                crate::note!(
+                    "linkwork: surfaces overlap at the beginning; the motion begins near it, at {moved}"
+                );
             }
         }
         match ended {
@@ -322,7 +326,8 @@ impl<'a, 'g> Start<'a, 'g> {
             ))
         })?;
         if is_singular(&q) {
-            let names: Vec<String> = self.model.configuration.iter().map(|name| format!("q.{name}")).collect();
+            let names: Vec<String> =
+                self.model.configuration.iter().map(|name| format!("q.{name}")).collect();
             return Err(Stop::Failure(format!(
                 "the speeds of `{name}` are singular at the beginning: there they do not determine the rates of all coordinates; begin elsewhere (`--set` with {})",
                 names.join(", ")
@@ -332,9 +337,8 @@ impl<'a, 'g> Start<'a, 'g> {
             kept = false;
             m.completed(&q, &self.v, &still)
         });
-        let v = v.ok_or_else(|| {
-            Stop::Failure(format!("`{name}` has constraints that contradict each other"))
-        })?;
+        let v =
+            v.ok_or_else(|| Stop::Failure(format!("`{name}` has constraints that contradict each other")))?;
         let moves = self.moves(&q, &v);
         let some = self.given.iter().flatten().any(|given| *given);
         let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(q.iter().chain(&v)));
@@ -378,8 +382,7 @@ impl<'a, 'g> Start<'a, 'g> {
     fn inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok((vec![0.0], self.u.clone())) };
         let table = Table::read(path)?;
-        let names: Vec<String> =
-            self.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
+        let names: Vec<String> = self.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         // Other columns of a log are ignored.
         let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
         if let Some((name, _)) = unknown {

@@ -1,13 +1,13 @@
-//! The functions of a robot file at states from the standard input, without compiling them.
+//! Evaluates the functions of a robot file at states from the standard input, by interpreting their programs.
 //!
 //! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
 //!
-//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`.
-//! Prints the names of configuration, velocities and inputs, tabs between them, and what is left out; then
-//! for each line `q v u τ` of numbers a line each with the mass matrix, the bias forces, the generalized
-//! forces, the accelerations, and residuals and Jacobian of the constraints, empty where there is none.
-//! Errors of the file go to the standard error. `tests/peers/run` compares what it prints with other
-//! programs.
+//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, such as `"passive =
+//! ignore"`. Prints the names of configuration, velocities and inputs, separated by tabs, and the omitted
+//! elements of the file. For each input line `q v u τ` of numbers it then prints six lines: the mass matrix,
+//! the bias forces, the generalized forces, the accelerations, and residuals and Jacobian of the constraints.
+//! The last two are empty without constraints. Errors of the file are printed to the standard error.
+//! `tests/peers/run` compares the output with other programs.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -49,12 +49,12 @@ fn run() -> Result<(), Failure> {
     let arguments = format!("{format} = {file:?}{more}").parse()?;
     let mut cx = Diagnostics::new();
     let source = read(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
-    let told = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
-    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| told(&cx))?;
+    let reported = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
+    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| reported(&cx))?;
     let description = &source.mechanism.description;
     let graph = Graph::new();
-    let model = build_model(description, &graph, &mut cx).ok_or_else(|| told(&cx))?;
-    let derived = derive(&model, &mut cx).ok_or_else(|| told(&cx))?;
+    let model = build_model(description, &graph, &mut cx).ok_or_else(|| reported(&cx))?;
+    let derived = derive(&model, &mut cx).ok_or_else(|| reported(&cx))?;
     let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let mut out = std::io::stdout().lock();
@@ -67,20 +67,20 @@ fn run() -> Result<(), Failure> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-        let at = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+        let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
         let values = |name: &str, passive: &[f64]| {
             let symbol = |symbol: Symbol| match Quantity::of(symbol) {
-                Quantity::Configuration(k) => at(k),
-                Quantity::Velocity(k) => at(nq + k),
-                Quantity::Input(k) => at(nq + nv + k),
-                Quantity::Force(k) => at(nq + nv + nu + k),
+                Quantity::Configuration(k) => number(k),
+                Quantity::Velocity(k) => number(nq + k),
+                Quantity::Input(k) => number(nq + nv + k),
+                Quantity::Force(k) => number(nq + nv + nu + k),
                 Quantity::PassiveForce(k) => passive.get(k).copied().unwrap_or(f64::NAN),
                 _ => f64::NAN,
             };
             let found = derived.functions.iter().find(|function| function.name == name);
             found.map(|function| function.program.run(&symbol)).unwrap_or_default()
         };
-        // Where these are long, the others call them.
+        // If the passive forces are long, the other functions call them.
         let passive = values("__passive_forces", &[]);
         for name in FUNCTIONS {
             let text: Vec<String> = values(name, &passive).iter().map(|value| format!("{value:e}")).collect();

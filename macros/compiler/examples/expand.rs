@@ -1,16 +1,16 @@
-//! What the compiler makes of a mechanism.
+//! Prints the code that the compiler generates for a mechanism, its operation counts or compile times.
 //!
 //! `cargo run -p linkwork-compiler --example expand -- FILE [options]`
 //!
 //! `FILE` is a Rust file with a `#[mechanism(…)]` struct (the first, or the one named by `--struct NAME`), or
 //! a URDF file. Options: `--rust` (default: the generated code), `--counts` (operations of every function),
 //! `--time` (milliseconds of every stage and pass), `--after PASS` with `--function NAME` (the function's
-//! programs after a pass, those of all candidates among them; `--after all`: after each); for a URDF file
-//! also `--base free`, `--inertia trust`, `--mimic independent`, `--passive ignore`.
+//! programs after a pass, including those of all candidates; `--after all`: after every pass); for a URDF
+//! file also `--base free`, `--inertia trust`, `--mimic independent`, `--passive ignore`.
 //!
-//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` writes the code of every mechanism in
-//! the Rust files as it is emitted, then once more with all that can be asked for by a word: what
-//! `.ci/compare-output` compares.
+//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` prints the unformatted generated code
+//! of every mechanism in the Rust files, then again with all options that are single words.
+//! `.ci/compare-output` compares this text.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -27,12 +27,12 @@ use std::process::ExitCode;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Repetitions of which the fastest is shown.
+/// Number of repetitions; the shortest time is printed.
 const REPEATS: usize = 5;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What `#[mechanism]` is given.
+/// Input of `#[mechanism]`.
 struct Input {
     arguments: TokenStream,
     item: TokenStream,
@@ -81,7 +81,7 @@ fn run() -> Result<(), Failure> {
         if pass != "all" && !names.contains(&pass) {
             return Err(format!("there is no pass `{pass}`: {}", names.join(", ")).into());
         }
-        return after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
+        return print_after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
     }
     match mode {
         "--counts" => counts(&input),
@@ -90,7 +90,7 @@ fn run() -> Result<(), Failure> {
     }
 }
 
-/// The struct of a Rust file; paths in it are relative to the package.
+/// Returns the struct of a Rust file; paths in it are relative to the package.
 fn from_rust(path: &Path, name: Option<&str>) -> Result<Input, Failure> {
     let all = structs(path)?;
     let mut named = all.into_iter().filter(|item| name.is_none_or(|name| item.ident == name));
@@ -101,7 +101,7 @@ fn is_mechanism(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
-/// The mechanisms of a Rust file, those in modules within it included.
+/// Returns the mechanisms of a Rust file, including those in its inline modules.
 fn structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
     let mut todo = syn::parse_file(&std::fs::read_to_string(path)?)?.items;
     let mut found = Vec::new();
@@ -119,7 +119,7 @@ fn structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
     Ok(found)
 }
 
-/// A struct with its attribute taken off.
+/// Returns a struct without its attribute, together with the attribute's arguments.
 fn input(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
     let mut arguments = TokenStream::new();
     item.attrs.retain(|attribute| {
@@ -137,7 +137,7 @@ fn input(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
     Ok(Input { arguments, item, folder })
 }
 
-/// A struct without fields of its own.
+/// Returns a struct without fields for a URDF file.
 fn from_urdf(path: &Path, options: &[(&str, &str)]) -> Result<Input, Failure> {
     let path = path.canonicalize()?;
     let mut arguments = format!("urdf = {:?}", path.to_string_lossy());
@@ -153,7 +153,7 @@ impl Input {
     }
 }
 
-/// What every mechanism of these files becomes, a line of text for a line.
+/// Prints the unformatted generated code of every mechanism of these files, without and with all options.
 fn every(files: &[String]) -> Result<(), Failure> {
     const WORDS: [&str; 7] =
         ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
@@ -180,7 +180,7 @@ fn rust(input: &Input) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reports the mistakes of a mechanism that does not compile.
+/// Reports the errors of a mechanism that does not compile.
 fn checked<T>(found: Option<T>, cx: &Diagnostics) -> Result<T, Failure> {
     found.ok_or_else(|| cx.messages().join("\n").into())
 }
@@ -249,8 +249,8 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
     );
 }
 
-/// The programs of one function after a pass, or after every pass.
-fn after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
+/// Prints the programs of one function after a pass, or after every pass.
+fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
     let (wanted, of) = (pass.to_string(), function.to_string());
     let print = move |function: &str, pass: &str, program: &Program, _: Duration| {
         if function == of && (pass == wanted || wanted == "all") {
@@ -271,7 +271,7 @@ fn after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
     checked(output, cx).map(|_| ())
 }
 
-/// `q0`, `v1`, `p2` for a parameter, …
+/// Returns the name of a symbol: `q0`, `v1`, `p2` for a parameter, …
 fn symbol_name(symbol: Symbol) -> String {
     match Quantity::of(symbol) {
         Quantity::Time => "t".to_string(),
@@ -286,14 +286,14 @@ fn symbol_name(symbol: Symbol) -> String {
     }
 }
 
-/// Milliseconds by name, each the least of several runs.
+/// Durations by name, each the minimum of several runs.
 #[derive(Default)]
 struct Stopwatch {
     stages: Vec<(String, Duration)>,
 }
 
 impl Stopwatch {
-    /// Notes what one run took.
+    /// Records the duration of a stage in one run.
     fn least(&mut self, stage: &str, elapsed: Duration) {
         match self.stages.iter_mut().find(|(name, _)| name == stage) {
             Some((_, least)) => *least = elapsed.min(*least),
@@ -314,8 +314,8 @@ impl Stopwatch {
     }
 }
 
-/// What every stage takes, and within `derive` every pass of lowering, over all functions and all candidates
-/// for them.
+/// Prints the time of every stage, and within `derive` that of every pass of lowering, over all functions and
+/// all their candidate programs.
 fn time(input: &Input) -> Result<(), Failure> {
     let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
     for _ in 0..REPEATS {

@@ -1,26 +1,25 @@
-//! Writes all mutants of a copy of this crate into it at once: each behind a question that an environment
-//! variable answers, so that one build serves them all. `.ci/mutate` makes the copy, builds it and has the
-//! tests look at the mutants one by one.
+//! Adds all mutants of a copy of this crate to its source. An environment variable selects the active mutants
+//! at run time, so one build serves all of them. `.ci/mutate` makes the copy, builds it and runs the tests
+//! with one mutant after another.
 //!
 //! ```sh
 //! cargo run -p linkwork-compiler --example mutants -- COPY-OF-THE-CRATE [NUMBER-OF-A-MUTANT-TO-LEAVE-OUT …]
 //! ```
 //!
-//! Prints a line for each mutant: its number, the file and line of the original, what stood there and what
-//! stands there now. Expressions of constants are left alone, what stands in macros, and comparisons with
-//! limits of `machine`: on which side of these code is does not change what it computes, and what it costs is
-//! counted by other tests.
+//! Prints a line for each mutant: its number, the file and line of the original, the original and the mutated
+//! expression. Expressions of constants, arguments of macros and comparisons with limits of `machine` are not
+//! mutated. These limits affect only the cost of the generated code, which other tests check.
 use proc_macro2::Span;
 use quote::{ToTokens, quote};
 use std::path::{Path, PathBuf};
 use syn::visit_mut::{self, VisitMut};
 use syn::{Arm, BinOp, Block, Expr, Lit, Pat, PatGuard, parse_quote, spanned::Spanned};
 
-/// What is mutated: what hands arms, offsets and sizes on.
+/// Folders and files that are mutated: the code that selects cases, offsets and sizes.
 const ROOMS: [&str; 4] = ["src/catalogue", "src/derive", "src/derive.rs", "src/emit"];
 
-/// The module of the copy that knows which mutants are asked for. A program that is given a file for it
-/// writes there which ones it comes upon.
+/// Source of a module of the copy that reads the selected mutants. If an environment variable contains a file
+/// name, the program also writes the numbers of the mutants that it reaches to this file.
 const CHOICE: &str = r#"//! The mutants that are asked for.
 use std::env::var;
 use std::fs::File;
@@ -43,17 +42,18 @@ pub fn is(mutant: usize) -> bool {
 }
 "#;
 
-/// Walks through a file's expressions and gives each place that can change a number.
+/// Visitor that adds mutants to the expressions of a file.
 struct Mutator<'a> {
     file: PathBuf,
-    /// The limits of `machine` that it imports.
+    /// Limits of `machine` that the file imports.
     limits: Vec<String>,
     next: usize,
     left_out: &'a [usize],
 }
 
 impl Mutator<'_> {
-    /// `original` or `instead`, by the mutant's number; `None` where this mutant is left out.
+    /// Returns an expression that selects `original` or `instead` by the mutant's number; `None` if this
+    /// mutant is omitted.
     fn choice(&mut self, at: Span, shown: &dyn ToTokens, original: &Expr, instead: &Expr) -> Option<Expr> {
         let number = self.next;
         self.next += 1;
@@ -65,12 +65,12 @@ impl Mutator<'_> {
         Some(parse_quote!((if crate::mutant::is(#number) { #instead } else { #original })))
     }
 
-    /// True for a limit of `machine`.
+    /// Returns true for a limit of `machine`.
     fn is_limit(&self, expr: &Expr) -> bool {
         matches!(expr, Expr::Path(path) if self.limits.iter().any(|limit| path.path.is_ident(limit)))
     }
 
-    /// What an expression may become, before anything in it is changed.
+    /// Returns the mutant of an expression whose subexpressions are unchanged.
     fn changed(expr: &Expr) -> Option<Expr> {
         let mut instead = expr.clone();
         match &mut instead {
@@ -115,7 +115,7 @@ impl Mutator<'_> {
     }
 }
 
-/// The names that a file imports from `machine`.
+/// Returns the names that a file imports from `machine`.
 fn limits(file: &syn::File) -> Vec<String> {
     let of_machine = |item: &syn::Item| match item {
         syn::Item::Use(item) => {
@@ -130,7 +130,7 @@ fn limits(file: &syn::File) -> Vec<String> {
     names.concat().into_iter().filter(|name| !name.is_empty()).collect()
 }
 
-/// What a name is taken for by mistake.
+/// Returns a name that could be confused with this one.
 fn other(name: &str) -> Option<&'static str> {
     Some(match name {
         "nq" => "nv",
@@ -156,7 +156,7 @@ fn has_let(expr: &Expr) -> bool {
     }
 }
 
-/// Tokens on a line, not all of a long one.
+/// Returns the first 100 characters of the tokens on one line.
 fn short(tokens: &dyn ToTokens) -> String {
     let text = tokens.to_token_stream().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     text.chars().take(100).collect()
@@ -171,8 +171,7 @@ impl VisitMut for Mutator<'_> {
         }
         let (original, instead) = (expr.clone(), Self::changed(expr));
         match expr {
-            // A place that is written to, or a function that is called, stays what it is; so does a condition
-            // with `let`.
+            // Assigned places, called functions and conditions with `let` remain unchanged.
             Expr::Call(call) => call.args.iter_mut().for_each(|argument| self.visit_expr_mut(argument)),
             Expr::Assign(assign) => self.visit_expr_mut(&mut assign.right),
             Expr::Reference(reference) if reference.mutability.is_some() => return,
@@ -185,7 +184,7 @@ impl VisitMut for Mutator<'_> {
         }
     }
 
-    /// An arm that does what the next one does.
+    /// Adds mutants of match arms that have the body of the next arm.
     fn visit_expr_match_mut(&mut self, matched: &mut syn::ExprMatch) {
         self.visit_expr_mut(&mut matched.expr);
         let bodies: Vec<Expr> = matched.arms.iter().map(|arm| (*arm.body).clone()).collect();
@@ -230,7 +229,7 @@ impl VisitMut for Mutator<'_> {
         visit_mut::visit_block_mut(self, block);
     }
 
-    /// A field that is named like its value is written out, or it would stay what it is.
+    /// Shorthand fields are expanded, because they could not be mutated otherwise.
     fn visit_field_value_mut(&mut self, field: &mut syn::FieldValue) {
         field.colon_token.get_or_insert_default();
         visit_mut::visit_field_value_mut(self, field);
@@ -240,13 +239,13 @@ impl VisitMut for Mutator<'_> {
     fn visit_pat_mut(&mut self, _: &mut syn::Pat) {}
     fn visit_path_mut(&mut self, _: &mut syn::Path) {}
     fn visit_attribute_mut(&mut self, _: &mut syn::Attribute) {}
-    /// The length of an array is a constant.
+    /// Skips array lengths, which are constants.
     fn visit_expr_repeat_mut(&mut self, repeat: &mut syn::ExprRepeat) {
         self.visit_expr_mut(&mut repeat.expr);
     }
 }
 
-/// All files of Rust at a path, in order.
+/// Adds all Rust files at a path to `found`, in sorted order.
 fn sources(path: &Path, found: &mut Vec<PathBuf>) {
     if path.is_file() {
         found.push(path.to_path_buf());

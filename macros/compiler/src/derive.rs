@@ -55,11 +55,11 @@ pub fn derive_with<'g>(
     passes: Passes,
     cx: &mut Diagnostics,
 ) -> Option<Output> {
-    let passes = without(passes, requests.skipped);
-    let speeds = InSpeeds::of(model).map(Rc::new);
+    let passes = remaining_passes(passes, requests.skipped);
+    let speeds = InSpeeds::new(model).map(Rc::new);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
-    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::without(s, requests)) {
+    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::unsupported_option(s, requests)) {
         cx.error(model.place.clone(), what).help(help);
         return None;
     }
@@ -166,8 +166,8 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
     }
 }
 
-/// Checks the derived output: all coefficients must be finite, no expression may be NaN, and each program
-/// must return as many values as its result has. Returns `None` with the error in `cx` otherwise.
+/// Checks the derived output: all coefficients must be finite, no expression may be NaN, and the number of
+/// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.all_functions().all(|f| f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
@@ -196,7 +196,7 @@ fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Outp
 }
 
 /// Returns the passes that the user has not switched off.
-fn without(passes: Passes, skipped: Skipped) -> Passes {
+fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
     Passes {
         frames: passes.frames && !skipped.frames,
         regroup: passes.regroup && !skipped.regroup,
@@ -293,7 +293,7 @@ impl<'g> Extras<'_, 'g> {
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
         let conserved = self.conserved.as_ref().map(Vec::len).unwrap_or_default();
         let cyclic = self.routh.as_ref().map(|routh| routh.cyclic.len()).unwrap_or_default();
-        Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::of(model, requests) }
+        Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::from_model(model, requests) }
     }
 }
 
@@ -330,7 +330,7 @@ fn functions<'g>(
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
-    let derivation = derivation.with(&facts, extras, derivatives.as_ref());
+    let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
     let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
     finish(&mut functions);
     functions
@@ -340,7 +340,7 @@ fn functions<'g>(
 fn finish(functions: &mut [Function]) {
     for f in functions {
         pipeline::begin(&f.name);
-        f.program = std::mem::take(&mut f.program).through(pipeline::FINISH);
+        f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
     }
 }
 
@@ -356,7 +356,7 @@ pub fn equations_latex(model: &Model<'_>) -> String {
 }
 
 fn written_alone(model: &Model<'_>) -> Written {
-    let speeds = InSpeeds::of(model);
+    let speeds = InSpeeds::new(model);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints(model);
     written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
@@ -386,11 +386,11 @@ fn printed<'g>(
             let named = speeds.map_or(model, |speeds| &speeds.model);
             match kane::kane(model, joints, speeds) {
                 Ok(found) => Some(kane::written_kane(named, &found)),
-                Err(kane::Without::Choice) => refuse(
+                Err(kane::KaneFailure::Choice) => refuse(
                     "no velocities of this mechanism follow from the others by its constraints everywhere",
                     "write `equations = lagrange`, which keeps all constraints with multipliers",
                 ),
-                Err(kane::Without::Length) => refuse(
+                Err(kane::KaneFailure::Length) => refuse(
                     "Kane's equations of this mechanism have thousands of terms",
                     "write `equations = lagrange`, which keeps the constraints with multipliers, or declare generalized speeds in which they are short",
                 ),
@@ -466,7 +466,7 @@ fn written<'g>(
 
 /// Lowers one step of the recursion from link to link.
 fn part(outputs: &[Expr<'_>]) -> Program {
-    lower(outputs).through(pipeline::PART)
+    lower(outputs).run_passes(pipeline::PART)
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {

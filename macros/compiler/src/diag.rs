@@ -18,7 +18,7 @@ pub struct Place {
 
 impl Place {
     /// Returns the range from the start of `self` to the end of `end`.
-    pub fn to(&self, end: &Place) -> Place {
+    pub fn join(&self, end: &Place) -> Place {
         Place { end: end.end, ..self.clone() }
     }
 }
@@ -244,14 +244,14 @@ impl Diagnostics {
 
 /// Returns `::core::compile_error! { "message" }`, shown from the first to the last token of `place`.
 fn compile_error(place: &Place, message: &str) -> TokenStream {
-    let at = |mut token: TokenTree, span: Span| {
+    let with_span = |mut token: TokenTree, span: Span| {
         token.set_span(span);
         token
     };
     let path = "::core::compile_error!".parse::<TokenStream>().unwrap_or_default();
-    let message = at(Literal::string(message).into(), place.end);
-    let braces = at(Group::new(Delimiter::Brace, message.into()).into(), place.end);
-    path.into_iter().map(|token| at(token, place.span)).chain([braces]).collect()
+    let message = with_span(Literal::string(message).into(), place.end);
+    let braces = with_span(Group::new(Delimiter::Brace, message.into()).into(), place.end);
+    path.into_iter().map(|token| with_span(token, place.span)).chain([braces]).collect()
 }
 
 /// Joins the items as `a`, `a or b`, `a, b or c`.

@@ -54,7 +54,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     // If an imported file could not be read, even the sizes of the mechanism are unknown. An interface with
     // guessed sizes would only cause errors that follow from the first one.
     if !source.imported {
-        return a_type_of_mistakes(&source, cx.distinct().map(Diagnostic::tokens));
+        return emit_error_type(&source, cx.distinct().map(Diagnostic::tokens));
     }
     let mut emitted = source.emit_failed();
     emitted.tokens.extend(cx.into_tokens());
@@ -63,10 +63,10 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
 
 /// Returns the errors as `compile_error!`. The first replaces the struct's definition, so that rustc reports
 /// no further errors where the type is used.
-fn a_type_of_mistakes(source: &Source, mut mistakes: impl Iterator<Item = TokenStream>) -> Emitted {
-    let first = mistakes.next().unwrap_or_default();
-    let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &first);
-    tokens.extend(mistakes);
+fn emit_error_type(source: &Source, mut errors: impl Iterator<Item = TokenStream>) -> Emitted {
+    let first = errors.next().unwrap_or_default();
+    let mut tokens = emit::error_type(&source.mechanism.shell, &first);
+    tokens.extend(errors);
     Emitted { tokens, text: String::new() }
 }
 
@@ -78,7 +78,7 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
     let error = derive_above(proc_macro2::Span::call_site());
-    a_type_of_mistakes(&source, [error.tokens(), cx.into_tokens()].into_iter())
+    emit_error_type(&source, [error.tokens(), cx.into_tokens()].into_iter())
 }
 
 /// Returns the error for a `#[derive(…)]` above the attribute; `attribute` is the span of `#[mechanism]`.
@@ -193,7 +193,8 @@ fn model_and_functions<'g>(
     describe(&mut output, &source.mechanism);
     let description = &source.mechanism.description;
     let good = check_rates(description, &output.functions, cx);
-    let good = check_outputs(description, &output.functions, &Facts::of(&model, requests), cx) && good;
+    let good =
+        check_outputs(description, &output.functions, &Facts::from_model(&model, requests), cx) && good;
     good.then_some((model, output))
 }
 

@@ -136,7 +136,7 @@ impl Source {
         let bare = self.bare_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
         let base = base.map_or(0, |constant| constant.list.len());
-        let facts = Facts { base, ..Facts::of(m, self.mechanism.requests) };
+        let facts = Facts { base, ..Facts::from_model(m, self.mechanism.requests) };
         Interface {
             configuration: m.configuration.clone(),
             velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
@@ -148,10 +148,10 @@ impl Source {
                 .filter_map(|output| Some((output.name.clone(), output.diagram.clone()?)))
                 .collect(),
             units: m.units.clone(),
-            constraints: Constraints::of(m),
-            contacts: emit::Touching::of(m),
-            limits: emit::Limited::of(m),
-            figures: emit::Figure::of(m),
+            constraints: Constraints::from_model(m),
+            contacts: emit::UnilateralContact::from_model(m),
+            limits: emit::CoordinateLimits::from_model(m),
+            figures: emit::ParameterCondition::from_model(m),
             absent: emit::absent(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
@@ -246,7 +246,11 @@ impl Source {
             } else {
                 Constraints::default()
             },
-            contacts: if facts.contacts.count > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
+            contacts: if facts.contacts.count > 0 {
+                vec![emit::UnilateralContact::unknown()]
+            } else {
+                Vec::new()
+            },
             facts,
             ..bare
         };

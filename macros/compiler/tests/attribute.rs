@@ -121,19 +121,19 @@ fn functions_say_what_determines_the_motion() {
 /// The mechanism of a file is a constant, unless the struct is generic.
 #[test]
 fn a_mechanism_of_a_file_is_a_constant() {
-    let of = |item: &str| {
+    let constants = |item: &str| {
         let arguments = "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial]";
         let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
         emitted.into_tokens().unwrap().to_string().replace(' ', "")
     };
-    let plain = of("pub struct S;");
+    let plain = constants("pub struct S;");
     assert!(plain.contains("pubconstFILE:Self=") && plain.contains("pubconstfnfrom_file()->Self"), "{plain}");
-    let own = of("pub struct S { gain: f64, #[acts(on = joint1, damping = gain)] drag: Dashpot }");
+    let own = constants("pub struct S { gain: f64, #[acts(on = joint1, damping = gain)] drag: Dashpot }");
     assert!(
         !own.contains("pubconstFILE:Self=") && own.contains("pubconstfnfrom_file(gain:f64)->Self"),
         "{own}"
     );
-    let generic = of("pub struct S<T>;");
+    let generic = constants("pub struct S<T>;");
     assert!(
         !generic.contains("pubconstFILE:Self=") && generic.contains("pubfnfrom_file()->Self"),
         "{generic}"
@@ -142,18 +142,21 @@ fn a_mechanism_of_a_file_is_a_constant() {
 
 #[test]
 fn what_has_no_equations_says_why() {
-    let about = |arguments: &str, fields: &str| {
+    let equations_doc = |arguments: &str, fields: &str| {
         let text = code(arguments, fields);
         let before = text.split("pubconstEQUATIONS:&'staticstr=").next().unwrap().to_string();
         before.rsplit("#[doc=").next().unwrap().to_string()
     };
     assert!(
-        about("", "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,")
+        equations_doc("", "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,")
             .contains("Empty:nothingmoves.")
     );
     let kinematic = CART.replace("mass = 1", "");
-    assert!(about("inertia = none", &kinematic).contains("Empty:withoutinertiatherearenoequationsofmotion."));
-    assert!(!about("", CART).contains("Empty"));
+    assert!(
+        equations_doc("inertia = none", &kinematic)
+            .contains("Empty:withoutinertiatherearenoequationsofmotion.")
+    );
+    assert!(!equations_doc("", CART).contains("Empty"));
     assert!(
         code("equations = structure", CART).contains("Theargument`equations=structure`leavesthetermsout.")
     );

@@ -28,7 +28,7 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
     let Some((model, output)) = compile(&source, &graph, &mut cx) else {
         panic!("{}: {:?}", mechanism.1, cx.messages());
     };
-    f(&model, Facts::of(&model, source.mechanism.requests), output)
+    f(&model, Facts::from_model(&model, source.mechanism.requests), output)
 }
 
 /// Returns the public functions in the inherent implementations of a type, without functions that only report

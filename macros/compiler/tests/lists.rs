@@ -16,7 +16,7 @@ fn messages(arguments: &str, fields: &str) -> Vec<String> {
 }
 
 /// Checks that both mechanisms compile to the same code.
-fn alike(arguments: [&str; 2], fields: [&str; 2]) {
+fn assert_same_code(arguments: [&str; 2], fields: [&str; 2]) {
     for (arguments, fields) in arguments.iter().zip(fields) {
         assert_eq!(messages(arguments, fields), [""; 0]);
     }
@@ -48,7 +48,7 @@ fn a_list_stands_for_its_elements() {
         #[output(r(leg_1.at(-l * z) / hull), resolved_in = hull)] foot_0: Vector,
         #[output(r(leg_0.at(-l * z) / hull), resolved_in = hull)] foot_1: Vector,"
     );
-    alike(["gravity = -9.81 * z, derivatives"; 2], [&with, &without]);
+    assert_same_code(["gravity = -9.81 * z, derivatives"; 2], [&with, &without]);
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_chain_leads_from_one_to_the_next() {
         .chain((0..3).map(hinge))
         .chain(["#[joint(link_3.at(-2 * y) -> ground.at(x), about = z)] last: Pin,".to_string()])
         .collect();
-    alike(
+    assert_same_code(
         [
             "formulation = speeds, independent = (hinge[2], first)",
             "formulation = speeds, independent = (hinge_2, first)",

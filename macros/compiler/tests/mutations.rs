@@ -70,7 +70,7 @@ fn count(tokens: &TokenStream) -> usize {
 struct Random(u64);
 
 impl Random {
-    fn below(&mut self, n: usize) -> usize {
+    fn index_below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -125,7 +125,7 @@ fn slip(
                     out.push(token);
                 }
                 Slip::Misspelt => out.push(misspelt(token, random)),
-                Slip::Mistaken => out.push(others[random.below(others.len())].clone()),
+                Slip::Mistaken => out.push(others[random.index_below(others.len())].clone()),
             }
             continue;
         }
@@ -143,9 +143,9 @@ fn slip(
 fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
     let text = token.to_string();
     let mut letters: Vec<char> = text.chars().collect();
-    let at = random.below(letters.len());
-    let letter = (b'a' + random.below(26) as u8) as char;
-    match (&token, random.below(3)) {
+    let at = random.index_below(letters.len());
+    let letter = (b'a' + random.index_below(26) as u8) as char;
+    match (&token, random.index_below(3)) {
         (TokenTree::Ident(_), 0) => letters.insert(at, letter),
         (TokenTree::Ident(_), 1) if letters.len() > 1 => drop(letters.remove(at)),
         (TokenTree::Ident(_), _) => letters[at] = letter,
@@ -183,11 +183,11 @@ fn slips_of_the_hand_are_answered_in_few_words() {
     let mut random = Random(number("SEED").unwrap_or(SEED));
     let mut wrong: BTreeMap<String, (usize, String)> = BTreeMap::new();
     for case in 0..cases {
-        let subject = &gallery[random.below(gallery.len())];
+        let subject = &gallery[random.index_below(gallery.len())];
         let mut others = Vec::new();
         leaves(&subject.item, &mut others);
-        let kind = SLIPS[random.below(SLIPS.len())];
-        let mut at = random.below(count(&subject.item));
+        let kind = SLIPS[random.index_below(SLIPS.len())];
+        let mut at = random.index_below(count(&subject.item));
         let item = slip(subject.item.clone(), &mut at, kind, &others, &mut random);
         // rustc itself reports items that are no structs.
         if syn::parse2::<syn::ItemStruct>(item.clone()).is_err() {

@@ -212,9 +212,9 @@ fn an_error_keeps_the_arguments_of_every_measure() {
         assert_eq!(error, None, "{function}");
         let whole = code("", "Measured", &fields);
         let failed = code("", "Measured", &format!("{fields} {MISTAKE}"));
-        let of = |all: &Generated| all.present.get("Measured::measure").cloned();
-        assert!(of(&whole).is_some(), "{function}");
-        assert_eq!(of(&failed), of(&whole), "{function}");
+        let signature = |all: &Generated| all.present.get("Measured::measure").cloned();
+        assert!(signature(&whole).is_some(), "{function}");
+        assert_eq!(signature(&failed), signature(&whole), "{function}");
     }
 }
 
@@ -308,7 +308,7 @@ fn a_mistake_leaves_every_name() {
 
 #[test]
 fn every_word_is_named_by_what_needs_it() {
-    let of = |name: &str| name.split_once("::").unwrap().1.to_string();
+    let function_name = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
         let (bare, all) = (code("", name, fields), code(WORDS, name, fields));
         // A function that all options together add is present without them, or reports why it is absent.
@@ -349,7 +349,7 @@ fn every_word_is_named_by_what_needs_it() {
                 "HasSpeeds",
             ];
             let known = expected.contains(&reason.as_str()) || of_all.contains(&reason.as_str());
-            assert!(known, "{}: {reason}", of(function));
+            assert!(known, "{}: {reason}", function_name(function));
         }
     }
 }

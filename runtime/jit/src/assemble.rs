@@ -40,7 +40,9 @@ impl Visitor for Asked<'_> {
         let q = vector(self.q);
         match self.question {
             Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration),
-            Question::LeastViolation => linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration),
+            Question::LeastViolation => {
+                linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration)
+            }
             Question::Mode => Ok((Vec::new(), m.mode(t, &q, held))),
             Question::Project => {
                 Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration)

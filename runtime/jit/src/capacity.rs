@@ -32,7 +32,9 @@ impl Robot {
     /// Largest of the numbers of coordinates, velocities with states of first order, inputs, and constraints.
     fn dimension(&self) -> usize {
         let velocities = self.nv() + self.shared.states.len();
-        [self.nq(), velocities, self.nu(), self.shared.constraints.names.len()].into_iter().fold(0, usize::max)
+        [self.nq(), velocities, self.nu(), self.shared.constraints.names.len()]
+            .into_iter()
+            .fold(0, usize::max)
     }
 
     /// Whether the matrices of the runtime need more stack than threads usually have.
@@ -69,7 +71,8 @@ impl Robot {
                 Ok(visitor.visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, 16, 48, _>::new(self)?))
             }
             ..=LARGEST if count <= MOST_CONTACTS => {
-                Ok(visitor.visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
+                Ok(visitor
+                    .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
             }
             ..=LARGEST => Err(self.too_large("contacts", count, MOST_CONTACTS)),
             count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),

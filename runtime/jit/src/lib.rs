@@ -1,12 +1,12 @@
 #![doc = include_str!("../README.md")]
 
+mod assemble;
+mod capacity;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod code;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[path = "no_code.rs"]
 mod code;
-mod assemble;
-mod capacity;
 mod constrained;
 mod error;
 mod frames;
@@ -29,9 +29,9 @@ mod table;
 
 pub use error::Error;
 pub use functions::Matrix;
+pub use load::{Loader, declare, load};
 #[doc(hidden)]
 pub use load::{compiled, without_rust};
-pub use load::{Loader, declare, load};
 pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;

@@ -442,9 +442,9 @@ impl Robot {
                 }
                 own
             };
-            return (0..count).zip(out.chunks_exact_mut(entry.length.max(1))).try_for_each(|(k, out)| {
-                self.call_constrained(kind, &lists(k)[..arguments.len()], out)
-            });
+            return (0..count)
+                .zip(out.chunks_exact_mut(entry.length.max(1)))
+                .try_for_each(|(k, out)| self.call_constrained(kind, &lists(k)[..arguments.len()], out));
         }
         WORK.with_borrow_mut(|work| {
             if work.len() < entry.work {

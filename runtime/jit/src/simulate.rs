@@ -98,8 +98,7 @@ impl Default for Method {
 }
 
 /// Function of time, configuration and velocity that writes the inputs. An error ends the run.
-pub type Controller<'a> =
-    &'a mut (dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send);
+pub type Controller<'a> = &'a mut (dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send);
 
 /// Inputs of a simulation.
 #[derive(Default)]
@@ -304,7 +303,8 @@ impl<'a, 'i> Simulation<'a, 'i> {
                 robot.check_length("u", robot.nu() * times.len(), values.len())?;
                 let ordered = times.windows(2).all(|pair| pair[0] <= pair[1]);
                 if times.is_empty() || !ordered || !times.iter().chain(*values).all(|x| x.is_finite()) {
-                    let message = "times of inputs must be finite, and must not decrease; inputs must be finite";
+                    let message =
+                        "times of inputs must be finite, and must not decrease; inputs must be finite";
                     return Err(Error::Value(message.to_string()));
                 }
             }
@@ -364,8 +364,7 @@ const STACK: usize = 64 << 20;
 fn on_large_stack(run: impl FnOnce() -> Result<(), Error> + Send) -> Result<(), Error> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
-        let thread =
-            thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
+        let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
@@ -424,7 +423,9 @@ impl Visitor for Moving<'_, '_, '_, '_> {
             Method::Rosenbrock(h) => driver.go(robot, start, Rosenbrock::step(h)),
             Method::SemiImplicitEuler(h) => driver.go(robot, start, SemiImplicitEuler::step(h)),
             // Without contacts these methods are those between contacts.
-            Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) => driver.go(robot, start, Rk4::step(h)),
+            Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) => {
+                driver.go(robot, start, Rk4::step(h))
+            }
             Method::EventDriven(e) => driver.go(robot, start, DormandPrince8::new().tolerance(e, e)),
         }
     }
@@ -527,12 +528,7 @@ impl Plan<'_> {
         };
         let part = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();
         let velocities = robot.nv() + robot.shared.states.len();
-        Sample {
-            t,
-            q: part(&state.q, robot.nq()),
-            v: part(&state.v, velocities),
-            u: part(&u, robot.nu()),
-        }
+        Sample { t, q: part(&state.q, robot.nq()), v: part(&state.v, velocities), u: part(&u, robot.nu()) }
     }
 }
 
@@ -627,7 +623,9 @@ impl Driver<'_, '_, '_> {
         M: Mechanism<N, N, N, Scalar = f64>,
         S: integrate::Method<f64> + Copy,
     {
-        self.sections(start, |driver, section| driver.along(m, section, section.start, method, &mut |_, _| true))
+        self.sections(start, |driver, section| {
+            driver.along(m, section, section.start, method, &mut |_, _| true)
+        })
     }
 
     /// Integrates a section with one method, from a state of it. `goes_on` receives each sample, and the number

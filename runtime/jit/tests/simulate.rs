@@ -171,7 +171,10 @@ fn contacts_agree_with_generated_rust() -> Result<(), Error> {
     q[2] = 0.05;
     let overlap = robot.simulate().from(q.as_slice(), &[0.0; 6]).duration(0.1).finish();
     let error = overlap.map_err(|error| error.to_string());
-    assert!(error.as_ref().is_err_and(|text| text.contains("overlap by 0.05") && text.contains("`floor")), "{error:?}");
+    assert!(
+        error.as_ref().is_err_and(|text| text.contains("overlap by 0.05") && text.contains("`floor")),
+        "{error:?}"
+    );
     Ok(())
 }
 
@@ -285,7 +288,10 @@ fn inputs_are_followed_exactly() -> Result<(), Error> {
         true => Ok(()),
         false => Err("no more".to_string()),
     };
-    assert_eq!(pushed(&cart, Inputs::Function(&mut fails)).map(|_| ()), Err(Error::Value("no more".to_string())));
+    assert_eq!(
+        pushed(&cart, Inputs::Function(&mut fails)).map(|_| ()),
+        Err(Error::Value("no more".to_string()))
+    );
     let wrong = pushed(&cart, Inputs::Constant(&[1.0, 2.0]));
     assert!(matches!(wrong, Err(Error::Length { expected: 1, found: 2, .. })));
     let backwards = pushed(&cart, Inputs::Samples { times: &[1.0, 0.0], values: &[0.0, 0.0] });
@@ -317,8 +323,7 @@ fn stiff_motions_are_integrated_by_an_implicit_method() -> Result<(), Error> {
     let run = run.duration(2.0).sample_every(0.5).run()?;
     assert!(run.stiff_from.is_some_and(|t| t < 0.5), "{:?}", run.stiff_from);
     for sample in &run.samples {
-        let exact =
-            (fast * (-slow * sample.t).exp() - slow * (-fast * sample.t).exp()) / (fast - slow);
+        let exact = (fast * (-slow * sample.t).exp() - slow * (-fast * sample.t).exp()) / (fast - slow);
         close(&sample.q, &[exact], 1e-7);
     }
     Ok(())

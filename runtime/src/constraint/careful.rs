@@ -266,7 +266,12 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 
     /// Returns the solution, and whether the rows above the relative magnitude `clear` have the rank of
     /// regular configurations.
-    fn solve(&self, structure: &Structure<'_, NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
+    fn solve(
+        &self,
+        structure: &Structure<'_, NC>,
+        clear: T,
+        weak: Weak<T, NV>,
+    ) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded(structure);
         let metric = Metric::of(&mass);
         let mut span = Span::of(&metric, &self.jacobian, &structure.groups);

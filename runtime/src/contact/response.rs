@@ -6,15 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// What impulses at contacts that are closed do; zeros of others.
 #[doc(hidden)]
-pub fn responses<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NK: usize,
-    const NR: usize,
->(
+pub fn responses<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -27,7 +19,8 @@ where
     let jacobian = mechanism.contact_jacobian(t, q);
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
-    let factor = if features.constrained || features.feedback { None } else { factor(mechanism.mass_matrix(t, q)) };
+    let factor =
+        if features.constrained || features.feedback { None } else { factor(mechanism.mass_matrix(t, q)) };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };

@@ -68,7 +68,11 @@ struct Start<'m, M, const NQ: usize, const NV: usize> {
 }
 
 impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
-    fn near<const NU: usize, const NH: usize, const NC: usize>(m: &'m M, q: [f64; NQ], v: [f64; NV]) -> Self
+    fn projected<const NU: usize, const NH: usize, const NC: usize>(
+        m: &'m M,
+        q: [f64; NQ],
+        v: [f64; NV],
+    ) -> Self
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
     {
@@ -135,11 +139,11 @@ fn methods_keep_their_order() {
         })+};
     }
     check! {
-        Start::near(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
-        Start::near(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
-        Start::near(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
-        Start::near(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 2.5e-3;
-        Start::near(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
+        Start::projected(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
+        Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
+        Start::projected(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
+        Start::projected(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 2.5e-3;
+        Start::projected(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
     }
 }
 
@@ -158,11 +162,11 @@ fn energy_does_not_drift() {
         })+};
     }
     check! {
-        Start::near(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
-        Start::near(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
-        Start::near(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 0.1, 1e-2;
-        Start::near(&FreeDisk {}, [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]), 0.1, 1e-2;
-        Start::near(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 2e-3, 1e-4;
+        Start::projected(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
+        Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
+        Start::projected(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 0.1, 1e-2;
+        Start::projected(&FreeDisk {}, [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]), 0.1, 1e-2;
+        Start::projected(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 2e-3, 1e-4;
     }
 }
 
@@ -179,7 +183,7 @@ fn a_pendulum_is_not_pumped() {
 /// A four-bar linkage with 26.8 J keeps its energy; it once gained 0.19 J in 4 s and 45 J in 12 s.
 #[test]
 fn a_linkage_keeps_its_energy() {
-    let start = Start::near(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
+    let start = Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
     let (worst, _) = start.energy(ImplicitMidpoint::step(1e-3), 1e-3, 12_000);
     assert!(worst[1] < 1e-2, "{worst:?}");
 }
@@ -199,9 +203,17 @@ fn midpoint_rule_is_reversible() {
         let off = start.m.difference(&start.q, &back.q).amax().max((back.v + start.v).amax());
         assert!(off < 1e-9, "{off:e}");
     }
-    check(&Start::near(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]));
-    check(&Start::near(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]));
-    check(&Start::near(&FreeDisk {}, [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]));
+    check(&Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]));
+    check(&Start::projected(
+        &Hung {},
+        [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98],
+        [0.5, 0.2, 0.0, 1.0, 2.0, -1.0],
+    ));
+    check(&Start::projected(
+        &FreeDisk {},
+        [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98],
+        [0.0, 0.0, 0.0, 0.3, 6.0, 0.5],
+    ));
 }
 
 /// Steps that are too long for the curvature of the constraints return an error.
@@ -233,7 +245,7 @@ fn feedback_is_integrated_by_the_midpoint_rule() {
 fn constrained_rollouts_do_not_mix() {
     let linkage = FourBar {};
     let states: Vec<_> =
-        [1.2, 1.3, 1.5].map(|crank| Start::near(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
+        [1.2, 1.3, 1.5].map(|crank| Start::projected(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
     let all = |entry: &dyn Fn(&Start<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
         (0..3).flat_map(|i| states.iter().map(move |s| entry(s, i))).collect()
     };

@@ -93,7 +93,7 @@ fn off_top(angle: f64) -> f64 {
 }
 
 /// Returns the error of the first post's top after ten seconds, and the change of the energy.
-fn turned<M: Method<f64>>(method: M) -> (f64, f64) {
+fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let (q, v) = posts(0.0, 1.0);
     let energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
@@ -104,7 +104,7 @@ fn turned<M: Method<f64>>(method: M) -> (f64, f64) {
 #[test]
 fn runge_kutta_keeps_its_order_through_singular_positions() {
     for (step, most) in [(1e-2, 1e-6), (5e-3, 7e-8), (2e-3, 2e-9), (1e-3, 3e-10)] {
-        let (top, energy) = turned(Rk4::step(step));
+        let (top, energy) = window_errors(Rk4::step(step));
         assert!(top < most && energy < 2.0 * most, "{top} m and {energy} J with {step} s");
     }
 }
@@ -134,7 +134,7 @@ fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
 fn implicit_steps_are_as_good_in_singular_positions_as_without() {
     fn check<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
         for step in [2e-3, 1e-3] {
-            let ((top, energy), (own, least)) = (turned(method(step)), swung(method(step)));
+            let ((top, energy), (own, least)) = (window_errors(method(step)), swung(method(step)));
             let alike = top < 1.2 * own + 1e-5 && energy < 1.2 * least + 1e-6;
             assert!(alike, "{name}: {top} m, {energy} J with {step} s; a pendulum {own} m, {least} J");
         }
@@ -147,7 +147,7 @@ fn implicit_steps_are_as_good_in_singular_positions_as_without() {
 #[test]
 fn adaptive_steps_go_through_singular_positions() {
     for tolerance in [1e-7, 1e-9, 1e-12] {
-        let (top, energy) = turned(DormandPrince::new().tolerance(tolerance, tolerance));
+        let (top, energy) = window_errors(DormandPrince::new().tolerance(tolerance, tolerance));
         assert!(top < 1e4 * tolerance && energy < 1e4 * tolerance, "{top} m, {energy} J with {tolerance}");
     }
 }
@@ -330,14 +330,15 @@ fn stiff_springs_act_in_singular_positions() {
 
 /// Returns the maximum change of the energy in a run, relative to the initial energy.
 fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time: f64, method: M) -> f64 {
-    let to = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
-    let m = Sprung { stiffness: to(stiffness) };
-    let on = |x: f64| SVector::from([to(x), to(-x), to(x)]);
+    let convert = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
+    let m = Sprung { stiffness: convert(stiffness) };
+    let configuration = |x: f64| SVector::from([convert(x), convert(-x), convert(x)]);
     let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let start = energy(&on(angle), &on(rate));
-    let run = simulate(&m).from(on(angle), on(rate)).method(method).duration(to(time));
+    let start = energy(&configuration(angle), &configuration(rate));
+    let run =
+        simulate(&m).from(configuration(angle), configuration(rate)).method(method).duration(convert(time));
     let mut most = T::zero();
-    for sample in run.sample_every(to(time / 100.0)) {
+    for sample in run.sample_every(convert(time / 100.0)) {
         let Sample { q, v, .. } = sample.expect("it goes on");
         most = most.max((energy(&q, &v) - start).abs());
     }

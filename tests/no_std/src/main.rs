@@ -164,8 +164,8 @@ fn rests(friction: f64) -> bool {
     let run = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);
     let steps = run().method(TimeStepping::step(1e-3)).finish();
     let (Ok(steps), Ok(events)) = (steps, run().method(EventDriven::new()).finish()) else { return false };
-    let still = |end: &Sample<f64, 3, 3, 0>| (end.q[1] - 0.1).abs() < 1e-7 && end.v.norm() < 1e-9;
-    still(&steps) && still(&events) && (steps.q - events.q).norm() < 1e-2
+    let is_at_rest = |end: &Sample<f64, 3, 3, 0>| (end.q[1] - 0.1).abs() < 1e-7 && end.v.norm() < 1e-9;
+    is_at_rest(&steps) && is_at_rest(&events) && (steps.q - events.q).norm() < 1e-2
 }
 
 #[unsafe(no_mangle)]

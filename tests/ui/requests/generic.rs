@@ -1,4 +1,4 @@
-//! A struct that is generic over its numbers tells the same.
+//! A struct with a generic scalar type gets the same messages.
 
 use linkwork::prelude::*;
 

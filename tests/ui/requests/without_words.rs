@@ -1,4 +1,4 @@
-//! What a word of the attribute would give is told by the word; a method of the user's own of such a name is theirs.
+//! Calls that need an option of the attribute report this option; the user's own methods take precedence.
 
 use linkwork::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A comma that is missing between fields is told by rustc, once, and the functions are there.
+//! A missing comma between fields is reported once, by rustc, and the functions exist.
 
 use linkwork::prelude::*;
 

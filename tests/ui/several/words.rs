@@ -1,4 +1,4 @@
-//! Words of other tools, and the places that the messages point at.
+//! Terms of other tools, and the tokens that the messages point at.
 
 mod degrees {
     use linkwork::prelude::*;

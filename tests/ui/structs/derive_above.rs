@@ -1,4 +1,4 @@
-//! A derive that comes first sees elements that do not stay.
+//! A derive above the attribute processes elements that the attribute removes.
 
 use linkwork::prelude::*;
 

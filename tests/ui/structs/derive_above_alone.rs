@@ -1,4 +1,4 @@
-//! Derives that come first, each alone: one error for each struct, however it is used.
+//! Derives above the attribute, one for each struct: every struct has one error, for any use.
 
 use linkwork::prelude::*;
 

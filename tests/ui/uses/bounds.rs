@@ -1,4 +1,4 @@
-//! Bounds that a mechanism does not fulfil say what would.
+//! Bounds that a mechanism does not satisfy report the option that would satisfy them.
 
 use linkwork::prelude::*;
 

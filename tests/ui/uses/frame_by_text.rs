@@ -1,4 +1,4 @@
-//! Frames have names that are checked, not texts.
+//! Frames are identified by checked names, not by strings.
 
 use linkwork::prelude::*;
 

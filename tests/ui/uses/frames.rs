@@ -1,4 +1,4 @@
-//! A frame's name that is nearly right, and one that is not.
+//! A misspelt name of a frame, and an unrelated name.
 
 use linkwork::prelude::*;
 

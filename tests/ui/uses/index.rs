@@ -1,4 +1,4 @@
-//! Names in lists are checked in all contexts.
+//! Names in `index!` are checked in constants and in functions.
 
 use linkwork::index;
 use linkwork::prelude::*;

@@ -1,4 +1,4 @@
-//! One mistake in a mechanism with a loop is not reported again where the mechanism is used.
+//! An error in a mechanism with a loop is not reported again at uses of the mechanism.
 
 use linkwork::prelude::*;
 

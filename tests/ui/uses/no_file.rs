@@ -1,4 +1,4 @@
-//! A file that is not found is one mistake, however the robot is used.
+//! A missing file causes a single error, for any use of the robot.
 
 use linkwork::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A mechanism whose equations contain time is none without time: the message says how it becomes one at an instant.
+//! A time-dependent mechanism does not satisfy bounds without time: the message suggests to fix the instant.
 
 use linkwork::prelude::*;
 

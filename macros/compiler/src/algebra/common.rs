@@ -1,6 +1,6 @@
 //! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
-use super::item::{Item, Order, Sum, common_number, near};
+use super::item::{Item, Order, Sum, common_number, is_close};
 use super::polynomial::Monomial;
 
 /// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
@@ -14,7 +14,7 @@ const NESTED: usize = 3;
 
 /// Selection of the items of a sum from which common factors are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Among {
+pub enum FactorScope {
     /// Takes common factors out of all items: for an equation.
     All,
     /// Takes common factors out of items of the same nonzero degree in rates, but never rates and positions:
@@ -25,15 +25,15 @@ pub enum Among {
 }
 
 /// Takes common factors out of a sum and of the sums in its items.
-pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> {
-    let kept = if among == Among::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
+pub fn gathered(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
+    let kept = if scope == FactorScope::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };
-    within(&rules, &mut items);
+    factor_sums(&rules, &mut items);
     let kind = |item: &Item| item.factor.only(order.rates).degree();
-    let mut kinds: Vec<u32> = match among {
-        Among::All => return gather(&rules, items),
-        Among::Kinds => items.iter().map(kind).collect(),
-        Among::None => return items,
+    let mut kinds: Vec<u32> = match scope {
+        FactorScope::All => return gather(&rules, items),
+        FactorScope::Kinds => items.iter().map(kind).collect(),
+        FactorScope::None => return items,
     };
     kinds.dedup();
     let mut out = Vec::new();
@@ -62,12 +62,12 @@ impl Rules<'_> {
 }
 
 /// Takes common factors out of the sums within items.
-fn within(rules: &Rules<'_>, items: &mut [Item]) {
+fn factor_sums(rules: &Rules<'_>, items: &mut [Item]) {
     let inner = rules.inner();
     for item in items {
         for sum in item.sums.iter_mut().filter(|sum| sum.power == 1) {
             let mut items = std::mem::take(&mut sum.items);
-            within(&inner, &mut items);
+            factor_sums(&inner, &mut items);
             sum.items = gather(&inner, items);
         }
         unwrap(item);
@@ -99,7 +99,7 @@ fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
         return best;
     }
     for group in groups(rules, &items) {
-        let found = greedily(rules, with(rules, items.clone(), group));
+        let found = greedily(rules, replace_group(rules, items.clone(), group));
         if rules.order.size(&found) < rules.order.size(&best) {
             best = found;
         }
@@ -117,7 +117,7 @@ fn greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
             }
         }
         let Some(group) = best else { break };
-        items = with(rules, items, group);
+        items = replace_group(rules, items, group);
     }
     items
 }
@@ -132,7 +132,7 @@ struct Group {
 }
 
 /// Replaces the members of a group by the factored item.
-fn with(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
+fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
     let Group { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
         last.items = greedily(&rules.inner(), std::mem::take(&mut last.items));
@@ -155,7 +155,7 @@ fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
     let size = |items: &[Item]| rules.order.size(items);
     let group = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
-        let whole = together(rules, &before, members.len() == items.len())?;
+        let whole = combined(rules, &before, members.len() == items.len())?;
         let saved = size(&before).checked_sub(size(std::slice::from_ref(&whole)))?;
         (saved > 0 && nested(&whole) <= rules.room).then_some(Group { members, whole, saved })
     };
@@ -183,15 +183,15 @@ fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
 /// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
 /// summand in parentheses is positive. If the first summand is a negative multiple of an acceleration, and
 /// `items` are not the whole sum, the sign is taken out; otherwise a positive summand is moved to the front.
-fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
+fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     let first = items.first()?;
-    let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).without(rules.kept);
+    let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).cleared(rules.kept);
     let mut sums: Vec<Sum> = Vec::new();
     let mut left: Vec<Item> = items
         .iter()
         .map(|item| Item {
             coefficient: item.coefficient,
-            factor: item.factor.over(factor),
+            factor: item.factor.quotient(factor),
             sums: item.sums.clone(),
         })
         .collect();
@@ -225,7 +225,7 @@ fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
 /// Removes the parentheses of a sum whose only factor is a sign. Any other item is returned unchanged.
 fn opened(item: Item) -> Vec<Item> {
     match item.sums.as_slice() {
-        [sum] if sum.power == 1 && item.factor == Monomial::ONE && near(item.coefficient.abs(), 1.0) => {
+        [sum] if sum.power == 1 && item.factor == Monomial::ONE && is_close(item.coefficient.abs(), 1.0) => {
             let signed =
                 |inner: &Item| Item { coefficient: inner.coefficient * item.coefficient, ..inner.clone() };
             sum.items.iter().map(signed).collect()
@@ -258,7 +258,7 @@ fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
 fn equal(a: &Item, b: &Item, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()
-        && near(a.coefficient * sign, b.coefficient)
+        && is_close(a.coefficient * sign, b.coefficient)
         && a.sums.iter().zip(&b.sums).all(|(x, y)| ratio(x, y) == Some(1.0))
 }
 

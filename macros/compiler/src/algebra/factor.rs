@@ -1,8 +1,8 @@
 //! Grouping of polynomials as in textbooks: by rates, then by functions of positions, with parameters as
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
-use super::common::{Among, gathered};
-use super::item::{Item, Order, Sum, common_number, near};
+use super::common::{FactorScope, gathered};
+use super::item::{Item, Order, Sum, common_number, is_close};
 use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
@@ -33,9 +33,9 @@ pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     Polynomial { terms: p.terms.iter().filter(keep).copied().collect() }
 }
 
-/// Returns the items of a polynomial in printing order. `among` selects the items from which common factors
+/// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
 /// are taken out.
-pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<Item> {
+pub fn items(ring: &Ring, order: &Order, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
     let mut items = Vec::new();
     let mut groups = grouped(&p.terms, order.rates);
     order.sort_groups(ring, &mut groups);
@@ -54,7 +54,7 @@ pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<It
             }
         }
     }
-    gathered(order, items, among)
+    gathered(order, items, scope)
 }
 
 /// Groups terms by the factors that are in a mask.
@@ -101,17 +101,17 @@ fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
 fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
     let positions = leading.monomial.only(order.positions);
     let (x, _) = positions.factors().find(|(_, power)| *power == 2)?;
-    let rest = leading.monomial.over(Monomial::atom(x));
+    let rest = leading.monomial.quotient(Monomial::atom(x));
     let mut sum = vec![Item::single(1.0, Monomial::atom(x))];
     for t in terms.iter().filter(|t| *t != leading && rest.divides(t.monomial)) {
         let coefficient = 0.5 * t.coefficient / leading.coefficient;
-        sum.push(Item::single(coefficient, t.monomial.over(rest)));
+        sum.push(Item::single(coefficient, t.monomial.quotient(rest)));
     }
-    let factor = rest.over(Monomial::atom(x));
+    let factor = rest.quotient(Monomial::atom(x));
     let sums = vec![Sum { items: sum, power: 2 }];
     let square = Item { coefficient: leading.coefficient, factor, sums };
     let there =
-        |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && near(t.coefficient, s.coefficient));
+        |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && is_close(t.coefficient, s.coefficient));
     let several = square.sums.iter().all(|sum| sum.items.len() > 1);
     (several && expanded(&square).iter().all(there)).then_some(square)
 }
@@ -145,7 +145,7 @@ fn item(order: &Order, terms: &[Term]) -> Item {
     order.sort(&mut terms);
     let coefficient = common_number(terms.iter().map(|t| t.coefficient));
     for t in &mut terms {
-        *t = Term { monomial: t.monomial.over(factor), coefficient: t.coefficient / coefficient };
+        *t = Term { monomial: t.monomial.quotient(factor), coefficient: t.coefficient / coefficient };
     }
     let mut sum = Vec::new();
     for (functions, group) in grouped(&terms, order.functions) {

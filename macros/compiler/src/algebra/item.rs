@@ -72,7 +72,7 @@ fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
 
 impl Order {
     /// Returns the order of the atoms of a ring.
-    pub fn of(ring: &Ring) -> Order {
+    pub fn new(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
         atoms.sort_by_cached_key(|k| place(ring, *k));
         Order {
@@ -89,7 +89,7 @@ impl Order {
     /// Returns true if a sum contains only parameters.
     pub fn is_constant(&self, items: &[Item]) -> bool {
         items.iter().all(|item| {
-            item.factor.without(self.parameters) == Monomial::ONE
+            item.factor.cleared(self.parameters) == Monomial::ONE
                 && item.sums.iter().all(|sum| self.is_constant(&sum.items))
         })
     }
@@ -103,7 +103,7 @@ impl Order {
     fn size_of(&self, item: &Item) -> usize {
         let of_sums = item.sums.iter().map(|sum| self.size(&sum.items)).sum::<usize>();
         let factors = size_of_monomial(&self.sizes, item.factor) + of_sums;
-        factors + usize::from(factors == 0 || !near(item.coefficient.abs(), 1.0))
+        factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))
     }
 
     /// Returns the factors of a monomial, atom and power, in printing order.
@@ -139,9 +139,9 @@ impl Order {
 fn sizes(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
-        let of = |p: &Polynomial| -> usize {
+        let size_of_polynomial = |p: &Polynomial| -> usize {
             let number =
-                |t: &Term| usize::from(t.monomial == Monomial::ONE || !near(t.coefficient.abs(), 1.0));
+                |t: &Term| usize::from(t.monomial == Monomial::ONE || !is_close(t.coefficient.abs(), 1.0));
             p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + number(t)).sum()
         };
         let angle =
@@ -149,10 +149,12 @@ fn sizes(ring: &Ring) -> Vec<usize> {
         let size = match atom {
             Atom::Symbol(_) => 1,
             Atom::Wave(w) => 1 + angle(w),
-            Atom::Inverse(p) => of(p),
-            Atom::Call(_, p) => 1 + of(p),
-            Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => 1 + of(a) + of(b),
-            Atom::Table(_, _, arguments) => 1 + arguments.iter().map(of).sum::<usize>(),
+            Atom::Inverse(p) => size_of_polynomial(p),
+            Atom::Call(_, p) => 1 + size_of_polynomial(p),
+            Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => {
+                1 + size_of_polynomial(a) + size_of_polynomial(b)
+            }
+            Atom::Table(_, _, arguments) => 1 + arguments.iter().map(size_of_polynomial).sum::<usize>(),
         };
         sizes.push(size);
     }
@@ -164,7 +166,7 @@ fn size_of_monomial(sizes: &[usize], m: Monomial) -> usize {
 }
 
 /// Returns true if two numbers differ by rounding error only.
-pub fn near(a: f64, b: f64) -> bool {
+pub fn is_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * b.abs()
 }
 
@@ -173,7 +175,7 @@ pub fn near(a: f64, b: f64) -> bool {
 pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     let sign = if coefficients.clone().all(|c| c < 0.0) { -1.0 } else { 1.0 };
     let size = coefficients.clone().next().map_or(1.0, f64::abs);
-    if coefficients.clone().all(|c| near(c.abs(), size)) {
+    if coefficients.clone().all(|c| is_close(c.abs(), size)) {
         return sign * size;
     }
     let mut common: Option<(u32, u32)> = None;

@@ -27,7 +27,7 @@ impl<'g> Normal<'g> {
     }
 
     /// Returns the normal form of `e`, `None` if it exceeds the limits of the ring.
-    pub fn of(&mut self, e: Expr<'g>) -> Option<Polynomial> {
+    pub fn normal_form(&mut self, e: Expr<'g>) -> Option<Polynomial> {
         self.known.resize(self.known.len().max(e.id() as usize + 1), UNKNOWN);
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
@@ -54,31 +54,35 @@ impl<'g> Normal<'g> {
     }
 
     fn rule(&mut self, id: Id) -> Option<Polynomial> {
-        let at = |id: Id| &self.polynomials[self.known[id as usize] as usize];
+        let polynomial = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
             // This constant only prevents NaN for the direction of a zero-length vector. The equations do not
             // contain it.
             Node::Const(c) if c == TINY => return Some(Polynomial::default()),
             Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
-            Node::Neg(a) => return Some(at(a).scaled(-1.0)),
-            Node::Add(a, b) => return self.ring.plus(at(a), at(b)),
-            Node::Sub(a, b) => return self.ring.plus(at(a), &at(b).scaled(-1.0)),
-            Node::Mul(a, b) => return self.ring.times(at(a), at(b)),
+            Node::Neg(a) => return Some(polynomial(a).scaled(-1.0)),
+            Node::Add(a, b) => return self.ring.plus(polynomial(a), polynomial(b)),
+            Node::Sub(a, b) => return self.ring.plus(polynomial(a), &polynomial(b).scaled(-1.0)),
+            Node::Mul(a, b) => return self.ring.times(polynomial(a), polynomial(b)),
             Node::Div(a, b) => {
-                let inverse = inverse(&mut self.ring, at(b))?;
-                return self.ring.times(at(a), &inverse);
+                let inverse = inverse(&mut self.ring, polynomial(b))?;
+                return self.ring.times(polynomial(a), &inverse);
             }
-            Node::Call(Function::Sin, a) => return wave(&mut self.ring, at(a), false),
-            Node::Call(Function::Cos, a) => return wave(&mut self.ring, at(a), true),
+            Node::Call(Function::Sin, a) => return wave(&mut self.ring, polynomial(a), false),
+            Node::Call(Function::Cos, a) => return wave(&mut self.ring, polynomial(a), true),
             Node::Symbol(s) => Atom::Symbol(s),
-            Node::Call(f, a) => Atom::Call(f, at(a).clone()),
-            Node::Atan2(a, b) => Atom::Atan2(at(a).clone(), at(b).clone()),
-            Node::Extreme(f, a, b) => Atom::Extreme(f, at(a).clone(), at(b).clone()),
+            Node::Call(f, a) => Atom::Call(f, polynomial(a).clone()),
+            Node::Atan2(a, b) => Atom::Atan2(polynomial(a).clone(), polynomial(b).clone()),
+            Node::Extreme(f, a, b) => Atom::Extreme(f, polynomial(a).clone(), polynomial(b).clone()),
             Node::Table(lookup, a, b, c) => {
                 let arguments = [a, b, c].into_iter().take(lookup.variables());
-                Atom::Table(self.graph.table_name(lookup), lookup, arguments.map(|a| at(a).clone()).collect())
+                Atom::Table(
+                    self.graph.table_name(lookup),
+                    lookup,
+                    arguments.map(|a| polynomial(a).clone()).collect(),
+                )
             }
-            Node::Pow(a, b) => Atom::Power(at(a).clone(), at(b).clone()),
+            Node::Pow(a, b) => Atom::Power(polynomial(a).clone(), polynomial(b).clone()),
             Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..) => {
                 return None;
             }
@@ -121,7 +125,7 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     }
     if p.terms.len() > 1 {
         let rest = p.terms.iter().map(|t| Term {
-            monomial: t.monomial.over(common),
+            monomial: t.monomial.quotient(common),
             coefficient: t.coefficient / first.coefficient,
         });
         let rest = Polynomial { terms: rest.collect() };

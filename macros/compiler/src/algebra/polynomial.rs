@@ -273,17 +273,20 @@ impl Ring {
 
     fn rank_of(&self, atom: &Atom) -> Rank {
         let of_monomial = |m: Monomial| m.factors().map(|(k, _)| self.ranks[k]).max();
-        let of = |p: &Polynomial| p.terms.iter().filter_map(|t| of_monomial(t.monomial)).max();
+        let rank_of_polynomial =
+            |p: &Polynomial| p.terms.iter().filter_map(|t| of_monomial(t.monomial)).max();
         let argument = match atom {
             Atom::Symbol(s) => return (self.rank)(*s),
-            Atom::Inverse(p) => return of(p).unwrap_or(Rank::Parameter),
+            Atom::Inverse(p) => return rank_of_polynomial(p).unwrap_or(Rank::Parameter),
             Atom::Wave(w) => {
                 let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
                 angles.filter_map(|(a, _)| of_monomial(a.monomial)).max()
             }
-            Atom::Call(_, p) => of(p),
-            Atom::Table(.., arguments) => arguments.iter().filter_map(of).max(),
-            Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => of(p).max(of(q)),
+            Atom::Call(_, p) => rank_of_polynomial(p),
+            Atom::Table(.., arguments) => arguments.iter().filter_map(rank_of_polynomial).max(),
+            Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => {
+                rank_of_polynomial(p).max(rank_of_polynomial(q))
+            }
         };
         match argument {
             None | Some(Rank::Parameter) => Rank::Parameter,
@@ -381,12 +384,12 @@ impl Ring {
     fn rewritten(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
         if let Some(one) = self.cancels(monomial) {
-            return Some(Polynomial::single(monomial.over(one), coefficient));
+            return Some(Polynomial::single(monomial.quotient(one), coefficient));
         }
         if let Some([inverse, cosine, sine]) = self.over_sine(monomial) {
             let square = Monomial::atom(cosine).times(Monomial::atom(cosine))?;
-            let one = monomial.over(square);
-            let rest = one.over(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
+            let one = monomial.quotient(square);
+            let rest = one.quotient(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
             return Some(Polynomial::sum(vec![
                 Term { monomial: one, coefficient },
                 Term { monomial: rest, coefficient: -coefficient },
@@ -395,7 +398,7 @@ impl Ring {
         match self.squares.iter().find(|(atom, _)| monomial.power(*atom) > 1) {
             Some((atom, square)) => {
                 let atom = Monomial::atom(*atom);
-                square.times(&Term { monomial: monomial.over(atom.times(atom)?), coefficient })
+                square.times(&Term { monomial: monomial.quotient(atom.times(atom)?), coefficient })
             }
             None => Some(Polynomial { terms: vec![*term] }),
         }
@@ -411,7 +414,7 @@ impl Ring {
     pub fn evaluate(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
         for atom in &self.atoms {
-            let of = |p: &Polynomial| value(p, &values);
+            let value_of = |p: &Polynomial| value(p, &values);
             values.push(match atom {
                 Atom::Symbol(s) => symbol(*s),
                 Atom::Wave(w) => {
@@ -419,12 +422,14 @@ impl Ring {
                     let angle = angles.map(|(a, n)| f64::from(n) * term_value(a, &values)).sum::<f64>();
                     if w.cosine { angle.cos() } else { angle.sin() }
                 }
-                Atom::Inverse(p) => 1.0 / of(p),
-                Atom::Call(f, p) => f.apply(of(p)),
-                Atom::Atan2(y, x) => of(y).atan2(of(x)),
-                Atom::Power(a, b) => of(a).powf(of(b)),
-                Atom::Extreme(f, a, b) => f.apply(of(a), of(b)),
-                Atom::Table(_, lookup, x) => lookup.apply(std::array::from_fn(|k| x.get(k).map_or(0.0, of))),
+                Atom::Inverse(p) => 1.0 / value_of(p),
+                Atom::Call(f, p) => f.apply(value_of(p)),
+                Atom::Atan2(y, x) => value_of(y).atan2(value_of(x)),
+                Atom::Power(a, b) => value_of(a).powf(value_of(b)),
+                Atom::Extreme(f, a, b) => f.apply(value_of(a), value_of(b)),
+                Atom::Table(_, lookup, x) => {
+                    lookup.apply(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of)))
+                }
             });
         }
         value(p, &values)

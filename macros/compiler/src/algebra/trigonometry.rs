@@ -26,15 +26,15 @@ struct Product {
 pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let mask = ring.mask(|atom, _| matches!(atom, Atom::Wave(_)));
     let mut terms = p.terms.clone();
-    terms.sort_by_key(|t| t.monomial.without(mask));
+    terms.sort_by_key(|t| t.monomial.cleared(mask));
     let mut out = Vec::with_capacity(terms.len());
-    for group in terms.chunk_by(|a, b| a.monomial.without(mask) == b.monomial.without(mask)) {
+    for group in terms.chunk_by(|a, b| a.monomial.cleared(mask) == b.monomial.cleared(mask)) {
         if group.len() == 1 || group.len() > MAX_TERMS {
             out.extend_from_slice(group);
             continue;
         }
         for product in shortest(ring, group, mask)? {
-            let mut monomial = group[0].monomial.without(mask);
+            let mut monomial = group[0].monomial.cleared(mask);
             for wave in product.waves {
                 monomial = monomial.times(ring.atom(Atom::Wave(wave))?)?;
             }
@@ -122,10 +122,10 @@ fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
 fn combined(a: &Product, b: &Product) -> Option<Product> {
     let ratio = b.coefficient / a.coefficient;
     if a.waves == b.waves {
-        let coefficient = if near(ratio, -1.0) { 0.0 } else { a.coefficient + b.coefficient };
+        let coefficient = if is_close(ratio, -1.0) { 0.0 } else { a.coefficient + b.coefficient };
         return Some(Product { waves: a.waves.clone(), coefficient });
     }
-    if ![1.0, -1.0, -2.0, -0.5].iter().any(|r| near(ratio, *r)) {
+    if ![1.0, -1.0, -2.0, -0.5].iter().any(|r| is_close(ratio, *r)) {
         return None;
     }
     let (mut common, x, y) = split(&a.waves, &b.waves)?;
@@ -141,7 +141,7 @@ fn combined(a: &Product, b: &Product) -> Option<Product> {
     Some(Product { waves: common, coefficient })
 }
 
-fn near(a: f64, b: f64) -> bool {
+fn is_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * b.abs()
 }
 
@@ -160,7 +160,7 @@ fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
 
 /// Returns `x + ratio y` as a product of waves and a factor, if a rule covers it.
 fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
-    let is = |r: f64| near(ratio, r);
+    let is = |r: f64| is_close(ratio, r);
     match (x, y) {
         ([], [a, b]) if a == b && is(-1.0) => Some((vec![Wave { cosine: !a.cosine, ..*a }; 2], 1.0)),
         ([], [a, b]) if a == b && is(-2.0) => {
@@ -176,7 +176,7 @@ fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
 
 /// Applies `cos a cos b ± sin a sin b = cos(a ∓ b)` or `sin a cos b ± cos a sin b = sin(a ± b)`.
 fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
-    let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
+    let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
     let (first, second) = if a.angle == c.angle { (c, d) } else { (d, c) };
     let opposite = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
     if !opposite(a, first) || !opposite(b, second) {
@@ -194,7 +194,7 @@ fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<
 /// Applies `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` or the corresponding rules for differences and
 /// sines. `None` if the half angles are not integer multiples.
 fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
-    let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
+    let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
     let (up, down) = (sum(a, b, 1), sum(a, b, -1));
     if up.iter().any(|n| n % 2 != 0) {
         return None;
@@ -259,7 +259,7 @@ fn fourier(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
 
 fn collect(sum: &mut Vec<Product>, part: Product) {
     match sum.iter_mut().find(|p| p.waves == part.waves) {
-        Some(p) if near(p.coefficient, -part.coefficient) => p.coefficient = 0.0,
+        Some(p) if is_close(p.coefficient, -part.coefficient) => p.coefficient = 0.0,
         Some(p) => p.coefficient += part.coefficient,
         None => sum.push(part),
     }

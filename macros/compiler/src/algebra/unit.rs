@@ -22,7 +22,7 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
     loop {
         let heads = terms
             .iter()
-            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.over(*s)));
+            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.quotient(*s)));
         let mut heads: Vec<Monomial> = heads.collect();
         heads.sort_unstable();
         heads.dedup();
@@ -38,8 +38,8 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
 /// fewer terms. The terms affected are `a h x² + b h y² + … + c h`.
 fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
     let places: Vec<Monomial> = squares.iter().filter_map(|s| head.times(*s)).chain([head]).collect();
-    let of = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
-    let before: Vec<f64> = places.iter().map(of).collect();
+    let coefficient = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
+    let before: Vec<f64> = places.iter().map(coefficient).collect();
     let count = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
     let size = before.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
     let clean = |c: f64| if c.abs() <= ROUNDING * size { 0.0 } else { c };

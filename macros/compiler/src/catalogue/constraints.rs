@@ -11,26 +11,34 @@ const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 pub const ROWS: &[Row] = &[
     Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
-        shape: Shape::Vector(of(f).holonomic),
-        docs: vec!["Residuals `φ(q)` of the constraints on configurations, m and rad: zero where they hold."],
+        shape: Shape::Vector(constraint_facts(f).holonomic),
+        docs: vec![
+            "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are satisfied.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
-        shape: Shape::Vector(of(f).all),
-        docs: vec!["Rates `J(q) v + …` of all constraints, m/s and rad/s: zero where they hold."],
+        shape: Shape::Vector(constraint_facts(f).all),
+        docs: vec![
+            "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are satisfied.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
-        shape: Shape::Matrix(of(f).all, f.nv),
-        docs: vec!["Jacobian `J(q)` of the constraints: how their rates change with the velocities."],
+        shape: Shape::Matrix(constraint_facts(f).all, f.nv),
+        docs: vec![
+            "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to `v`.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
-        shape: Shape::Vector(of(f).all),
-        docs: vec!["Bias `b(q, v)` of the constraints, m/s² and rad/s²: their rates change by `J v̇ + b`."],
+        shape: Shape::Vector(constraint_facts(f).all),
+        docs: vec![
+            "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint velocities is `J v̇ + b`.",
+        ],
         ..Declaration::default()
     }),
     Row::derived(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
@@ -38,13 +46,13 @@ pub const ROWS: &[Row] = &[
         shape: solution(f),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
         arguments: [vec![Q, V, Tau], sides(f)].concat(),
         shape: solution(f),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::SlippingResponse,
         "__slipping_response",
@@ -55,10 +63,10 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .alone(),
+    .unbatched(),
 ];
 
-fn of(f: &Facts) -> ConstraintFacts {
+fn constraint_facts(f: &Facts) -> ConstraintFacts {
     f.constraints.unwrap_or_default()
 }
 
@@ -67,21 +75,21 @@ fn force(f: &Facts) -> Argument {
 }
 
 fn bias(f: &Facts) -> Argument {
-    Argument::Given("bias", f.nv, of(f).all)
+    Argument::Given("bias", f.nv, constraint_facts(f).all)
 }
 
 /// Returns the argument with the signs of the normal forces of sliding contacts, empty without such
 /// constraints.
 fn sides(f: &Facts) -> Vec<Argument> {
-    let ConstraintFacts { all, slipping, .. } = of(f);
+    let ConstraintFacts { all, slipping, .. } = constraint_facts(f);
     if slipping > 0 { vec![Argument::Given("sides", f.nv + all, slipping)] } else { Vec::new() }
 }
 
 /// Returns the shape of the constrained dynamics: accelerations and multipliers with measures of their
 /// reliability, or for redundant constraints the quantities from which the runtime solves for them.
 fn solution(f: &Facts) -> Shape {
-    let (nv, nc) = (f.nv, of(f).all);
-    Shape::Record(match of(f).overdetermined {
+    let (nv, nc) = (f.nv, constraint_facts(f).all);
+    Shape::Record(match constraint_facts(f).overdetermined {
         true => Record::Responses(nv, nc),
         false => Record::Elimination(nv, nc),
     })

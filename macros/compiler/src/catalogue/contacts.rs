@@ -14,7 +14,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Vector(f.contacts.count),
         docs: vec![
-            "Distance of the surfaces of each contact, m, or rad from a stop about an axis: zero where they touch, negative where they overlap. In the order of `CONTACTS`.",
+            "Gap function of each contact, in the order of `CONTACTS`: the signed distance of the surfaces, m, or the angle from a rotational stop, rad. It is zero at contact and negative for penetration.",
         ],
         ..Declaration::default()
     }),
@@ -22,7 +22,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
-            "Rates at the contacts, m/s and rad/s: of each first the rate of its gap, then the slip of the first surface over the second one along one or two tangents, if it has friction; of moments of friction the relative angular velocity about the normal (`.spin`) or the tangents (`.roll`) alone. `CONTACT_ROWS` tells where those of a contact begin.",
+            "Contact velocities, m/s and rad/s. A contact has the rate of its gap, followed by the slip velocities of the first surface on the second one along one or two tangents, if it has friction. A friction moment has only the relative angular velocity about the normal (`.spin`) or the tangents (`.roll`). `CONTACT_ROWS` holds the rows of each contact.",
         ],
         ..Declaration::default()
     }),
@@ -30,7 +30,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Matrix(f.contacts.rates, f.nv),
         docs: vec![
-            "Jacobian of the contacts: how their rates change with the velocities. A force `f` at a contact, N, with its rows `G`, contributes `Gᵀ f` to the generalized forces.",
+            "Jacobian of the contacts: derivatives of the contact velocities with respect to `v`. A contact force `f`, N, contributes `Gᵀ f` to the generalized forces, where `G` are the rows of the contact.",
         ],
         ..Declaration::default()
     }),
@@ -38,7 +38,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
-            "Bias `b(q, v)` of the contacts, m/s² and rad/s²: where surfaces touch, their rates change by `G v̇ + b`.",
+            "Bias `b(q, v)` of the contacts, m/s² and rad/s²: for surfaces in contact, the time derivative of the contact velocities is `G v̇ + b`.",
         ],
         ..Declaration::default()
     }),
@@ -47,7 +47,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Array(3 * f.contacts.count),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::ContactResponses,
         "__contact_responses",
@@ -58,7 +58,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::ContactDerivatives,
         "__contact_derivatives",
@@ -69,7 +69,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .alone(),
+    .unbatched(),
 ];
 
 /// Returns the argument with the forces of all contacts.

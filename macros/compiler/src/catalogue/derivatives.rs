@@ -7,7 +7,7 @@ use super::shape::{Argument, Called, Record, Shape};
 use crate::syntax::Word;
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
-const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
+const KEPT: &str = "Entries that are always zero are not written: initialise the matrices with zeros once and pass them again in each call. No large value is moved.";
 
 const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
@@ -23,7 +23,7 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q],
             shape: Shape::Inverse(f.nv),
             docs: vec![
-                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite where `M(q)` is singular.",
+                "Inverse of the mass matrix, `∂v̇/∂τ`. Not finite if `M(q)` is singular.",
                 "By the sparse factorisation `M = Lᵀ D L` (Featherstone 2008, ch. 6).",
             ],
             ..Declaration::default()
@@ -55,8 +55,8 @@ pub const ROWS: &[Row] = &[
             docs: vec![
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
                 TANGENT,
-                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018); of a large mechanism it calls other functions. The operations counted are those without calls and products.",
-                "How a mechanism with a free base moves in the axes of the base does not depend on its linear velocity, and on its orientation only by the components of uniform gravity: where no other force comes from the ground, these six columns are exact.",
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018). For a large mechanism it calls other functions; the operation counts then exclude the calls and the products of their results.",
+                "The motion of a mechanism with a free base, in the axes of the base, does not depend on the linear velocity of the base, and depends on its orientation only through the components of uniform gravity. If the ground exerts no other force, these six columns are exact.",
             ],
             ..Declaration::default()
         }
@@ -65,7 +65,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V, U],
         shape: if f.calls_linear { Shape::CalledLinear(f.nv, f.nu) } else { Shape::Linear(f.nv, f.nu) },
         docs: vec![
-            "`(A, B)` of `ẋ = A x + B δu`: the motion to first order about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
+            "Returns `(A, B)` of `ẋ = A x + B δu`, the motion linearised about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
             TANGENT,
             "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
         ],
@@ -86,7 +86,7 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, A, Argument::Into("by_q", f.nv), Argument::Into("by_v", f.nv)],
             shape: Shape::Pair(f.nv),
             docs: vec![
-                "Puts [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) into `by_q` and `by_v`, `NV` by `NV` each.",
+                "Writes [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) to `by_q` and `by_v`, `NV` by `NV` each.",
                 KEPT,
             ],
             ..Declaration::default()
@@ -104,7 +104,7 @@ pub const ROWS: &[Row] = &[
             .concat(),
             shape: forward(f),
             docs: vec![
-                "Puts [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) into `by_q`, `by_v` and `inverse`, `NV` by `NV` each, and returns the accelerations, [`forward_dynamics`](Self::forward_dynamics), to rounding.",
+                "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal [`forward_dynamics`](Self::forward_dynamics) up to rounding.",
                 KEPT,
             ],
             ..Declaration::default()
@@ -118,7 +118,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     })
-    .alone(),
+    .unbatched(),
     Row::derived(
         Id::PassiveDerivatives,
         Called::PassiveDerivatives.function(),
@@ -134,7 +134,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];
 
 const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
@@ -158,7 +158,7 @@ pub const MOMENTUM_ROWS: &[Row] = &[
         docs: vec![
             "`(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Self::momentum_rate).",
             TANGENT,
-            "By differentiation of Hamilton's second equation. Discrete steps that are implicit in momenta have these in their Jacobians.",
+            "Derivatives of Hamilton's second equation, which occur in the Jacobians of discrete steps that are implicit in momenta.",
         ],
         ..Declaration::default()
     }),
@@ -174,9 +174,9 @@ pub const SECOND_ROWS: &[Row] = &[
             arguments: vec![Q, V, A, Argument::Factors(f.nv)],
             shape: Shape::Hessian(f.nv),
             docs: vec![
-                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`, with `τ` by [`inverse_dynamics`](Self::inverse_dynamics): the Hessians of its entries, contracted with the factors `lambda`. Of mixed ones the rows are those of `q`. Others are zero.",
+                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`, with `τ` by [`inverse_dynamics`](Self::inverse_dynamics): the Hessians of its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.",
                 SYMMETRIC,
-                "By recursion, as the first derivatives (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023), where motion subspaces are constant in link axes.",
+                "Computed by recursion, like the first derivatives, if motion subspaces are constant in link axes (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023).",
             ],
             ..Declaration::default()
         }
@@ -216,7 +216,7 @@ pub const SECOND_ROWS: &[Row] = &[
             }
         },
     )
-    .alone(),
+    .unbatched(),
 ];
 
 fn constraints(f: &Facts) -> usize {

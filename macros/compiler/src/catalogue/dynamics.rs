@@ -13,44 +13,44 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::Neutral, "neutral", &[], |f| Declaration {
         timeless: true,
         shape: Shape::Vector(f.nq),
-        docs: vec!["The configuration with all coordinates zero; identity quaternions."],
+        docs: vec!["The configuration with zero coordinates and identity quaternions."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.limits),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
-        docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the parameters as they are."],
+        docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the current parameters."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
         timeless: true,
         arguments: vec![Argument::Given("place", 0, 2)],
         shape: Shape::Array(f.heights),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),
         docs: vec![
             match f.constraints.is_some_and(|c| c.determining) {
                 true => {
-                    "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular where coordinates have no inertia and follow from constraints."
+                    "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular if coordinates without inertia are determined by constraints."
                 }
                 false => "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
             },
             "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("Of the bodies alone: forces that depend on accelerations are part of [`inverse_dynamics`](Self::inverse_dynamics)."))
+        .chain(f.acceleration_forces.then_some("It contains only the bodies: forces that depend on accelerations are part of [`inverse_dynamics`](Self::inverse_dynamics)."))
         .collect(),
         ..Declaration::default()
     })
@@ -70,8 +70,8 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: vec![
             match f.acceleration_forces {
-                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that give the acceleration `a`, with the forces `C a` that depend on accelerations.",
-                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.",
+                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that cause the acceleration `a`, with the forces `C a` that depend on accelerations.",
+                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that cause the acceleration `a`.",
             },
             "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
         ],
@@ -83,11 +83,11 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: match f.acceleration_forces {
             true => vec![
-                "`v̇ = (M(q) − C(q, v))⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give, with the forces `C v̇` that depend on accelerations.",
-                "Sparse triangular factorisation of `M − C`, which need not be symmetric. Not finite where a leading block of it, from the leaves to the root, is singular: where the forces of accelerations outweigh masses.",
+                "`v̇ = (M(q) − C(q, v))⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`, with the forces `C v̇` that depend on accelerations.",
+                "Sparse triangular factorisation of `M − C`, which need not be symmetric. Not finite if one of its leading blocks, from the leaves to the root, is singular, which happens if forces that depend on accelerations outweigh the masses.",
             ],
             false => vec![
-                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration that the forces `tau` give. Not finite where `M(q)` is singular.",
+                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`. Not finite if `M(q)` is singular.",
                 "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
             ],
         },
@@ -108,7 +108,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Scalar,
         docs: vec![match f.time {
             true => {
-                "Kinetic energy `T`, J. It is `½ vᵀ M v` only where nothing is driven: driven motion adds terms of first degree in `v` and of none."
+                "Kinetic energy `T`, J. It is `½ vᵀ M v` only without prescribed motion, which adds terms of degree one and zero in `v`."
             }
             false => "Kinetic energy `T = ½ vᵀ M(q) v`, J.",
         }],
@@ -127,7 +127,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: vec![match f.time {
             true => {
-                "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M v` only where nothing is driven."
+                "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M v` only without prescribed motion."
             }
             false => "Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.",
         }],
@@ -142,7 +142,7 @@ pub const ROWS: &[Row] = &[
             "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not part of it: they come on top."))
+        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not included and must be added."))
         .collect(),
         ..Declaration::default()
     })
@@ -150,7 +150,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::DissipatedPower, "dissipated_power", INERTIA, |_| power(
         vec![Q, V],
         vec![
-            "Power that dashpots, friction and dissipation functions take out, W.",
+            "Power dissipated by dashpots, friction and dissipation functions, W.",
             "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − dissipated_power`.",
         ],
     )),
@@ -160,7 +160,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power(
         vec![Q, V],
         vec![match f.acceleration_forces {
-            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, but for what depends on accelerations.",
+            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, without the power of forces that depend on accelerations.",
             false => "Power of applied forces that are neither conservative nor dissipative nor inputs, W.",
         }],
     )),
@@ -170,7 +170,7 @@ pub const ROWS: &[Row] = &[
         docs: vec!["Mass of everything that moves, kg."],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(3),

@@ -183,7 +183,7 @@ pub struct ConstraintFacts {
 
 impl Facts {
     /// Returns the facts that follow from a model. Counts that only follow from the equations are zero.
-    pub fn of(model: &Model<'_>, requests: Requests) -> Facts {
+    pub fn from_model(model: &Model<'_>, requests: Requests) -> Facts {
         let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
             all: model.constraints.len(),
             holonomic: model.holonomic(),

@@ -76,7 +76,7 @@ pub fn of_trait() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
 /// Returns the functions that a mechanism with these facts lacks, grouped by the first need that is not met,
 /// in the order of the needs.
 pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
-    let of = |need: Need| {
+    let rows_lacking = |need: Need| {
         // Another row of the same name may be present.
         let is_there = |row: &Row| rows().any(|r| r.name == row.name && r.lacks(facts).is_none());
         let all = rows().filter(|row| !row.is_hidden() && row.lacks(facts) == Some(need) && !is_there(row));
@@ -88,7 +88,7 @@ pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
         }
         (need, found)
     };
-    Need::all().map(of).collect()
+    Need::all().map(rows_lacking).collect()
 }
 
 /// Returns the names of the functions with handwritten bodies that also have a batched variant.

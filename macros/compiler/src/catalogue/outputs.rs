@@ -54,7 +54,7 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     arguments.extend(uses.inputs.then_some(U));
     let about = match uses.accelerations {
         true => format!(
-            "The output `{name}`, of given accelerations. Its derivatives are functions of the word `derivatives`."
+            "The output `{name}`, for the accelerations `a`. The option `derivatives` adds functions for its derivatives."
         ),
         false => format!("The output `{name}`."),
     };
@@ -75,9 +75,9 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     if f.requests.derivatives {
         let docs = vec![
             format!(
-                "Derivatives of the output `{name}` by configuration, velocity, acceleration and input, each while the others stay."
+                "Partial derivatives of the output `{name}` by configuration, velocity, acceleration and input."
             ),
-            "Column `i` of the one by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.".to_string(),
+            "Column `i` of the derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.".to_string(),
         ];
         let shape = Shape::Jacobians(size, f.nv, f.nu);
         let name = format!("{name}{DERIVATIVES}");
@@ -85,7 +85,7 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     }
     if f.requests.sensitivities {
         let docs = vec![format!(
-            "Derivatives of the output `{name}` by the parameters: column `k` by the one that is named `PARAMETERS[k]`."
+            "Derivatives of the output `{name}` by the parameters: column `k` by the parameter `PARAMETERS[k]`."
         )];
         let shape = Shape::Matrix(size, f.parameters);
         let name = format!("{name}{BY_PARAMETERS}");

@@ -24,7 +24,7 @@ pub const CENTROIDAL: &[Row] = &[
             arguments: vec![Q],
             shape: Shape::Matrix(6, f.nv),
             docs: vec![
-                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part first, then angular about the centre of mass, in ground axes. Of a mechanism that is driven in time, the part that the velocities contribute.",
+                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part first, then angular about the centre of mass, in ground axes. For a mechanism with prescribed motion, `A v` is the contribution of the velocities.",
                 "kg and kg·m for translations, kg·m and kg·m² for rotations (Orin, Goswami and Lee, *Centroidal dynamics of a humanoid robot*, 2013).",
             ],
             ..Declaration::default()
@@ -34,7 +34,7 @@ pub const CENTROIDAL: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(6),
         docs: vec![
-            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) where all accelerations are zero, so that it is `A v̇ + Ȧ v` in every motion.",
+            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) at zero accelerations. In every motion the rate of the momentum is `A v̇ + Ȧ v`.",
         ],
         ..Declaration::default()
     }),
@@ -47,7 +47,7 @@ pub const CANONICAL: &[Row] = &[
         shape: Shape::Scalar,
         docs: vec![match f.time {
             true => {
-                "Hamiltonian `H(q, p) = p·v − T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`. Driven motion makes it differ from the energy."
+                "Hamiltonian `H(q, p) = p·v − T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`. With prescribed motion it differs from the energy."
             }
             false => {
                 "Hamiltonian `H(q, p) = T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`."
@@ -67,7 +67,7 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, Argument::Momenta(f.nv), Tau],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Hamilton's second equation: `ṗ = −∂H/∂q + τ`, and passive forces that have no potential, N and N·m; for ball and free joints in body components (Lie and Poisson). Forces of constraints belong to `tau`.",
+            "Hamilton's second equation: `ṗ = −∂H/∂q + τ` plus passive forces without a potential, N and N·m; for ball and free joints in body components (Lie and Poisson). Include constraint forces in `tau`.",
         ],
         ..Declaration::default()
     }),
@@ -75,7 +75,7 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Scalar,
         docs: vec![
-            "Routhian `R = L − p·w`, J, of the velocities of those coordinates that are not cyclic and of the momenta `p` of those that are, in the order of `CYCLIC`; `w` are their velocities, whose entries of `v` are not read.",
+            "Routhian `R = L − p·w`, J, as a function of the velocities of the noncyclic coordinates and of the momenta `p` of the cyclic ones, in the order of `CYCLIC`. The velocities `w` of the cyclic coordinates follow from `p`; their entries of `v` are not read.",
             "Lagrange's equations hold for it: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 8.3.",
         ],
         ..Declaration::default()
@@ -84,7 +84,7 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Vector(f.cyclic),
         docs: vec![
-            "Velocities of the cyclic coordinates, m/s and rad/s, in the order of `CYCLIC`, of their momenta `p`: `w = −∂R/∂p`. Their entries of `v` are not read.",
+            "Velocities of the cyclic coordinates, m/s and rad/s, in the order of `CYCLIC`, as functions of their momenta `p`: `w = −∂R/∂p`. Their entries of `v` are not read.",
         ],
         ..Declaration::default()
     }),
@@ -92,7 +92,7 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic), Tau],
         shape: Shape::Vector(f.nv.saturating_sub(f.cyclic)),
         docs: vec![
-            "Accelerations of the coordinates that are not cyclic, m/s² and rad/s², in their order in `v`, by the momenta `p` of those that are, in the order of `CYCLIC`: Routh's equations with the forces `tau`. The momenta change by their own entries of `tau`. Entries of `v` of cyclic coordinates are not read.",
+            "Accelerations of the noncyclic coordinates, m/s² and rad/s², in their order in `v`: Routh's equations with the forces `tau` and the momenta `p` of the cyclic coordinates, in the order of `CYCLIC`. The rates of these momenta are their entries of `tau`. Entries of `v` of cyclic coordinates are not read.",
         ],
         ..Declaration::default()
     }),
@@ -100,7 +100,7 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.conserved),
         docs: vec![
-            "The quantities that `CONSERVED` names, which keep their values in every motion without inputs: J for energies, kg·m/s and kg·m²/s for momenta.",
+            "The quantities listed in `CONSERVED`, which are constant in every motion without inputs: J for energies, kg·m/s and kg·m²/s for momenta.",
         ],
         ..Declaration::default()
     }),
@@ -122,11 +122,11 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(STANDARD * f.bodies),
         docs: vec![
-            "The mass properties `π`: for every one of `BODIES`, with all that is fixed to it, its mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) about the body's origin in its axes.",
+            "The inertial parameters `π`: for each body of `BODIES`, including everything fixed to it, its mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) about the body's origin in its axes.",
         ],
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, f.base),
@@ -140,8 +140,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Argument::Standard(STANDARD * f.bodies)],
         shape: Shape::Vector(f.base),
         docs: vec![
-            "The base parameters of given standard parameters: the fewest linear combinations by which mass properties act on the motion, all that can be identified from it.",
-            "What a joint's motion neither changes nor sets moving is moved to the parent (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial robots*, 1990); what then still depends on others is found in numbers. Where the geometry has parameters, combinations whose factors depend on them beyond those rules are left apart.",
+            "The base parameters for the standard parameters `π`: the minimum set of linear combinations that determine the motion, which is all that can be identified from it.",
+            "Inertial parameters that a joint's motion does not affect are transferred to the parent (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial robots*, 1990). Remaining linear dependencies are found numerically. If the geometry has parameters, dependencies beyond those rules whose factors depend on the parameters are not used.",
         ],
     }),
     Row::derived(
@@ -152,7 +152,7 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, A],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+                "`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
             ],
             ..Declaration::default()
         },
@@ -165,7 +165,7 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, Tau],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
                 "`∂v̇/∂p = −M⁻¹ ∂τ/∂p` at `a = v̇`.",
             ],
             ..Declaration::default()
@@ -179,7 +179,7 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, Argument::U],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂τ/∂p` of the inputs' [`generalized_forces`](Self::generalized_forces): column `k` is the derivative by the parameter that is named `PARAMETERS[k]`.",
+                "`∂τ/∂p` of the inputs' [`generalized_forces`](Self::generalized_forces): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
             ],
             ..Declaration::default()
         },
@@ -188,7 +188,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Vector(f.entries.len()),
         docs: vec![
-            "The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: entry `k` stands at `MASS_MATRIX_ENTRIES[k]`, row first.",
+            "The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: `MASS_MATRIX_ENTRIES[k]` holds row and column of entry `k`.",
         ],
         ..Declaration::default()
     }),
@@ -196,7 +196,7 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, Argument::Into("m", f.nv)],
         shape: Shape::Symmetric(f.nv),
         docs: vec![
-            "Puts the [`mass_matrix`](Self::mass_matrix) into `m`, `NV` by `NV`, except for the entries that are always zero, which keep what they are: `m` begins as a matrix of zeros and is given again each time. `MASS_MATRIX_ENTRIES` lists what is written, which goes to the other side of the diagonal too.",
+            "Writes the [`mass_matrix`](Self::mass_matrix) to `m`, `NV` by `NV`. Entries that are always zero are not written: initialise `m` with zeros once and pass it again in each call. `MASS_MATRIX_ENTRIES` lists the entries that are written, on both sides of the diagonal.",
         ],
         ..Declaration::default()
     }),
@@ -205,5 +205,5 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Array(f.figures),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];

@@ -172,7 +172,7 @@ impl Row {
     }
 
     /// Removes the batched variant: the function depends on no state, or is a helper.
-    pub const fn alone(self) -> Row {
+    pub const fn unbatched(self) -> Row {
         Row { batched: false, ..self }
     }
 

@@ -16,8 +16,8 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "The velocities `Z(q) v` that the joints have with the speeds `v`: rates of their coordinates, body-frame velocities of ball and free joints, in m/s and rad/s. Entries that no speed replaces are those of `v`.",
-            "Not finite where the speeds do not determine them, at single configurations.",
+            "The joint velocities `Z(q) v` for the generalized speeds `v`: rates of the coordinates, body-frame velocities of ball and free joints, in m/s and rad/s. Entries that no generalized speed replaces are those of `v`.",
+            "Not finite in singular configurations, in which the generalized speeds do not determine the joint velocities.",
         ],
     }),
     Row::derived(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
@@ -25,7 +25,7 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "The speeds `Y(q) v` of a motion in which the joints have the velocities `v`: the inverse of [`rates_of_speeds`](Self::rates_of_speeds).",
+            "The generalized speeds `Y(q) v` of a motion with the joint velocities `v`: the inverse of [`rates_of_speeds`](Self::rates_of_speeds).",
         ],
     }),
     Row::derived(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
@@ -34,28 +34,28 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
     Row::derived(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
         arguments: vec![Q, V, A],
         timeless: true,
         shape: Shape::Vector(f.nv),
         ..Declaration::default()
     })
-    .alone(),
+    .unbatched(),
 ];
 
 /// Rows of the functions of the option `derivatives` for mechanisms with generalized speeds.
@@ -70,4 +70,4 @@ pub const DERIVATIVES: &[Row] = &[Row::derived(
         ..Declaration::default()
     },
 )
-.alone()];
+.unbatched()];

@@ -67,7 +67,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Adds the data for the functions of several options; results that are already derived are retained.
-    pub(super) fn with<'b>(
+    pub(super) fn with_option_data<'b>(
         self,
         facts: &'b Facts,
         extras: &'b Extras<'b, 'g>,
@@ -186,23 +186,23 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
         let plain = |program: Program| (program, Structure::default());
-        let of = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
+        let derived = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
         let (model, joints) = (self.model, self.joints);
-        let known = |id: Id| done.iter().find(|f| f.id == id);
+        let function = |id: Id| done.iter().find(|f| f.id == id);
         if let Some(outputs) = self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
-            return of(&outputs);
+            return derived(&outputs);
         }
         match declared.id {
-            Id::Neutral => of(&neutral(model)),
-            Id::Limits => of(&model.limit_values()),
-            Id::Drawing => of(&model.drawing_numbers()),
-            Id::Heights => of(&model.heights),
-            Id::Figures => of(&model.figures()),
-            Id::GeneralizedForces => of(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => of(&[power::dissipated(model)]),
-            Id::ControlPower => of(&[power::control(model, joints)]),
-            Id::DisturbancePower => of(&[power::disturbance(model)]),
-            Id::TotalMass => of(&[energy::mass_and_moment(model, joints).0]),
+            Id::Neutral => derived(&neutral(model)),
+            Id::Limits => derived(&model.limit_values()),
+            Id::Drawing => derived(&model.drawing_numbers()),
+            Id::Heights => derived(&model.heights),
+            Id::Figures => derived(&model.figures()),
+            Id::GeneralizedForces => derived(&forces::generalized_forces(model, joints)),
+            Id::DissipatedPower => derived(&[power::dissipated(model)]),
+            Id::ControlPower => derived(&[power::control(model, joints)]),
+            Id::DisturbancePower => derived(&[power::disturbance(model)]),
+            Id::TotalMass => derived(&[energy::mass_and_moment(model, joints).0]),
             Id::MassMatrix => plain(self.dynamics().mass_matrix()),
             Id::InverseDynamics => plain(self.dynamics().inverse_dynamics()),
             Id::BiasForces => plain(self.dynamics().bias_forces()),
@@ -215,22 +215,22 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Momentum => plain(self.dynamics().momentum()),
             Id::CentroidalMomentumMatrix => plain(self.dynamics().centroidal_momentum_matrix()),
             Id::CentroidalMomentumBias => plain(self.dynamics().centroidal_momentum_bias()),
-            Id::Hamiltonian => of(&self.canonical(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => of(&self.canonical(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => of(&self.canonical(|h| h.momentum_rate.clone())),
-            Id::Routhian => of(&self.routh(|r| vec![r.routhian])),
-            Id::CyclicVelocities => of(&self.routh(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => of(&self.routh(|r| r.acceleration.clone())),
-            Id::Conserved => of(&self.conserved()),
-            Id::ConstraintResiduals => of(&constraints::residuals(model)),
-            Id::ConstraintRates => of(&constraints::rates(model)),
-            Id::ConstraintJacobian => of(&constraints::jacobian(model)),
-            Id::ConstraintBias => of(&constraints::biases(model)),
-            Id::ContactGaps => of(&constraints::contact_gaps(model)),
+            Id::Hamiltonian => derived(&self.canonical(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => derived(&self.canonical(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => derived(&self.canonical(|h| h.momentum_rate.clone())),
+            Id::Routhian => derived(&self.routh(|r| vec![r.routhian])),
+            Id::CyclicVelocities => derived(&self.routh(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => derived(&self.routh(|r| r.acceleration.clone())),
+            Id::Conserved => derived(&self.conserved()),
+            Id::ConstraintResiduals => derived(&constraints::residuals(model)),
+            Id::ConstraintRates => derived(&constraints::rates(model)),
+            Id::ConstraintJacobian => derived(&constraints::jacobian(model)),
+            Id::ConstraintBias => derived(&constraints::biases(model)),
+            Id::ContactGaps => derived(&constraints::contact_gaps(model)),
             Id::ContactRates => plain(self.of_contacts(&model.contact_rates())),
             Id::ContactJacobian => plain(self.contact_jacobian()),
             Id::ContactBias => plain(self.of_contacts(&constraints::contact_biases(model))),
-            Id::ContactLaws => of(&constraints::contact_laws(model)),
+            Id::ContactLaws => derived(&constraints::contact_laws(model)),
             Id::ContactResponses => plain(self.contact_responses()),
             Id::ContactDerivatives => plain(self.contact_derivatives()),
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
@@ -241,21 +241,21 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => of(&outputs::values(model, declared)),
+            | Id::Touched => derived(&outputs::values(model, declared)),
             Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivative(Derivatives::coriolis_matrix),
             Id::InverseDynamicsDerivatives => self.derivative(Derivatives::inverse_dynamics_derivatives),
             Id::GeneralizedMomentumDerivatives => self.derivative(Derivatives::momentum_derivatives),
             Id::MomentumRateDerivatives => self.derivative(Derivatives::momentum_rate_derivatives),
             Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
-                d.forward_dynamics_derivatives(known(Id::InverseDynamicsDerivatives))
+                d.forward_dynamics_derivatives(function(Id::InverseDynamicsDerivatives))
             }),
             Id::Linearize => self.derivative(Derivatives::linearize),
             Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
             Id::MotionDerivatives => self.derivative(Derivatives::motion_derivatives),
             Id::InputDerivatives => self.derivative(Derivatives::input_derivatives),
-            Id::InverseDynamicsDerivativesInto => as_of(known(Id::InverseDynamicsDerivatives)),
-            Id::ForwardDynamicsDerivativesInto => as_of(known(Id::ForwardDynamicsDerivatives)),
+            Id::InverseDynamicsDerivativesInto => as_of(function(Id::InverseDynamicsDerivatives)),
+            Id::ForwardDynamicsDerivativesInto => as_of(function(Id::ForwardDynamicsDerivatives)),
             Id::InverseDynamicsSecondDerivatives => {
                 self.derivative(Derivatives::inverse_dynamics_second_derivatives)
             }
@@ -263,16 +263,18 @@ impl<'a, 'g> Derivation<'a, 'g> {
                 self.derivative(Derivatives::generalized_forces_second_derivatives)
             }
             Id::ConstraintCurvature => self.derivative(Derivatives::constraint_curvature),
-            Id::JointTorqueRegressor => of(&self.identified(|i| i.joint_torque_regressor(joints))),
-            Id::StandardParameters => of(&self.identified(Identification::standard_parameters)),
-            Id::BaseRegressor => of(&self.identified(Identification::base_regressor)),
-            Id::BaseParameters => of(&self.identified(Identification::base_parameters)),
+            Id::JointTorqueRegressor => derived(&self.identified(|i| i.joint_torque_regressor(joints))),
+            Id::StandardParameters => derived(&self.identified(Identification::standard_parameters)),
+            Id::BaseRegressor => derived(&self.identified(Identification::base_regressor)),
+            Id::BaseParameters => derived(&self.identified(Identification::base_parameters)),
             Id::InverseDynamicsByParameters => plain(self.sensitivities().inverse_dynamics()),
             Id::ForwardDynamicsByParameters => plain(self.sensitivities().forward_dynamics()),
-            Id::GeneralizedForcesByParameters => of(&parameters::generalized_forces(model, joints).concat()),
+            Id::GeneralizedForcesByParameters => {
+                derived(&parameters::generalized_forces(model, joints).concat())
+            }
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
-            Id::PassiveForces => of(&self.passive(|passive| passive.forces.clone())),
-            Id::PassiveDerivatives => of(&self.passive(|passive| passive.derivatives.clone())),
+            Id::PassiveForces => derived(&self.passive(|passive| passive.forces.clone())),
+            Id::PassiveDerivatives => derived(&self.passive(|passive| passive.derivatives.clone())),
             // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates

@@ -66,7 +66,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         }
         let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
         if parts.model.acceleration_forces.is_empty() {
-            parts.known = invariance::known(parts.model, &parts.joints);
+            parts.known = invariance::invariant_columns(parts.model, &parts.joints);
         }
         if derivatives::is_analytic(parts.model) {
             parts.wide = passes.wide(model.nv());
@@ -175,7 +175,7 @@ struct Parts<'a, 'g> {
     /// Lane counts, in addition to scalar code, for the recursion towards the root.
     wide: &'static [usize],
     /// Columns of the derivatives of forward dynamics that follow from invariance.
-    known: invariance::Known<'g>,
+    known: invariance::InvariantColumns<'g>,
 }
 
 /// A mechanism with identical limbs in SIMD lanes.
@@ -198,25 +198,25 @@ impl<'a, 'g> Parts<'a, 'g> {
             trunk: None,
             limbs: None,
             wide: &[],
-            known: invariance::Known::default(),
+            known: invariance::InvariantColumns::default(),
         }
     }
 
     /// Finds groups of identical limbs, and the trunk that carries all limbs.
     fn take_apart(&mut self, lanes: bool) {
         let groups = if lanes { vectorise::find(self.model, &self.joints) } else { Vec::new() };
-        let limbs = Limbs::of(self.model, &self.joints, &groups, || passive_forces(self.model, true));
+        let limbs = Limbs::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
                 (Some(limbs), Some(marked)) => limbs.marked_outside_limbs(marked),
                 _ => Trunk::branching(&self.joints, self.model.nv()),
             };
-            self.trunk = Trunk::of(&self.joints, &self.mass, &whole);
+            self.trunk = Trunk::new(&self.joints, &self.mass, &whole);
         }
         self.limbs = limbs.zip(marked).map(|(limbs, marked)| {
             let mass = crba::mass_matrix(&limbs.model, &limbs.joints);
-            let trunk = self.trunk.as_ref().and_then(|_| Trunk::of(&limbs.joints, &mass, &marked));
+            let trunk = self.trunk.as_ref().and_then(|_| Trunk::new(&limbs.joints, &mass, &marked));
             InLanes { limbs, mass, trunk }
         });
     }
@@ -263,7 +263,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     /// Returns the derivatives of forward dynamics with `M⁻¹` by the blocks of trunk and limbs.
     fn forward_dynamics_in_parts(&self, trunk: &Trunk) -> Program {
         let model = self.model;
-        let inverse = Inverse::of(&self.mass, trunk);
+        let inverse = Inverse::new(&self.mass, trunk);
         let a = inverse.solve(&self.unbalanced());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
         let outputs = |mut forces: ForceDerivatives<'g>,
@@ -275,7 +275,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program =
             self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()], a));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
-            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+            let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = limb_lanes::accelerations(&lanes.limbs, &inverse);
             let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
@@ -293,15 +293,15 @@ impl<'a, 'g> Parts<'a, 'g> {
         };
         let Some(trunk) = &self.trunk else {
             let mass = if accelerated { &self.effective } else { &self.mass };
-            let factor = Factor::of(mass, &self.joints);
+            let factor = Factor::new(mass, &self.joints);
             let a = accelerated.then(|| factor.solve(self.unbalanced()));
             return self.specialisation.program(&outputs(a, [factor.inverse(), Vec::new()]));
         };
-        let inverse = Inverse::of(&self.mass, trunk);
+        let inverse = Inverse::new(&self.mass, trunk);
         let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
         let program = self.specialisation.program(&outputs(a, [inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
-            let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
+            let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = accelerated
                 .then(|| lanes.limbs.scattered(&limb_lanes::accelerations(&lanes.limbs, &inverse)));
             let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);

@@ -160,7 +160,7 @@ impl<'g> Dynamics<'g> {
         self.of_best(|variants| {
             let plain = variants.cheapest(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
-                Factor::of(&mass, &variants.joints).responses(rows)
+                Factor::new(&mass, &variants.joints).responses(rows)
             });
             let limbs = variants.plain_limbs().filter_map(|limbs| limb_responses::responses(limbs, rows));
             plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
@@ -176,7 +176,7 @@ impl<'g> Dynamics<'g> {
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
         let limbs = self.choices.first().and_then(|variants| variants.plain_limbs().next());
-        let mut contacts = limbs.and_then(|limbs| LimbContacts::of(limbs, rows));
+        let mut contacts = limbs.and_then(|limbs| LimbContacts::new(limbs, rows));
         let found = contacts.as_mut().and_then(outputs);
         plain.or_in_lanes(found.map(|outputs| self.specialisation.program(&outputs)))
     }
@@ -225,17 +225,17 @@ fn mass_matrices_in_lanes<'g>(
     wide: &[usize],
 ) -> Vec<Program> {
     let limbs = |most| {
-        let of = move |variants: &Variants<'g>| {
+        let mass_matrices = move |variants: &Variants<'g>| {
             variants.plain_limbs().map(|limbs| limb_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(of))
+        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
     };
     let columns = |most| {
-        let of = move |variants: &Variants<'g>| {
+        let mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.plain();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(of))
+        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
     };
     [1].iter()
         .chain(wide)

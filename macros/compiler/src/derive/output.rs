@@ -250,22 +250,22 @@ impl Constant {
         if all.is_empty() {
             return Vec::new();
         }
-        let of = |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
+        let texts = |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
         vec![
             Constant::strings(
                 "EQUILIBRIA",
                 "Name of every declared equilibrium.",
-                &of(|(name, _)| name.clone()),
+                &texts(|(name, _)| name.clone()),
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS",
                 "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in the parameters of the mechanism: what is at rest, the equations, and of up to three velocities and degree seven the characteristic equation with the conditions of stability.",
-                &of(|(_, written)| written.plain.clone()),
+                &texts(|(_, written)| written.plain.clone()),
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS_LATEX",
                 "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of `amsmath` each.",
-                &of(|(_, written)| written.latex.clone()),
+                &texts(|(_, written)| written.latex.clone()),
             ),
         ]
     }

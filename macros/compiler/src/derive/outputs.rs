@@ -76,9 +76,10 @@ fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let by = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let column = |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.of(*e)).collect() };
-    (0..model.parameters.len()).flat_map(|k| column(by(k))).collect()
+    let derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let column =
+        |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.differentiate(*e)).collect() };
+    (0..model.parameters.len()).flat_map(|k| column(derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of
@@ -91,7 +92,7 @@ fn jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
     let mut entries = Vec::new();
     for k in 0..model.nv() {
         let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
-        entries.extend(rates.iter().map(|e| d.of(*e)));
+        entries.extend(rates.iter().map(|e| d.differentiate(*e)));
     }
     entries
 }

@@ -26,5 +26,5 @@ pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
     for f in &mut functions {
         place_hoisted(&mut f.program, &mut place);
     }
-    Prepared { numbers: lower(&numbers).through(pipeline::PART), functions }
+    Prepared { numbers: lower(&numbers).run_passes(pipeline::PART), functions }
 }

@@ -45,8 +45,8 @@ impl<'a, 'g> Identification<'a, 'g> {
     pub(super) fn names(&self) -> Vec<Constant> {
         let link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
-            let moved = || kinematics::joints(self.model)[k].dofs.first().map(|d| d.index);
-            let joint = || moved().map_or(String::new(), |v| self.model.velocities[v].0.clone());
+            let first_velocity = || kinematics::joints(self.model)[k].dofs.first().map(|d| d.index);
+            let joint = || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
             body.map_or_else(joint, |body| body.name.clone())
         };
         let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", link(*k), NAMES[*p]));

@@ -19,7 +19,10 @@ use crate::mechanism::{Model, Quantity};
 use crate::syntax::{Printed, Requests};
 
 /// Returns the error message and help for an option that does not support these speeds.
-pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'static str, &'static str)> {
+pub(super) fn unsupported_option(
+    speeds: &InSpeeds<'_>,
+    requests: Requests,
+) -> Option<(&'static str, &'static str)> {
     if requests.routh || requests.equations == Printed::Routh {
         return Some((
             "Routh's equations are those of coordinates, not of declared speeds",
@@ -75,7 +78,7 @@ impl<'g> Derivation<'_, 'g> {
     fn derivatives_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let (native, model, joints) = (&speeds.native, &speeds.model, self.joints);
         let v = mechanics::velocities(native);
-        let of = |e: &[Expr<'g>]| force_columns(&symbolic::derivatives(model, e));
+        let forces_by_columns = |e: &[Expr<'g>]| force_columns(&symbolic::derivatives(model, e));
         match id {
             Id::MassMatrixInverse => Some(self.inverse_of(speeds, false)),
             Id::CoriolisMatrix => {
@@ -83,7 +86,7 @@ impl<'g> Derivation<'_, 'g> {
                     (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
                 Some(columns(&speeds.coriolis_matrix(&coriolis, &mass)))
             }
-            Id::InverseDynamicsDerivatives => Some(of(&self.inverse(speeds))),
+            Id::InverseDynamicsDerivatives => Some(forces_by_columns(&self.inverse(speeds))),
             Id::GeneralizedMomentumDerivatives => {
                 let p = speeds.forces(&momentum::generalized_momentum(native, joints, &v));
                 Some(columns(&symbolic::by_configuration(model, &p)))
@@ -93,19 +96,19 @@ impl<'g> Derivation<'_, 'g> {
                     momentum::momentum_rate(native, joints, &v),
                     momentum::generalized_momentum(native, joints, &v),
                 );
-                Some(of(&speeds.momentum_rate(&rate, &p)))
+                Some(forces_by_columns(&speeds.momentum_rate(&rate, &p)))
             }
             Id::ForwardDynamicsDerivatives => {
                 let forces = symbolic::derivatives(model, &self.inverse(speeds));
                 let accelerations = self.free_accelerations(speeds);
-                let forces = self.at(force_columns(&forces), &accelerations);
+                let forces = self.at_accelerations(force_columns(&forces), &accelerations);
                 Some([forces, self.inverse_of(speeds, true), accelerations].concat())
             }
             Id::Linearize => Some(self.linearized(speeds)),
             Id::InputDerivatives => {
                 let tau = self.input_forces(speeds);
                 let by_inputs = columns(&symbolic::by_input(model, &tau));
-                Some([tau.clone(), of(&tau), by_inputs].concat())
+                Some([tau.clone(), forces_by_columns(&tau), by_inputs].concat())
             }
             Id::Turning => Some(columns(&speeds.turning())),
             Id::InverseDynamicsSecondDerivatives
@@ -129,7 +132,7 @@ impl<'g> Derivation<'_, 'g> {
     fn factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
         let mass = crba::mass_matrix(&speeds.native, self.joints);
         let mass = if effective { added_mass::effective(&speeds.native, &mass) } else { mass };
-        Factor::of(&mass, self.joints)
+        Factor::new(&mass, self.joints)
     }
 
     /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
@@ -146,7 +149,7 @@ impl<'g> Derivation<'_, 'g> {
     }
 
     /// Returns the expressions with the acceleration symbols replaced by `a`.
-    fn at(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn at_accelerations(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(&e, &|s| match Quantity::of(s) {
             Quantity::Acceleration(k) => a.get(k).copied(),
             _ => None,
@@ -163,7 +166,7 @@ impl<'g> Derivation<'_, 'g> {
         let by_state = symbolic::derivatives(model, &tau);
         subtract(&mut forces.by_q, &by_state.by_q);
         subtract(&mut forces.by_v, &by_state.by_v);
-        let mut outputs = self.at(force_columns(&forces), &accelerations);
+        let mut outputs = self.at_accelerations(force_columns(&forces), &accelerations);
         outputs.extend(self.inverse_of(speeds, true));
         outputs.extend(columns(&symbolic::by_input(model, &tau)));
         outputs.extend(columns(&speeds.turning()));
@@ -191,10 +194,10 @@ impl<'g> Derivation<'_, 'g> {
     /// second derivatives with respect to joint displacements are multiplied by `Z` at `q`.
     fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
         let native = &speeds.native;
-        let turned = |found: Hessian<'g>| Hessian {
+        let projected = |found: Hessian<'g>| Hessian {
             qq: speeds.metric(&found.qq),
-            qv: speeds.along(&found.qv),
-            qa: speeds.along(&found.qa),
+            qv: speeds.project(&found.qv),
+            qa: speeds.project(&found.qa),
             ..found
         };
         match id {
@@ -203,19 +206,19 @@ impl<'g> Derivation<'_, 'g> {
                 // displacements.
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
-                let mut outputs = second::state(&turned(found.state)).concat();
-                outputs.extend(columns(&speeds.along(&found.q_lambda)));
+                let mut outputs = second::state(&projected(found.state)).concat();
+                outputs.extend(columns(&speeds.project(&found.q_lambda)));
                 outputs
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
                     hessian::of_inputs(native, &self.input_forces(speeds));
-                let [qq, qv, vv, _] = second::state(&turned(state));
-                [qq, qv, vv, columns(&speeds.along(&qu)), columns(&vu), columns(&uu)].concat()
+                let [qq, qv, vv, _] = second::state(&projected(state));
+                [qq, qv, vv, columns(&speeds.project(&qu)), columns(&vu), columns(&uu)].concat()
             }
             _ => {
                 let found = hessian::of_power(native, &self.inverse(speeds), &hessian::factors(native));
-                second::state(&turned(found)).concat()
+                second::state(&projected(found)).concat()
             }
         }
     }
@@ -223,11 +226,11 @@ impl<'g> Derivation<'_, 'g> {
     /// Returns the derivatives with respect to all parameters, a list for each parameter.
     fn by_parameters(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
-        let of = |k| {
+        let column = |k| {
             let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
-            e.iter().map(|e| by.of(*e)).collect()
+            e.iter().map(|e| by.differentiate(*e)).collect()
         };
-        (0..count).map(of).collect()
+        (0..count).map(column).collect()
     }
 
     /// Returns `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
@@ -242,7 +245,7 @@ impl<'g> Derivation<'_, 'g> {
             (0..n).map(row).collect()
         };
         let changes = self.by_parameters(&self.inverse(speeds));
-        changes.into_iter().flat_map(|change| solved(&self.at(change, &a))).collect()
+        changes.into_iter().flat_map(|change| solved(&self.at_accelerations(change, &a))).collect()
     }
 
     fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {
@@ -261,7 +264,7 @@ impl<'g> Derivation<'_, 'g> {
         let g = self.model.graph;
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
         let of_joints = speeds.with_momenta(&momenta);
-        let at = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
+        let in_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
             let velocity = speeds.speeds_of(&speeds.with_momenta(&self.canonical(|h| h.velocity.clone())));
             replace_all(&e, &|s| match Quantity::of(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
@@ -270,10 +273,10 @@ impl<'g> Derivation<'_, 'g> {
         };
         Some(match id {
             Id::Hamiltonian => speeds.with_momenta(&self.canonical(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => at(mechanics::velocities(self.model)),
+            Id::CanonicalVelocity => in_momenta(mechanics::velocities(self.model)),
             _ => {
                 let rate = speeds.with_momenta(&self.canonical(|h| h.momentum_rate.clone()));
-                at(speeds.momentum_rate_of_written(&rate, &of_joints))
+                in_momenta(speeds.momentum_rate_of_written(&rate, &of_joints))
             }
         })
     }

@@ -1,4 +1,5 @@
-//! Functions that a mechanism does not have, under bounds that never hold: a call of one is told what it lacks.
+//! Functions that a mechanism does not have, declared with bounds that never hold. The error message of a
+//! call then states the missing option or property.
 
 use super::interface::{ALLOW, Absent, Head, Interface};
 use super::signature::Signature;
@@ -7,7 +8,7 @@ use crate::derive::Function;
 use crate::syntax::Word;
 use std::fmt::Write;
 
-/// All that a mechanism with these functions and outputs lacks.
+/// Returns everything that a mechanism with these functions and outputs lacks.
 pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
     let in_lanes = |name: &str| format!("{name}_lanes");
     let of_need = |(need, rows): (Need, Vec<&Row>)| {
@@ -40,17 +41,17 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
         }
         all.push(Absent { reason, functions, constants: Vec::new() });
     }
-    // Outputs may have such a name.
+    // An output may have the name of a missing function.
     for absent in &mut all {
         absent.functions.retain(|name| functions.iter().all(|f| f.name != *name));
     }
     all
 }
 
-/// Functions of the runtime's traits that come with derivatives.
+/// Functions of the runtime's traits that are available with derivatives.
 const OF_TRAITS: [&str; 2] = ["linear_motion", "output_derivatives"];
 
-/// What a prepared mechanism leaves to the one that it was prepared from.
+/// Functions of frames, which only the unprepared mechanism has.
 const OF_FRAMES: [&str; 6] = [
     "frame_acceleration",
     "frame_index",
@@ -60,11 +61,11 @@ const OF_FRAMES: [&str; 6] = [
     "frame_velocity",
 ];
 
-/// What it leaves to the one that holds the parameters.
+/// Functions of parameters, which only the unprepared mechanism has.
 const OF_FIGURES: [&str; 5] = ["from_file", "inertials", "set_base_parameters", "set_inertials", "validate"];
 
 impl Absent {
-    /// The functions of frames, and what is made by the mechanism itself.
+    /// Returns the functions and constants of frames, which a prepared mechanism lacks.
     fn of_prepared() -> Absent {
         Absent {
             reason: "HasFrames",
@@ -73,7 +74,7 @@ impl Absent {
         }
     }
 
-    /// What asks for the parameters.
+    /// Returns the functions and constants of parameters, which a prepared mechanism lacks.
     fn of_figures(facts: &Facts) -> Absent {
         let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none());
         let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
@@ -87,7 +88,7 @@ impl Absent {
     }
 }
 
-/// Writes what the struct lacks.
+/// Writes declarations of everything that the struct lacks.
 pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let name = i.shell.ident.to_string();
     for absent in &i.absent {
@@ -95,15 +96,15 @@ pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     }
 }
 
-/// Writes what a prepared struct of this name lacks.
+/// Writes declarations of everything that the prepared struct `name` lacks.
 pub fn write_absent_of_prepared(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     for absent in i.absent.iter().chain([&Absent::of_prepared(), &Absent::of_figures(&i.facts)]) {
         write_one(out, name, absent, &Head::new(i, s));
     }
 }
 
-/// Nobody else's function of this name is in the way of these, nor are they in anybody's: rustc sees that the bound does
-/// not hold.
+/// Writes declarations of missing functions and constants. They do not conflict with other functions of the
+/// same name, because rustc sees that their bound does not hold.
 fn write_one(out: &mut String, name: &str, absent: &Absent, head: &Head) {
     if absent.functions.is_empty() && absent.constants.is_empty() {
         return;

@@ -1,39 +1,44 @@
-//! Sines and cosines: those of all angles that are known from the start are evaluated by one call, several at a time.
+//! Sines and cosines. Those of all angles that depend only on inputs are evaluated at the start of a
+//! function, several at a time.
 
 use crate::lower::Angle;
 use std::fmt::Write;
 
-/// Lanes of the vectors in which the angles of a program with lanes are evaluated.
+/// Number of lanes of the vectors in which angles of a program with lanes are evaluated.
 pub const WIDTH: usize = 4;
 
-/// How many vectors a call takes: whether their angles are small is asked once, they share the constants, and all of
-/// them stay in registers.
+/// Number of vectors that a call evaluates together. The vectors share one test for small angles and the
+/// constants, and all of them fit in registers.
 const TOGETHER: usize = 4;
 
-/// The calls for sines and cosines as they are written down: one of all numbers, or some of several vectors each.
+/// Calls for sines and cosines under construction: one call for all scalars, or calls for several vectors
+/// each.
 #[derive(Default)]
 pub struct Calls {
-    /// The values that they compute.
+    /// Numbers of the values that the calls compute.
     pub names: Vec<usize>,
     /// Text of each value.
     results: Vec<String>,
-    /// Text of each number or vector, and the numbers of what its results are bound to.
+    /// Text of each scalar or vector, and the numbers of the bindings of its results.
     arguments: Vec<(String, Vec<usize>)>,
-    /// Numbers that wait for a vector to be full.
+    /// Scalars that do not fill a vector yet, with the numbers of their bindings.
     loose: Vec<(String, usize)>,
+    /// True if angles are combined to vectors.
     in_vectors: bool,
-    /// A call of numbers is padded to the width of vector registers.
+    /// True if a call of scalars is padded to the width of vector registers.
     padded: bool,
+    /// Number of bindings so far.
     bound: usize,
 }
 
 impl Calls {
-    /// Of vectors or of numbers; of these as many as fill registers, if they do not fill some by themselves.
+    /// Returns an empty list of calls. `in_vectors` combines angles to vectors; `padded` pads a call of
+    /// scalars to full registers.
     pub fn new(in_vectors: bool, padded: bool) -> Calls {
         Calls { in_vectors, padded, ..Calls::default() }
     }
 
-    /// Adds an angle by the texts of its lanes, or the text of a whole vector.
+    /// Adds an angle, given by the texts of its lanes or the text of a whole vector.
     pub fn add(&mut self, angle: &Angle, texts: Vec<String>, is_vector: bool) {
         let first = self.bound;
         self.bound += texts.len();
@@ -50,6 +55,7 @@ impl Calls {
         }
     }
 
+    /// Adds a scalar to the incomplete vector, and completes the vector with its last lane.
     fn push_loose(&mut self, text: String, number: usize) {
         self.loose.push((text, number));
         if self.loose.len() == WIDTH {
@@ -58,7 +64,7 @@ impl Calls {
         }
     }
 
-    /// The text of all values as a tuple.
+    /// Returns the numbers of all values and the text of the tuple of their expressions.
     pub fn text(mut self, zero: &str) -> (Vec<usize>, String) {
         let mut text = String::from("{ ");
         if self.in_vectors {
@@ -73,7 +79,7 @@ impl Calls {
         (self.names, text)
     }
 
-    /// A call for every few vectors.
+    /// Writes a call for every [`TOGETHER`] vectors.
     fn write_vectors(&mut self, text: &mut String, zero: &str) {
         while !self.loose.is_empty() {
             self.bound += 1;
@@ -96,7 +102,8 @@ impl Calls {
         }
     }
 
-    /// One call, padded to whole registers; of several states one for every few angles, since each fills registers by itself.
+    /// Writes one call, padded to full registers. For several states it writes a call for every [`TOGETHER`]
+    /// angles, since each angle fills registers by itself.
     fn write_numbers(&mut self, text: &mut String) {
         if self.arguments.is_empty() {
             return;
@@ -113,28 +120,29 @@ impl Calls {
         }
     }
 
-    /// Fills registers with angles again, so that each is one load from memory where the angles stand in a row.
+    /// Pads the angles to full registers by repeating some of them, so that each register is one load from
+    /// memory if the angles are adjacent.
     fn pad(&mut self) {
         let count = self.arguments.len();
-        let again = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
+        let repeated = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
         match count % WIDTH {
             0 => {}
-            // The last four.
-            3 if count > WIDTH => self.arguments.insert(count - 3, again(&self.arguments, count - 4)),
-            3 => self.arguments.push(again(&self.arguments, count - 1)),
+            // Repeats the angle before the last three.
+            3 if count > WIDTH => self.arguments.insert(count - 3, repeated(&self.arguments, count - 4)),
+            3 => self.arguments.push(repeated(&self.arguments, count - 1)),
             rest => (rest..WIDTH).for_each(|k| {
                 let k = count - rest + k % rest;
-                self.arguments.push(again(&self.arguments, k));
+                self.arguments.push(repeated(&self.arguments, k));
             }),
         }
         let count = self.arguments.len();
         if count > WIDTH && !count.is_multiple_of(2 * WIDTH) {
-            (count - WIDTH..count).for_each(|k| self.arguments.push(again(&self.arguments, k)));
+            (count - WIDTH..count).for_each(|k| self.arguments.push(repeated(&self.arguments, k)));
         }
     }
 }
 
-/// One name, or the lanes of a vector, or nothing.
+/// Returns one name, a vector of several names, or `_` without names.
 fn bundle(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {

@@ -1,10 +1,11 @@
-//! The straight-line body of a generated function. Values with one use are written where they are used; the others are
-//! bound, in blocks of bounded length, since rustc's debug information needs stack for every binding of a block.
+//! Straight-line body of a generated function. A value with one use is written inline; other values are bound
+//! to names. Blocks have bounded length, because rustc's debug information needs stack for every binding of a
+//! block.
 
 use super::angles::{Calls, WIDTH};
 use super::instruction::{Build, Writer};
 use super::pieces::{Outputs, Piece, Statement, storage};
-use super::signature::{Signature, filled, given};
+use super::signature::{Signature, filled, matrix_arguments};
 use super::statements::{BLOCK, write_let, write_statements};
 use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
@@ -15,16 +16,17 @@ use crate::mechanism::Quantity;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Longest expression that is not bound.
+/// Maximum length of an expression that is written inline, in characters.
 const LINE: usize = 72;
 
-/// Writes everything between the braces. The arithmetic `Ops` is a parameter of the function, or else that of the target.
+/// Writes the function body without its braces. If `is_parameter` is true, the arithmetic `Ops` is a type
+/// parameter of the function; otherwise `Ops` is the arithmetic of the compilation target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
     if let Some(count) = filled(f) {
         out.push_str(&matrices::called(f, count, s));
         return;
     }
-    // Several states fill the lanes by themselves.
+    // Functions of several states already fill the lanes.
     let in_lanes = f.program.simd.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);
     let mut w = Writer {
@@ -50,7 +52,8 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }
     w.write_named(out);
-    // What the angles do not need is read when they are done: it would wait in memory, not in registers.
+    // Arguments on which no angle depends are read after the sines and cosines: before them, they would be
+    // spilled to memory.
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
         w.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
@@ -60,7 +63,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let rest = w.statements.split_off(head);
     let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero };
-    if !given(f).is_empty() {
+    if !matrix_arguments(f).is_empty() {
         let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
         out.push_str(&matrices::finish(f, s, &results));
@@ -108,7 +111,7 @@ impl Writer<'_> {
         });
     }
 
-    /// The arguments that angles depend on.
+    /// Returns the arguments on which the angles depend.
     fn arguments_of(&self, angles: &Angles) -> Vec<Argument> {
         let mut symbols = Vec::new();
         let mut note = |o: Operand| match o {
@@ -126,9 +129,10 @@ impl Writer<'_> {
         self.arguments.iter().copied().filter(is_needed).collect()
     }
 
-    /// The sines and cosines of all angles.
+    /// Writes the statement that computes the sines and cosines of all angles known from the start.
     fn write_angles(&mut self, angles: &Angles) {
-        // Sums of angles become vectors by name: in an array they would go through memory, one by one.
+        // Sums of angles are combined to vectors from named values: in an array they would be stored to
+        // memory individually.
         let is_sum = |angle: &Angle| {
             let (mut inputs, mut todo) = (0, vec![angle.angle]);
             while let Some(o) = todo.pop().filter(|_| inputs < 2) {
@@ -156,7 +160,7 @@ impl Writer<'_> {
         self.statements.push(Statement { pattern: format!("({},)", list.join(", ")), names, text, needs });
     }
 
-    /// The texts of an angle's lanes; of four the text of all together.
+    /// Returns the texts of the lanes of an angle; of an angle with four lanes, the text of the vector.
     fn angle(&mut self, angle: Operand, needs: &mut Vec<usize>) -> Vec<String> {
         let lanes = self.width(angle);
         if let Operand::Gather(g) = angle
@@ -179,7 +183,8 @@ impl Writer<'_> {
     }
 }
 
-/// The numbers of arguments and of what is called, and those of them that are lanes.
+/// Writes the bindings of the used entries of arguments and of results of called functions, and of their
+/// gathers.
 fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
     let in_lanes = s.scalar.is_in_lanes();
     let used = w.program.symbols();
@@ -218,8 +223,8 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
     }
 }
 
-/// The elements of an argument's array that a program uses, by name, between those that it does not: rustc takes long over
-/// variables that nothing reads. `None` if it uses none.
+/// Returns the array pattern that binds the entries of an argument that a program uses, or `None` if it uses
+/// none. Unused entries are not bound, because rustc takes long for unused variables.
 fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
     let mut list = Vec::new();
     for k in used.iter().filter_map(|s| argument.index(Quantity::of(*s))).filter(|k| *k < n) {

@@ -6,7 +6,7 @@ use crate::equations::Written;
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// Sizes and the names of what vectors hold.
+/// Writes the sizes of configuration, velocity and inputs, and the names of their entries.
 pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
     let numbers = [
         ("NQ", i.configuration.len(), "configuration numbers"),
@@ -26,12 +26,13 @@ pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
     }
 }
 
+/// Writes a list of names as a constant.
 fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
     let _ =
         writeln!(out, "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};", names.len());
 }
 
-/// Sizes, names, equations.
+/// Writes all constants: sizes, names, additional lists and equations.
 pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, constants: &[Constant]) {
     write_sizes(out, i);
     write_names(out, "FRAMES", &i.frames, "every frame");
@@ -51,7 +52,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
             &equations.plain,
             match is_short {
                 true => {
-                    "The structure of the equations of motion as text, and how to ask for all of their terms."
+                    "The structure of the equations of motion as text, and the option that prints all of their terms."
                 }
                 false => {
                     "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the kinetic energy, the Hamiltonian or the Routhian before them."
@@ -61,7 +62,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         (
             "EQUATIONS_LATEX",
             &equations.latex,
-            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, every equation in lines of its own that fit a page, for where mathematics is displayed: between `\\[` and `\\]`.",
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with line breaks that fit a page, for display mathematics between `\\[` and `\\]`.",
         ),
     ];
     for (name, text, about) in texts {
@@ -70,13 +71,13 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
             "" if i.facts.kinematic => "Empty: without inertia there are no equations of motion.",
             _ => about,
         };
-        // Rustdoc would show a literal, with all its escapes.
+        // Rustdoc would show a plain literal with all its escapes.
         let _ = writeln!(out, "/// {about}\npub const {name}: &'static str = [{text:?}][0];");
     }
 }
 
-/// The index of a frame by its name. A mechanism that failed to compile knows every name: what its frames are called is
-/// not known, and its own mistakes are said already.
+/// Writes the function that returns the index of a frame by name. For a mechanism that failed to compile it
+/// accepts every name: the names of its frames are unknown, and its own errors are already reported.
 pub fn write_frame_index(out: &mut String, failed: bool) {
     let found = "::linkwork::index_of(&Self::FRAMES, name)";
     let value = match failed {
@@ -91,7 +92,7 @@ pub fn write_frame_index(out: &mut String, failed: bool) {
     );
 }
 
-/// What the equations are made of, where they are not written out.
+/// Returns the structure of the equations of motion, for mechanisms whose terms are not printed.
 fn structure(i: &Interface<'_>) -> Written {
     let time = if i.facts.time { "t, " } else { "" };
     let constrained = i.facts.constraints.is_some();
@@ -104,8 +105,8 @@ fn structure(i: &Interface<'_>) -> Written {
         let _ = write!(latex, " \\\\\n& J({time}q)\\, \\dot v + b({time}q, v) = 0");
     }
     plain.push_str(match i.facts.requests.equations {
-        Printed::Structure => "\nThe argument `equations = structure` leaves the terms out.\n",
-        _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites up to some thousand; `kane`, `hamilton` and `routh` print other forms where there are such.\n",
+        Printed::Structure => "\nThe option `equations = structure` omits the terms.\n",
+        _ => "\nThere are too many terms to be readable. The option `equations = lagrange` of `#[mechanism]` prints\nup to some thousand; `kane`, `hamilton` and `routh` print other forms, if available.\n",
     });
     latex.push_str("\n\\end{aligned}\n");
     Written { plain, latex, mathml: String::new() }

@@ -1,5 +1,5 @@
-//! What mechanisms with constraints have besides: constrained dynamics around the generated elimination, assembly and
-//! projection.
+//! Generated code of mechanisms with constraints: constrained dynamics around the generated elimination,
+//! assembly and projection.
 
 use super::signature::Signature;
 use crate::catalogue::{Argument, Id, Shape};
@@ -10,32 +10,35 @@ use std::fmt::Write;
 /// The scalar constraints of a mechanism.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints {
-    /// Their names, those on configurations first.
+    /// Names of the constraints; holonomic constraints come first.
     pub names: Vec<String>,
-    /// How many restrict configurations.
+    /// Number of holonomic constraints.
     pub holonomic: usize,
-    /// Which are components of one vector: those of one number.
+    /// Group of each constraint; constraints of one group are components of one vector.
     pub groups: Vec<usize>,
-    /// Rows of joints that are left out because they follow from these.
+    /// Names of rows of joints and constraints that are omitted because they depend on the others.
     pub redundant: Vec<String>,
-    /// Independent coordinates and velocities.
+    /// Numbers of independent coordinates and velocities.
     pub freedom: Freedom,
-    /// Those whose multipliers are normal forces of friction.
+    /// Indices of the constraints whose multipliers are normal forces of sliding contacts with friction.
     pub slipping: Vec<usize>,
-    /// Those that determine coordinates which may have no inertia.
+    /// Indices of the constraints that determine coordinates that may have no inertia.
     pub determining: Vec<usize>,
-    /// Some follow from others everywhere: only least squares tell the multipliers.
+    /// True if some constraints depend on others in every admissible configuration, so that multipliers
+    /// require least squares.
     pub overdetermined: bool,
-    /// Accelerations are those of independent speeds, by pivots that are chosen in advance.
+    /// True if accelerations are eliminated to those of independent velocities, with pivots chosen at compile
+    /// time.
     pub independent: bool,
-    /// Entries of `q` that are angles.
+    /// Indices of the entries of `q` that are angles.
     pub angles: Vec<usize>,
-    /// Velocities that rotate something.
+    /// Whether each velocity is an angular velocity.
     pub turns: Vec<bool>,
 }
 
 impl Constraints {
-    /// One, where only the equations could tell how many there are; of a contact that slips, if there is one.
+    /// Returns one unnamed constraint for a mechanism whose constraints are unknown because of an error; with
+    /// `slips`, a constraint of a sliding contact.
     pub fn unknown(slips: bool) -> Constraints {
         Constraints {
             names: vec![String::new()],
@@ -52,8 +55,8 @@ impl Constraints {
         }
     }
 
-    /// Those of a model.
-    pub fn of(model: &Model<'_>) -> Constraints {
+    /// Returns the constraints of a model.
+    pub fn from_model(model: &Model<'_>) -> Constraints {
         let those = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
             let all = model.constraints.iter().enumerate();
             all.filter(|(_, c)| is(c)).map(|(k, _)| k).collect()
@@ -74,17 +77,21 @@ impl Constraints {
     }
 }
 
-/// Types and calls, as they are spelt.
+/// Source text of types and arguments.
 struct Words {
+    /// Type of a configuration.
     q: String,
+    /// Type of a velocity.
     v: String,
+    /// Type of the residuals of the holonomic constraints.
     residuals: String,
+    /// Type of the multipliers of all constraints.
     multipliers: String,
-    /// `t: f64, ` where functions take time.
+    /// Parameter `t: f64, ` if functions take time, otherwise empty.
     t: String,
-    /// `t, ` where they do.
+    /// Argument `t, ` if functions take time, otherwise empty.
     pass: &'static str,
-    /// What stands for time where it does not matter.
+    /// Time argument of trait functions: `t`, or zero if functions do not take time.
     any: String,
 }
 
@@ -107,7 +114,7 @@ impl Words {
     }
 }
 
-/// Sizes and names.
+/// Writes the constants for the numbers of constraints and degrees of freedom, and for the names.
 pub fn write_constants(out: &mut String, c: &Constraints) {
     if c.names.is_empty() {
         return;
@@ -115,7 +122,7 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     let _ = writeln!(
         out,
         "/// Number of scalar constraints.\npub const NC: usize = {};
-        /// Number of constraints on configurations: the first of all.\npub const NH: usize = {};
+        /// Number of holonomic constraints, which come first.\npub const NH: usize = {};
         /// Name of every constraint.\npub const CONSTRAINTS: [&'static str; {}] = {:?};
         /// Degrees of freedom: independent coordinates.\npub const NP: usize = {};
         /// Degrees of freedom: independent velocities.\npub const NS: usize = {};",
@@ -128,7 +135,8 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     );
 }
 
-/// Writes the functions of assembly of a mechanism without inertia, which has no trait of constraints.
+/// Writes the assembly functions of a mechanism without inertia, which does not implement the trait
+/// `Constrained`.
 pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -159,31 +167,31 @@ pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     write_assembly_functions(out, c, s, &bodies);
 }
 
-/// Writes `assemble`, `assemble_in_mode` and `assembly_mode`, of the given bodies.
+/// Writes `assemble`, `assemble_in_mode` and `assembly_mode` with the given bodies.
 fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>, bodies: &[String; 3]) {
     let Words { q, t, .. } = Words::new(c, s);
     let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
-        "/// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. Angles are found within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        "/// Returns a configuration near `q` that satisfies the constraints. The coordinates whose velocities have the indices `held` are not changed. Angles are within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if no such configuration is found, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {any} }}
-        /// A configuration around `q` in which the constraints hold, of the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
+        /// Returns a configuration around `q` that satisfies the constraints in the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
         ///
         /// # Errors
         ///
-        /// Those of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) where only other modes are found.
+        /// The errors of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) if only configurations in the other mode are found.
         pub fn assemble_in_mode(&self, {t}q: &{q}, held: &[usize], mode: i8) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {one} }}
-        /// The assembly mode of the configuration `q`, 1 or −1, by the coordinates whose velocities are not `held`; `None` where these do not determine one. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
+        /// Returns the assembly mode of the configuration `q`, 1 or −1, with respect to the coordinates whose velocities are not `held`; `None` if these do not determine a mode. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
         #[must_use]
         pub fn assembly_mode(&self, {t}q: &{q}, held: &[usize]) -> ::core::option::Option<i8> {{ {mode} }}"
     );
 }
 
-/// The inherent functions.
+/// Writes the inherent functions of constrained dynamics, completion and projection.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -203,13 +211,13 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         out,
         "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
-        /// Lagrange multipliers by a sparse elimination. Near singular positions, and with masses so different that digits would be lost, by an orthogonal factorisation of `J` in the metric of the kinetic energy; in a singular position the motion goes on as before. Where constraints are redundant or contradict each other, least squares count.
+        /// The Lagrange multipliers follow from a sparse elimination. Near singular configurations, and if the elimination would lose digits because masses are very different, an orthogonal factorisation of `J` in the metric of the kinetic energy is used instead. Through a singular configuration the accelerations are continuous. Redundant or contradictory constraints are solved by least squares.
         #[inline]\n#[must_use]
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
         }}
         {solve}
-        /// The change of velocity of least kinetic energy that takes the rates `gap` of the constraints away: `J x = −gap`.
+        /// Returns the velocity change of minimum kinetic energy that removes the constraint velocities `gap`: `J x = −gap`.
         #[inline]\n#[must_use]
         pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
             self.__constraint_solution({pass}q, &[::linkwork::__private::constant::<{scalar}>(0.0); {nv}], &gap.data.0[0])
@@ -221,35 +229,35 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         }}
         #[doc(hidden)]
         pub const __STRUCTURE: ::linkwork::__private::Structure<'static, {nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
-        /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints; what these leave open is nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
+        /// Returns the velocity that has the entries `held` (indices) of `v` and satisfies the constraints. If this does not determine it, it is the one nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_velocity(&self, {t}q: &{q}, v: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_velocity(self, {any}, q, v, held)
         }}
-        /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the constraints; what these leave open is nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
+        /// Returns the acceleration that has the entries `held` (indices) of `a` and satisfies the constraints. If this does not determine it, it is the one nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_acceleration(&self, {t}q: &{q}, v: &{v}, a: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_acceleration(self, {any}, q, v, a, held)
         }}
-        /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
+        /// Returns the configuration nearest to `q`, in the metric of the kinetic energy, that satisfies the constraints.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where Newton's method does not converge.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if Newton's method does not converge.
         pub fn project_configuration(&self, {t}q: &{q}) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_configuration(self, {any}, q)
         }}
-        /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
+        /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the constraints.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) where none does.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if no velocity satisfies them.
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
@@ -264,24 +272,25 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
 }
 
-/// Writes the forces of a motion under the constraints.
+/// Writes `constrained_inverse_dynamics`.
 fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
-        "/// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are driven as there are degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
+        "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that cause a motion, `M a + h = τ + Jᵀ λ`. The number of driven velocities is the number of degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that does not fulfil the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) where forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that violates the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) if forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn constrained_inverse_dynamics(&self, {t}q: &{q}, v: &{v}, a: &{v}, driven: &[usize]) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::constrained_inverse_dynamics(self, {any}, q, v, a, driven)
         }}"
     );
 }
 
-/// Accelerations and multipliers from what was `found` by an elimination, or the `careful` way where that loses digits.
-/// Corrections are always found by multipliers.
+/// Returns the expression for accelerations and multipliers from the result `found` of the elimination. The
+/// rank-revealing call `careful` is used if the elimination would lose digits. Corrections always use
+/// multipliers.
 fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
     let quick = if c.overdetermined {
         "least_solution(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
@@ -298,13 +307,13 @@ fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
     )
 }
 
-/// Accelerations and multipliers of a mechanism whose contacts do not slip.
+/// Returns the function `constrained_dynamics` of a mechanism without sliding contacts.
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
     let solution = solution(c, c.independent, &careful);
     format!(
-        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists; of redundant constraints those of least norm.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of redundant constraints have minimum norm.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let found = self.__constrained_dynamics({pass}q, v, tau);
@@ -313,21 +322,21 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// The functions of constrained dynamics of a mechanism with contacts that slip.
+/// Returns the functions of constrained dynamics of a mechanism with sliding contacts.
 fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
     let (scalar, slipping) = (s.scalar.name(), &c.slipping);
     format!(
-        "/// Acceleration, and the multipliers `λ` of the constraints, in the units that the table of constraints lists. Those of contacts that slip are their normal forces, with friction in proportion to their magnitudes. NaN where [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of sliding contacts are normal forces; friction is proportional to their magnitudes. The result is NaN if [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let lost = ::linkwork::__private::constant::<{scalar}>(f64::NAN);
             self.try_constrained_dynamics({pass}q, v, tau).unwrap_or_else(|_| (<{v}>::repeat(lost), <{multipliers}>::repeat(lost)))
         }}
-        /// The same, or why there is no unique answer.
+        /// Returns the result of [`constrained_dynamics`](Self::constrained_dynamics), or an error if there is no unique solution.
         ///
         /// # Errors
-        /// `Jammed` where the normal force of a contact that slips does not follow from the motion (Painlevé's paradox: friction that presses harder than it yields); `Singular` where other constraints are redundant.
+        /// `Jammed` if the motion does not determine the normal force of a sliding contact (Painlevé's paradox); `Singular` if other constraints are redundant.
         #[inline]
         pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
             ::linkwork::__private::slipping_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
@@ -335,7 +344,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Derivatives of constrained motion, on request.
+/// Writes the derivatives of constrained motion and the linearisation.
 fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, t, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
@@ -352,7 +361,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         )
     };
     let forces = "inputs.forces.into()";
-    // A matrix from the list of its columns.
+    // Constructor of a matrix from an array of columns.
     let storage = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
     let _ = writeln!(
         out,
@@ -365,12 +374,12 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
             ::linkwork::__private::constrained_derivatives(&parts, {solve})
         }}
-        {multipliers}/// The motion to first order about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and speeds; those with the velocities `preferred` (indices) where the constraints leave the choice.
+        {multipliers}/// Linearises the motion about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and velocities. If the constraints permit a choice, the velocities `preferred` (indices) are independent.
         ///
         /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
         ///
         /// # Errors
-        /// `Singular` where constraints lose rank{jams}.
+        /// `Singular` if constraints lose rank{jams}.
         pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
             let inputs = self.__input_derivatives({pass}q, v, u);
             let (a, lambda) = self.{motion};
@@ -395,11 +404,11 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         } else {
             format!("try_constrained_dynamics({pass}q, v, &{forces})?")
         },
-        jams = if c.slipping.is_empty() { "" } else { ", `Jammed` where friction jams" },
+        jams = if c.slipping.is_empty() { "" } else { ", `Jammed` if friction jams" },
     );
 }
 
-/// How the multipliers change, where their derivatives are determined.
+/// Returns the function of multiplier derivatives, or nothing if these are not available.
 fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     if !are_differentiable(c) {
         return String::new();
@@ -407,9 +416,9 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, t, any, .. } = Words::new(c, s);
     let rows = s.shape(Shape::Matrix(c.names.len(), s.nv));
     format!(
-        "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
+        "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
         ///
-        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Of redundant constraints the derivatives of least norm.
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Derivatives for redundant constraints have minimum norm.
         #[must_use]
         pub fn multiplier_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({rows}, {rows}, {rows}) {{
             ::linkwork::ConstrainedDerivatives::multiplier_derivatives(self, {any}, q, v, tau)
@@ -418,7 +427,7 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Writes the hooks of integrators by which states satisfy the constraints.
+/// Writes the integrator hooks that make states satisfy the constraints.
 pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
@@ -458,7 +467,7 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
     );
 }
 
-/// The trait of constrained mechanisms, in terms of the inherent functions.
+/// Writes the functions of the trait `Constrained`, which call the inherent functions.
 pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, residuals, multipliers, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
@@ -478,7 +487,8 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     );
 }
 
-/// Derivatives of the motion on which violations decay, for methods of integration that come by the trait of constraints.
+/// Writes the derivatives of the stabilised motion, in which constraint violations decay. Integration methods
+/// call them through the trait `Constrained`.
 pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
     let (scalar, q, v, u) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.vector(s.nu));
     let _ = writeln!(
@@ -491,13 +501,14 @@ pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// Whether derivatives of the equations determine those of accelerations and multipliers: forces of friction that follow from
-/// multipliers are not among them.
+/// Returns true if the derivatives of the equations determine those of accelerations and multipliers. They do
+/// not for sliding contacts, whose friction depends on multipliers.
 pub fn are_differentiable(c: &Constraints) -> bool {
     !c.names.is_empty() && c.slipping.is_empty()
 }
 
-/// What leads generic code from the trait of derivatives to that of constraints.
+/// Writes the function with which generic code gets from the trait `Derivatives` to the trait
+/// `ConstrainedDerivatives`.
 pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if are_differentiable(c) {
         let _ = writeln!(
@@ -513,7 +524,7 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     }
 }
 
-/// The trait of derivatives of constrained mechanisms.
+/// Writes the function of the trait `ConstrainedDerivatives`.
 pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());

@@ -1,4 +1,4 @@
-//! What mechanisms with contacts that open and close have besides.
+//! Generated code of mechanisms with unilateral contacts.
 
 use super::interface::Interface;
 use super::signature::Signature;
@@ -6,29 +6,31 @@ use crate::catalogue::{ContactSizes, Need, Shape};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// A contact that opens and closes.
+/// A unilateral contact.
 #[derive(Clone, Debug)]
-pub struct Touching {
-    /// Its name.
+pub struct UnilateralContact {
+    /// Name of the contact.
     name: String,
-    /// How many rates it has: that of its gap, and those of slip, or of turning alone.
+    /// Number of contact velocities: the normal velocity and the slip velocities, or the angular velocities
+    /// of a friction moment.
     rates: usize,
-    /// The contact that presses, if this is a moment of friction.
+    /// Index of the contact that supplies the normal force, if this is a friction moment.
     pressed_by: Option<usize>,
-    /// Its gap is an angle.
+    /// True if the gap is an angle.
     turns: bool,
-    /// Restitution is a ratio of impulses.
+    /// True if the coefficient of restitution is a ratio of impulses (Poisson), false if it is a ratio of
+    /// velocities (Newton).
     of_impulses: bool,
-    /// Coefficients of friction, restitution and static friction, if they are numbers.
+    /// Coefficients of friction, restitution and static friction; `None` if they depend on parameters.
     laws: [Option<f64>; 3],
-    /// The static coefficient of friction differs from the kinetic one.
+    /// True if the static coefficient of friction differs from the kinetic one.
     has_stiction: bool,
 }
 
-impl Touching {
-    /// Those of a model.
-    pub fn of(model: &Model<'_>) -> Vec<Touching> {
-        let touching = |c: &crate::mechanism::Contact<'_>| Touching {
+impl UnilateralContact {
+    /// Returns the contacts of a model.
+    pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
+        let touching = |c: &crate::mechanism::Contact<'_>| UnilateralContact {
             name: c.name.clone(),
             rates: c.rates.len(),
             pressed_by: c.pressed_by,
@@ -40,9 +42,9 @@ impl Touching {
         model.contacts.iter().map(touching).collect()
     }
 
-    /// One, where only the equations could tell how many there are.
-    pub fn unknown() -> Touching {
-        Touching {
+    /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
+    pub fn unknown() -> UnilateralContact {
+        UnilateralContact {
             name: String::new(),
             rates: 1,
             pressed_by: None,
@@ -54,8 +56,8 @@ impl Touching {
     }
 }
 
-/// Names, and where the rates of each begin.
-pub fn write_constants(out: &mut String, contacts: &[Touching]) {
+/// Writes the constants for the names of the contacts and the rows of their velocities.
+pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
     if contacts.is_empty() {
         return;
     }
@@ -70,12 +72,12 @@ pub fn write_constants(out: &mut String, contacts: &[Touching]) {
     let _ = writeln!(
         out,
         "/// Name of every contact.\npub const CONTACTS: [&'static str; {count}] = {names:?};
-        /// Which of the rates belong to each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
+        /// Rows of the contact velocities of each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
         ranges.join(", ")
     );
 }
 
-/// The runtime's trait of mechanisms with contacts.
+/// Writes the items of the trait `Contacts`.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let ContactSizes { count, rates: rows } = i.facts.contacts;
     let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
@@ -133,7 +135,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
-/// The runtime's trait of their derivatives.
+/// Writes the function of the trait `ContactDerivatives`.
 pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let rows = i.facts.contacts.rates;
     let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
@@ -147,7 +149,7 @@ pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>)
     );
 }
 
-/// What the trait of mechanisms has because of contacts.
+/// Writes the integrator hooks of mechanisms with contacts.
 pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.contacts.is_empty() {
         return;
@@ -171,7 +173,8 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
-/// The velocity of one configuration in the axes, and the speeds, of another.
+/// Returns the hook that expresses a velocity in the axes, and in the generalized speeds, of another
+/// configuration.
 fn carry(i: &Interface<'_>, s: &Signature<'_>) -> String {
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let (name, body) = match i.facts.speeds {
@@ -186,13 +189,13 @@ fn carry(i: &Interface<'_>, s: &Signature<'_>) -> String {
     format!("#[inline]\nfn carry(&self, t: {scalar}, {name}: &{q}, dv: &{v}, v: &{v}) -> {v} {{ {body} }}")
 }
 
-/// A table for the struct's documentation.
-pub fn write_docs(text: &mut String, contacts: &[Touching]) {
+/// Adds a table of the contacts to the documentation of the struct.
+pub fn write_docs(text: &mut String, contacts: &[UnilateralContact]) {
     if contacts.is_empty() {
         return;
     }
     text.push_str(
-        "\n# Contacts\n\nThey open and close: `linkwork::contact`. Without contact in the functions of the dynamics.\n\n| | contact | gap | rates of slip | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
+        "\n# Contacts\n\nUnilateral contacts, see `linkwork::contact`. The functions of the dynamics assume that all are separated.\n\n| | contact | gap | slip velocities | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
     );
     for (k, contact) in contacts.iter().enumerate() {
         let [friction, restitution, stiction] =
@@ -202,10 +205,10 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
         let friction =
             if contact.has_stiction { format!("{friction}, at rest {stiction}") } else { friction };
         let unit = if contact.turns { "rad" } else { "m" };
-        // A moment of friction turns against the spin or the rolling of its contact.
+        // A friction moment opposes the spinning or the rolling of its contact.
         let (slip, friction) = match contact.pressed_by {
             None => ((contact.rates - 1).to_string(), friction),
-            Some(_) => (format!("{} of turning", contact.rates), format!("{friction} m")),
+            Some(_) => (format!("{} angular", contact.rates), format!("{friction} m")),
         };
         let _ = writeln!(text, "| {k} | `{}` | {unit} | {slip} | {friction} | {restitution} |", contact.name);
     }

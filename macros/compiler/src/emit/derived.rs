@@ -1,20 +1,23 @@
-//! What stands for a struct that cannot be had as the user's code expects it, because its derives have seen its elements or
-//! its file cannot be read: a mistake that is told once.
+//! Replacement for a struct that cannot be generated as the user's code expects it, because derives have
+//! processed its elements or its file cannot be read. The error is reported once.
 
 use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// The struct's name for a type that the mistake is an argument of. Code of derives that have seen the elements names them as
-/// fields, the user's code leaves them out, and no struct suits both; nor do any sizes suit code that uses a robot whose file is
-/// not there. But of a type with a mistake in its arguments rustc says nothing more, whatever fields and methods it is asked for.
-pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream {
+/// Returns a struct, and the name of the user's struct as an alias whose const argument is the error.
+///
+/// Code of derives that have processed the elements accesses them as fields, while the user's code omits
+/// them, hence no struct suits both. If a robot's file is missing, no sizes suit the code that uses the
+/// robot. For a type with an error in its arguments, however, rustc reports no further errors about fields
+/// and methods.
+pub fn error_type(shell: &Shell, error: &TokenStream) -> TokenStream {
     let Shell { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
     let hidden = format_ident!("__{}Mistaken", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
     let names = generics.type_params().map(|parameter| &parameter.ident);
     let (all, _, _) = generics.split_for_impl();
-    // A struct without parameters is a value of its name.
+    // The name of a struct without parameters is also a value.
     let fields: Vec<_> = parameters.iter().chain(tables).collect();
     let value = fields.is_empty().then(|| {
         quote! {
@@ -26,7 +29,7 @@ pub fn a_mistake_in_a_type(shell: &Shell, mistake: &TokenStream) -> TokenStream 
         #(#attributes)*
         #visibility struct #hidden<#(#bounds,)* const MISTAKE: bool> #condition { #(#fields),* }
         #[allow(type_alias_bounds, reason = "the bounds of the struct")]
-        #visibility type #ident #all = #hidden<#(#names,)* { #mistake }>;
+        #visibility type #ident #all = #hidden<#(#names,)* { #error }>;
         #value
     }
 }

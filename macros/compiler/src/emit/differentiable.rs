@@ -1,5 +1,5 @@
-//! The runtime's trait of derivatives, and what it needs beside functions that follow from equations: derivatives on the
-//! configuration space and of the inputs' forces.
+//! Implementations of the runtime's traits of derivatives, and the functions that do not result from the
+//! equations of motion: derivatives on the configuration space and those of the forces of inputs.
 
 use super::interface::Interface;
 use super::signature::Signature;
@@ -9,8 +9,8 @@ use crate::lower::Operand;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// Functions of the configuration space to first order, and the forces of the inputs to first order. Without parts of the
-/// configuration space, for a mechanism that failed to compile, their bodies never return.
+/// Writes the derivatives of the functions on the configuration space and of the forces of inputs. Without
+/// `charts`, for a mechanism that failed to compile, the bodies never return.
 pub fn write_methods(
     out: &mut String,
     charts: Option<&[Chart]>,
@@ -32,7 +32,7 @@ pub fn write_methods(
     );
     let turned =
         charts.filter(|_| !i.facts.speeds).map_or("::core::option::Option::None".to_string(), |charts| {
-            let (first, end) = turned(charts);
+            let (first, end) = rotational_range(charts);
             format!("::core::option::Option::Some(({first}, {end}))")
         });
     let _ = writeln!(
@@ -43,13 +43,13 @@ pub fn write_methods(
     for (name, about, arguments, first) in [
         (
             "integrate",
-            "`(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, at any `q`: how the result moves with `q` and with `dv`, for ball and free joints in body axes; identities for plain coordinates.",
+            "Returns the derivatives `(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, which are the same for all `q`. Displacements of ball and free joints are in body axes. The derivatives are identities for plain coordinates.",
             format!("dv: &{v}"),
             "identity",
         ),
         (
             "tangent_rate",
-            "`(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate); zero and the identity for plain coordinates.",
+            "Returns the derivatives `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate): zero and the identity for plain coordinates.",
             format!("dv: &{v}, v: &{v}"),
             "zeros",
         ),
@@ -96,8 +96,9 @@ pub fn write_methods(
     );
 }
 
-/// The velocity along which each input pushes, if each is one entry of the generalized forces and nothing else: without inputs there
-/// are no such forces, so that those with constant derivatives by the inputs depend on no state.
+/// Returns the index of the velocity along which each input acts, if every input is exactly one entry of the
+/// generalized forces. Without inputs these forces are zero; if their derivatives by the inputs are constant,
+/// the derivatives do not depend on the state.
 fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
     let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
     let is = |o: &Operand, x: f64| *o == Operand::Const(x);
@@ -110,8 +111,9 @@ fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
     columns.collect()
 }
 
-/// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations, and with the multipliers of
-/// constraints.
+/// Writes the second derivatives of forward dynamics. They combine the second derivatives of inverse dynamics
+/// with the first derivatives of the accelerations, and for mechanisms with constraints with those of the
+/// multipliers.
 pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_>, s: &Signature<'_>) {
     if !has_second(i) {
         return;
@@ -125,12 +127,12 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
         let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
         let t = if s.time { "t" } else { &zero };
         (
-            "Those of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, along with how accelerations and multipliers change.",
+            "They combine the second derivatives of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, with the first derivatives of accelerations and multipliers.",
             format!("::linkwork::__private::constrained_second_derivatives(self, {t}, q, v, tau, lambda)"),
         )
     } else {
         (
-            "With `μ = M⁻¹ λ` they are those of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations change with `q` and `v` as [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) says.",
+            "With `μ = M⁻¹ λ` they are the second derivatives of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations depend on `q` and `v` by [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives).",
             format!(
                 "let first = self.forward_dynamics_derivatives({pass}q, v, tau);
             let a = self.forward_dynamics({pass}q, v, tau);
@@ -141,7 +143,7 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
     let _ = writeln!(
         out,
         "/// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`, with `v̇` by [`forward_dynamics`](Self::forward_dynamics): the Hessians of
-        /// its entries, contracted with the factors `lambda`. Of mixed ones the rows are those of `q`. Others are zero.
+        /// its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.
         ///
         /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and
         /// free joints `dq` is a motion in body axes.
@@ -155,18 +157,20 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
     );
 }
 
-/// True if there are second derivatives of forward dynamics: forces of contacts that slip have none.
+/// Returns true if second derivatives of forward dynamics are available: they are requested and no contact
+/// slides.
 pub fn has_second(i: &Interface<'_>) -> bool {
     let slips = i.facts.constraints.is_some_and(|c| c.slipping > 0);
     i.facts.requests.second_derivatives && !slips
 }
 
-/// True if displacements of the configuration do not simply add up, and their rates have second derivatives that are given.
+/// Returns true if the configuration space is curved and the second derivatives of the rate of displacements
+/// are therefore generated. They are not generated with generalized speeds.
 fn curves(i: &Interface<'_>, s: &Signature<'_>) -> bool {
     s.nq != s.nv && !i.facts.speeds
 }
 
-/// Second derivatives of the rate of displacements.
+/// Writes the second derivatives of the rate of displacements.
 fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     let _ = writeln!(
@@ -184,7 +188,7 @@ fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signatur
     out.push_str("}\n");
 }
 
-/// The trait of second derivatives of constrained mechanisms.
+/// Writes the function of the trait `ConstrainedSecondDerivatives`.
 pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let (q, v, multipliers) = (s.vector(s.nq), s.vector(nv), s.vector(nc));
@@ -198,8 +202,8 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
     );
 }
 
-/// The velocities of ball and free joints, from the first up to another.
-fn turned(charts: &[Chart]) -> (usize, usize) {
+/// Returns the half-open range that contains all velocities of ball and free joints.
+fn rotational_range(charts: &[Chart]) -> (usize, usize) {
     let velocities = charts.iter().filter_map(|chart| match *chart {
         Chart::Plain(..) => None,
         Chart::Ball(_, v) => Some((v.0, v.0 + 3)),
@@ -209,7 +213,8 @@ fn turned(charts: &[Chart]) -> (usize, usize) {
     velocities.reduce(both).unwrap_or((0, 0))
 }
 
-/// The blocks of ball and free joints, of these arguments.
+/// Writes the statements that compute the diagonal blocks of ball and free joints and put them into the
+/// result.
 fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
     for chart in charts {
         let (kind, v, n) = match *chart {
@@ -233,7 +238,7 @@ fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
     out.push_str("(first, second)\n");
 }
 
-/// The functions of the trait of second derivatives, in terms of the inherent ones.
+/// Writes the functions of the trait `SecondDerivatives`, which call the inherent functions.
 pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     if i.facts.constraints.is_some() {
@@ -276,7 +281,7 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
     }
 }
 
-/// The trait's functions, in terms of the inherent ones.
+/// Writes the functions of the trait `Derivatives`, which call the inherent functions.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
@@ -323,7 +328,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     }
 }
 
-/// How accelerations change under inputs, for methods of integration.
+/// Writes the hook with the derivatives of accelerations under inputs, for implicit integration methods.
 pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
     use Argument::{Q, U, V};
     let _ = writeln!(

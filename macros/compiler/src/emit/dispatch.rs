@@ -1,5 +1,5 @@
-//! Large functions choose their arithmetic at run time: their bodies stand in implementations of a trait of the runtime,
-//! generic over the arithmetic, and the functions themselves call whichever instance suits the processor.
+//! Large functions, which select their arithmetic at run time. Their bodies are implementations of a runtime
+//! trait, generic over the arithmetic. The functions themselves call the instance that suits the processor.
 
 use super::body::write_body;
 use super::function::{write_function, write_head};
@@ -11,45 +11,50 @@ use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
 
-/// Most operations of a function that has a body of its own for debug builds: both are read by the compiler, whichever it
-/// takes.
+/// Maximum number of operations of a function with a separate body for debug builds. The compiler processes
+/// both bodies in any build.
 const LARGEST: usize = 5000;
 
-/// The bodies of a type's functions that choose.
+/// Bodies of the functions of a type that select their arithmetic at run time.
 pub struct Bodies {
-    /// There are any.
+    /// True if functions may select their arithmetic at run time.
     wanted: bool,
+    /// Bodies so far.
     list: Vec<Body>,
 }
 
+/// Body of a function, generic over the arithmetic.
 struct Body {
-    /// The types of the arguments, a tuple.
+    /// Types of the arguments, as a tuple.
     types: String,
-    /// Their names.
+    /// Names of the arguments, as a tuple.
     names: String,
+    /// Type of the result.
     result: String,
-    /// It takes several states at once.
+    /// True for a function of several states.
     simd: bool,
+    /// Statements of the body.
     text: String,
-    /// For debug builds.
+    /// Statements of the body for debug builds, if it is separate.
     debug: Option<String>,
 }
 
-/// True for a function that chooses. What calls others multiplies their matrices.
+/// Returns true for a function that selects its arithmetic at run time. A function that calls other functions
+/// multiplies their matrices and counts as large.
 fn is_large(f: &Function) -> bool {
-    // One that calls the one that is given matrices does no more.
+    // A function that only calls its variant with matrix arguments has no arithmetic of its own.
     filled(f).is_none() && (f.shape.calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
 }
 
 impl Bodies {
-    /// None so far, and none ever if they are not wanted.
+    /// Returns an empty list of bodies, which stays empty if `wanted` is false.
     pub fn new(wanted: bool) -> Bodies {
         Bodies { wanted, list: Vec::new() }
     }
 
-    /// Writes a function; its body stays here if it is large.
+    /// Writes a function. The body of a large function is added to the list instead.
     pub fn write_function(&mut self, out: &mut String, f: &Function, s: &Signature<'_>) {
-        // A function of several states does what that of one state does, whatever its lanes.
+        // The functions of one state and of several states are equally large.
         if !self.wanted || !is_large(f) {
             return write_function(out, f, s, false);
         }
@@ -68,7 +73,7 @@ impl Bodies {
         write_body(&mut text, f, s, true, Build::Optimised);
         let debug = match s.scalar.is_in_lanes() {
             true => lanes::one_by_one(f),
-            // What calls others multiplies their matrices.
+            // Calls of other functions are followed by products of their matrices, which are large.
             false if f.shape.calls() || f.program.instructions.len() > LARGEST => None,
             false => {
                 let mut text = String::new();
@@ -79,7 +84,7 @@ impl Bodies {
         self.list.push(Body { types, names, result: s.result(f), simd: s.scalar.is_in_lanes(), text, debug });
     }
 
-    /// Writes the bodies of the functions of a type of this name.
+    /// Writes the bodies of the functions of the type `name`.
     pub fn write(&self, out: &mut String, name: &str, head: &Head) {
         let Head { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Documentation of the user's struct: what the mechanism is, in order of its coordinates, with operation counts.
+//! Documentation of the user's struct: coordinates, units, limits, constraints, contacts, equations and
+//! operation counts.
 
 use super::interface::Interface;
 use super::{contacts, limits};
@@ -11,17 +12,17 @@ use crate::mechanism::{Freedom, Quantity};
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// A part of the documentation, and where it is read.
+/// A part of the documentation, with the place where it is shown.
 pub enum Part {
-    /// On pages and in editors.
+    /// On rustdoc pages and in editors.
     Everywhere(String),
-    /// On pages of rustdoc: HTML.
+    /// On rustdoc pages only: HTML.
     Pages(String),
-    /// In editors, which show what a person reads in the source.
+    /// In editors only, which show plain text.
     Editors(String),
 }
 
-/// Paragraphs for the struct's rustdoc.
+/// Returns the documentation of the struct.
 pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut text = String::from("\n\n");
@@ -42,7 +43,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     }
     if interface.facts.speeds {
         text.push_str(
-            "- Generalized speeds are among the velocities: `rates_of_speeds` gives those of the joints\n",
+            "- Generalized speeds are among the velocities: `rates_of_speeds` returns the joint velocities\n",
         );
     }
     list(&mut text, "Inputs `u`", &interface.inputs);
@@ -57,13 +58,13 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     constraints(&mut text, interface);
     contacts::write_docs(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {
-        text.push_str("\n# Rounded numbers\n\nOther than in the file, by `snap`:\n\n");
+        text.push_str("\n# Rounded numbers\n\nNumbers of the file that `snap` has rounded:\n\n");
         for number in interface.snapped {
             let _ = writeln!(text, "- {number}");
         }
     }
     if !interface.left_out.is_empty() {
-        text.push_str("\n# Left out\n\nIn the file, and not in the mechanism:\n\n");
+        text.push_str("\n# Omitted\n\nElements of the file that are not in the mechanism:\n\n");
         for line in interface.left_out {
             let _ = writeln!(text, "- {line}");
         }
@@ -71,14 +72,14 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let about = match interface.facts.kinematic {
             true => {
-                "There are no dynamics, by `inertia = none`: what needs masses and inertias is left out, and the trait `Mechanism` with it."
+                "There are no dynamics, by `inertia = none`: functions that need masses and inertias are omitted, and so is the trait `Mechanism`."
             }
             false if interface.velocities.is_empty() => "Nothing moves.",
             false if interface.facts.requests.equations == Printed::Structure => {
-                "`M(q) v̇ + h(q, v) = τ`, whose terms are left out by `equations = structure`."
+                "`M(q) v̇ + h(q, v) = τ`, whose terms are omitted by `equations = structure`."
             }
             false => {
-                "`M(q) v̇ + h(q, v) = τ`, whose terms are too many to be read; `equations = lagrange` among the attribute's arguments writes up to some thousand."
+                "`M(q) v̇ + h(q, v) = τ`, which has too many terms to be readable; the option `equations = lagrange` prints up to some thousand."
             }
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");
@@ -90,12 +91,12 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         equations(&mut parts, &mut text, "Equations of motion", &output.equations, "<details>");
     }
     for linear in &output.linear_equations {
-        // The text says more than equations.
+        // The text contains more than the equations.
         equations(&mut parts, &mut text, "Linear equations", linear, "<details open>");
     }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
         text.push_str("\n# Conserved\n\n");
-        text.push_str(if kept.list.is_empty() { "Nothing that is looked for.\n" } else { "" });
+        text.push_str(if kept.list.is_empty() { "None of the tested quantities.\n" } else { "" });
         kept.list.iter().for_each(|name| {
             let _ = writeln!(text, "- {}", name.trim_matches('"'));
         });
@@ -106,7 +107,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     parts
 }
 
-/// A section with equations: typeset on pages, above the text that editors show alone.
+/// Adds a section with equations: typeset on pages, with the text folded below; in editors the text alone.
 fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &Written, details: &str) {
     let _ = writeln!(text, "\n# {title}");
     parts.push(Part::Everywhere(std::mem::take(text)));
@@ -116,11 +117,12 @@ fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &
         "\n{page}\n\n{details}<summary>As text</summary>\n{plain}\n</details>\n\n"
     )));
     parts.push(Part::Editors(plain));
-    // HTML ends at an empty line, of which rustdoc drops one.
+    // An HTML block ends at an empty line, and rustdoc drops one empty line.
     text.push('\n');
 }
 
-/// A table of what the functions cost, and of what a worst case is reckoned from; nothing where they cost nothing.
+/// Returns a table of the operation counts of the functions, with the values from which a worst-case
+/// execution time is estimated; empty if no function has any operation.
 pub fn operations(functions: &[Function]) -> String {
     let mut lines = String::new();
     let mut row = |name: &str, program: &Program| {
@@ -134,8 +136,8 @@ pub fn operations(functions: &[Function]) -> String {
     };
     for f in functions {
         let name = match f.id {
-            Id::PassiveForces => "passive forces, which others call".to_string(),
-            Id::PassiveDerivatives => "derivatives of these, which others call".to_string(),
+            Id::PassiveForces => "passive forces, called by other functions".to_string(),
+            Id::PassiveDerivatives => "their derivatives, called by other functions".to_string(),
             Id::ConstrainedDynamics => format!("`{}`", f.name.trim_start_matches('_')),
             _ if f.is_hidden() => continue,
             _ => format!("`{}`", f.name),
@@ -144,18 +146,18 @@ pub fn operations(functions: &[Function]) -> String {
             row(&name, &f.program);
         }
         if let Some(program) = &f.program.simd {
-            row("the same in lanes", program);
+            row("its variant in lanes", program);
         }
     }
     if lines.is_empty() {
         return lines;
     }
     format!(
-        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | held | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nStraight lines without loops and recursion. *Held* are the most numbers at once beside the arguments, those that are returned among them; with 8 bytes each (`f64`) they are what an optimised build needs of the stack, apart from copies of what is returned. *Branches* are taken for angles beyond 10⁵ rad (one for all of them), in tables and in functions of the library; none where it says 0. The chapter `speed` of the guide says how a worst case is reckoned.\n"
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | live values | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nThe code is straight-line, without loops and recursion. *Live values* is the maximum number of values that are live at once in addition to the arguments, including returned values. With 8 bytes each (`f64`) they are the stack that an optimised build needs, apart from copies of the result. *Branches* are possible for angles beyond 10⁵ rad (one for all angles), in tables and in functions of the math library. The chapter `speed` of the guide explains how to estimate a worst-case execution time.\n"
     )
 }
 
-/// The constraints, and what they leave free.
+/// Adds the section on constraints and degrees of freedom.
 fn constraints(text: &mut String, i: &Interface<'_>) {
     let c = &i.constraints;
     if c.names.is_empty() {
@@ -176,17 +178,18 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
         let _ = writeln!(text, "| `λ[{k}]` | `{name}` | {what} | {residual} | {multiplier} |");
     }
     text.push('\n');
-    list(text, "Left out, because they follow from these", &c.redundant);
+    list(text, "Omitted, because they depend on these", &c.redundant);
     let dependent = (speeds + c.names.len()).saturating_sub(i.velocities.len());
     if dependent > 0 {
         let _ = writeln!(
             text,
-            "- Redundant where the constraints hold: {dependent} of them; multipliers of least norm share the forces"
+            "- Redundant if the constraints hold: {dependent}; the multipliers have minimum norm"
         );
     }
 }
 
-/// Which functions evaluate limbs or joints as the lanes of vectors, and which coordinates those limbs have.
+/// Adds the section on SIMD lanes: the functions that evaluate identical limbs or joints as lanes, and the
+/// coordinates of these limbs.
 fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let shown = output.functions.iter().filter(|f| !f.name.starts_with("__"));
     let in_lanes: Vec<(&str, &Program)> =
@@ -195,11 +198,11 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(
         text,
-        "\n# Lanes\n\nAlike limbs, or joints of one path to the root, are evaluated side by side, as the lanes of vectors, by {}. Operations on all lanes count once.",
+        "\n# Lanes\n\nIdentical limbs, or joints of one path to the root, are evaluated as SIMD lanes by {}. An operation on all lanes counts once.",
         names.join(", ")
     );
     if !most.gathers.is_empty() {
-        text.push_str("The coordinates of limbs that go together:\n\n");
+        text.push_str("Corresponding coordinates of the limbs:\n\n");
     }
     for gather in &most.gathers {
         let name = |s: &Symbol| match Quantity::of(*s) {
@@ -214,7 +217,7 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     }
 }
 
-/// The unit of everything that has a name.
+/// Adds the table of the units of parameters, coordinates, inputs, tables and outputs.
 fn units(text: &mut String, i: &Interface<'_>) {
     let plain = |name: String| name.trim_start_matches("r#").to_string();
     let parameters: Vec<String> = i.shell.accesses().into_iter().map(plain).collect();
@@ -233,7 +236,7 @@ fn units(text: &mut String, i: &Interface<'_>) {
     let mut row = |what: &str, name: &str, unit: &str| {
         let _ = write!(text, "| {what} | `{name}` | {unit} |");
         if !i.shell.notes.is_empty() {
-            // Once for all coordinates of a joint; their rates go without.
+            // The note of a joint is printed once, for the first of its coordinates.
             let note = note(i, name).filter(|note| !said.contains(note));
             said.extend(note);
             let _ = write!(text, " {} |", note.unwrap_or_default().replace('|', "\\|"));
@@ -256,13 +259,13 @@ fn units(text: &mut String, i: &Interface<'_>) {
     }
 }
 
-/// What the user says of the field that a name belongs to.
+/// Returns the user's doc comment of the field to which a name belongs.
 pub fn note<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a str> {
     let field = name.split('.').next().unwrap_or(name);
     i.shell.notes.iter().find(|(known, _)| known == field).map(|(_, note)| note.as_str())
 }
 
-/// Documentation of an output's function: what the user says of it, then what it is.
+/// Returns the documentation of an output's function: the user's doc comment, then the description `what`.
 pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
     match note(i, name) {
         Some(note) => format!(" {note}\n\n The output `{name}`, {what}"),
@@ -270,10 +273,10 @@ pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
     }
 }
 
-/// Most lines of a declaration that is not folded.
+/// Maximum number of lines of a declaration that is not folded.
 const UNFOLDED: usize = 40;
 
-/// The declaration as the user wrote it.
+/// Adds the user's declaration as source text.
 fn declaration(text: &mut String, i: &Interface<'_>) {
     let Some(code) = &i.shell.declaration else { return };
     // Doc comments may contain code.
@@ -283,10 +286,7 @@ fn declaration(text: &mut String, i: &Interface<'_>) {
     }
     let code = format!("{fence}text\n{code}\n{fence}\n");
     let _ = match code.lines().count() > UNFOLDED {
-        true => writeln!(
-            text,
-            "# Declaration\n\n<details><summary>As it is written</summary>\n\n{code}\n</details>\n"
-        ),
+        true => writeln!(text, "# Declaration\n\n<details><summary>Source</summary>\n\n{code}\n</details>\n"),
         false => writeln!(text, "# Declaration\n\n{code}"),
     };
 }

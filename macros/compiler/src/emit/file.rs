@@ -1,4 +1,5 @@
-//! Fields that hold figures of a file, and what gives them and takes them.
+//! Struct fields with inertial parameters and placements of an imported file, and the functions that get and
+//! set them.
 
 use super::interface::{ALLOW, Head, Interface};
 use super::item::runtime;
@@ -11,7 +12,7 @@ use quote::{ToTokens, format_ident, quote};
 use std::fmt::Write;
 use syn::Ident;
 
-/// The fields of the struct.
+/// Returns the fields of the struct for values of the file.
 pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
     let runtime = runtime(i.shell);
     let scalar = scalar(i);
@@ -27,12 +28,14 @@ pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
     i.shell.file_fields.iter().map(field).collect()
 }
 
+/// Returns the scalar type of the fields.
 fn scalar(i: &Interface<'_>) -> Ident {
     let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
     format_ident!("{}", name.one())
 }
 
-/// The file's own figures, and all links at once.
+/// Writes the constructors from the values of the file, and the functions that get and set the inertial
+/// parameters of all links.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if !i.facts.meet(Need::FileParameters) {
         return;
@@ -64,12 +67,12 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if own.is_empty() && tables.is_empty() && !s.is_generic() {
         let _ = writeln!(
             out,
-            "/// The mechanism as the file says it is.\npub const FILE: Self = Self {{ {all} }};"
+            "/// The mechanism with the values of the file.\npub const FILE: Self = Self {{ {all} }};"
         );
     }
     let _ = writeln!(
         out,
-        "/// The mechanism with the figures of the file, and the parameters that it does not have.
+        "/// Returns the mechanism with the values of the file and the given values of the other parameters.
         #[inline]\n#[must_use]\npub {constant}fn from_file({}) -> Self {{\n{before}Self {{ {all} }}\n}}",
         arguments.join(", ")
     );
@@ -85,7 +88,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     let _ = writeln!(
         out,
         "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] = {names:?};
-        /// The mass properties of all links that have them as parameters, in the order of `LINKS`.
+        /// Returns the mass properties of all links that have them as parameters, in the order of `LINKS`.
         #[inline]\n#[must_use]\npub fn inertials(&self) -> {kind} {{ [{}] }}
         /// Sets the mass properties of all links that have them as parameters, in the order of `LINKS`.
         #[inline]\npub fn set_inertials(&mut self, links: &{kind}) {{ {} }}",
@@ -95,14 +98,13 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if i.facts.meet(Need::Asks(Word::Regressor)) {
         let _ = writeln!(
             out,
-            "/// Puts identified base parameters back: gives all of `LINKS` the mass properties with these base parameters that
-            /// differ least from those that they have, and which bodies can have. See
-            /// [`put_back`](::linkwork::identification::put_back).
+            "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these base parameters and
+            /// differ least from the current ones. See [`put_back`](::linkwork::identification::put_back).
             ///
             /// # Errors
             ///
-            /// If no bodies have these base parameters, or the links have mass properties to begin with that no body has. The
-            /// mechanism stays as it is then.
+            /// If no physically consistent mass properties have these base parameters, or the current mass properties are not
+            /// physically consistent. The mechanism is then not changed.
             #[inline(never)]
             pub fn set_base_parameters(&mut self, base: &::linkwork::nalgebra::SVector<{}, {}>) -> ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
                 ::linkwork::identification::put_back(self, base)
@@ -113,7 +115,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     }
 }
 
-/// What puts base parameters back.
+/// Writes the trait `Identifiable`, which sets inertial parameters from base parameters.
 pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
     if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meet(*need)) {
         return;
@@ -132,12 +134,12 @@ pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarS
     );
 }
 
-/// The fields that hold mass properties.
+/// Returns the fields that hold inertial parameters.
 fn links<'a>(i: &'a Interface<'_>) -> Vec<&'a FileField> {
     i.shell.file_fields.iter().filter(|field| field.kind == FileFieldKind::Inertial).collect()
 }
 
-/// The file's figures, as a field holds them.
+/// Returns the expression of a field's value in the file.
 fn value(field: &FileField, s: &ScalarSpelling) -> String {
     let numbers: Vec<String> = field.values.iter().map(|x| s.constant(*x)).collect();
     match (field.kind, numbers.as_slice()) {

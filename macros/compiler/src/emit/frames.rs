@@ -1,4 +1,5 @@
-//! Access to named frames: for each frame, calls of the steps along its path, without computing anything else.
+//! Generated access to named frames. The functions of a frame call only the kinematic steps along its path
+//! from the ground.
 
 use super::body::write_body;
 use super::instruction::Build;
@@ -11,9 +12,9 @@ use std::fmt::Write;
 
 const PARENT: Argument = Argument::Given("p", 0, 12);
 
-/// Writes the steps along the links and what calls them: the placements of all frames and the implementations of
-/// `NamedFrame`, for a type of this name. The steps are methods of a trait that is known in this block alone, so that neither
-/// documentation nor editors list them.
+/// Writes the kinematic steps and the functions that call them, for a type of this name: the placements of
+/// all frames and the implementations of `NamedFrame`. The steps are methods of a private trait inside this
+/// block, so that neither documentation nor editors list them.
 pub fn write_frames(
     out: &mut String,
     name: &str,
@@ -55,22 +56,24 @@ pub fn write_frames(
     out.push_str("};\n");
 }
 
-/// Declarations of a trait's methods, and the methods with their bodies.
+/// Methods of the private trait of the steps.
 #[derive(Default)]
 struct StepMethods {
+    /// Declarations, for the trait.
     declarations: String,
+    /// Definitions, for its implementation.
     methods: String,
 }
 
 impl StepMethods {
-    /// Adds a method with a body.
+    /// Adds a method. `attribute` follows `inline` in its attribute, such as `(always)`.
     fn add(&mut self, attribute: &str, signature: &str, body: &str) {
         let _ = writeln!(self.declarations, "{signature};");
         let _ = writeln!(self.methods, "#[inline{attribute}]\n{signature} {{\n{body}}}");
     }
 }
 
-/// Writes the private steps of all links and frames.
+/// Returns the kinematic steps of all links and frames as private methods.
 fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> StepMethods {
     let mut steps = StepMethods::default();
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
@@ -96,12 +99,13 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
-        let given = |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
+        let link_argument =
+            |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
         if !frame.is_link {
-            step(format!("__frame{k}_placement"), given(12), 12, &frame.placement);
+            step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
         }
-        step(format!("__frame{k}_twist"), given(18), 6, &frame.twist);
-        step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
+        step(format!("__frame{k}_twist"), link_argument(18), 6, &frame.twist);
+        step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
     }
     for (k, link) in links.iter().enumerate() {
         write_path(&mut steps, k, link, s);
@@ -110,12 +114,12 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
     steps
 }
 
-/// Time as the first argument of a call, where functions take it.
+/// Returns `t, `, the first argument of a call, if functions take time; otherwise an empty text.
 fn time(s: &Signature<'_>) -> &'static str {
     if s.time { "t, " } else { "" }
 }
 
-/// The links from the ground to a link.
+/// Returns the links from the ground to a link, that link included.
 fn path(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
     let mut path = Vec::new();
     while let Some(k) = link {
@@ -141,7 +145,7 @@ fn frame_placement(k: usize, frame: &FrameSteps) -> String {
     }
 }
 
-/// Body of `frame_placements`: all frames at once, each link once.
+/// Writes the body of `frame_placements`, which computes each link placement once.
 fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     for (k, link) in links.iter().enumerate() {
         write_link_placement(out, k, link, s);
@@ -154,7 +158,7 @@ fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSt
     let _ = writeln!(out, "[{}]", list.join(",\n"));
 }
 
-/// The methods of `NamedFrame` for one frame.
+/// Writes the methods of `NamedFrame` for one frame.
 fn write_frame_impl(
     out: &mut String,
     k: usize,
@@ -164,7 +168,7 @@ fn write_frame_impl(
     s: &Signature<'_>,
 ) {
     let scalar = s.scalar.name();
-    // The steps are written in the velocities of the joints.
+    // The steps take joint velocities.
     let (rates, accelerations) = match speeds {
         true => ("let v = &self.rates_of_speeds(q, v);\n", "let a = &self.__rate_accelerations(q, v, a);\n"),
         false => ("", ""),
@@ -197,14 +201,15 @@ fn write_frame_impl(
     write_jacobian(out, k, frame, links.len(), speeds, s);
 }
 
-/// The placement of the frame's link.
+/// Writes the statement that binds the placement of the frame's link.
 fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
     if let Some(k) = link {
         let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time(s));
     }
 }
 
-/// Writes what is known of a link from the ground on: its placement, its twist, and its twist and acceleration.
+/// Adds the methods that compute kinematics of a link along its path from the ground: the placement, the
+/// twist, and twist and acceleration together.
 fn write_path(steps: &mut StepMethods, k: usize, link: &LinkSteps, s: &Signature<'_>) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.name(), time(s));
@@ -266,8 +271,9 @@ fn write_jacobian(
     );
 }
 
-/// Writes what the Jacobians of frames need of a link: the placements of the links from the ground to it, and their columns
-/// for a point at `o`. Each calls that of the link's parent, so that their length does not grow with the square of a chain's.
+/// Adds the methods for frame Jacobians along the path of a link: the placements of the links from the ground
+/// to it, and its columns for a point at `o`. Each method calls that of the parent link, so that the code of
+/// a chain does not grow quadratically with its length.
 fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
     let (scalar, t, link, count) = (s.scalar.name(), time(s), &links[k], links.len());
     let state = s.parameters(&s.timed(&[Argument::Q]));
@@ -296,7 +302,7 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
     steps.add("(always)", &signature, &body);
 }
 
-/// The columns of a link. Several coordinates that follow one another share a column.
+/// Writes the columns of a link. Coupled coordinates share a column: their contributions are added.
 fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bool], s: &Signature<'_>) {
     let state = if link.driven { format!("{}q, ", time(s)) } else { String::new() };
     let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
@@ -319,7 +325,7 @@ fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bo
     }
 }
 
-/// The trait of frames by number: each is found among its implementations of `NamedFrame`.
+/// Writes the functions of the trait `Frames`, which select an implementation of `NamedFrame` by index.
 pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
     use Argument::{A, Q, T, V};
     let (scalar, nq, nv) = (s.scalar.name(), s.nq, s.nv);

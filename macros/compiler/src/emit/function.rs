@@ -1,12 +1,12 @@
-//! How generated functions are spelt: their arguments, their results, and what stands around their bodies.
+//! Definitions of generated functions: attributes, signature and body.
 
 use super::body::write_body;
 use super::instruction::Build;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// Writes what stands before a function's body, with the brace.
+/// Writes a function's attributes and signature up to the opening brace of its body.
 pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");
@@ -15,8 +15,8 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
     let result = s.result(f);
-    // What goes into given matrices may be all that is wanted.
-    let must_use = if given(f).is_empty() { "#[must_use]\n" } else { "" };
+    // The caller may need only the matrix arguments and ignore the result.
+    let must_use = if matrix_arguments(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",
@@ -26,7 +26,7 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     );
 }
 
-/// Writes a function; without a program its body never returns, for a mechanism that failed to compile.
+/// Writes a function. The body of a stub, for a mechanism that failed to compile, never returns.
 pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
     write_head(out, f, s);
     if stub {

@@ -1,4 +1,4 @@
-//! Implementations for a type: its inherent functions and the runtime's traits.
+//! Implementations of a type: its inherent functions and the runtime's traits.
 
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
@@ -6,7 +6,8 @@ use super::{constraints, contacts, differentiable, lanes, limits};
 use crate::catalogue::{self, Argument, ContactSizes};
 use std::fmt::Write;
 
-/// The inherent functions of a type of this name, and the trait's.
+/// Writes the inherent functions `methods` of the type `name` and the implementations of the runtime's
+/// traits.
 pub fn write_impls(
     head: &Head,
     out: &mut String,
@@ -74,7 +75,8 @@ pub fn write_impls(
     }
 }
 
-/// The head of an implementation of a trait with the sizes of state and inputs and two more.
+/// Writes the head of the implementation of the trait `of`. Its const arguments are the sizes of state and
+/// inputs and the two numbers `more`.
 fn begin_with(
     Head { generics, arguments, bounds }: &Head,
     out: &mut String,
@@ -88,7 +90,7 @@ fn begin_with(
         writeln!(out, "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{");
 }
 
-/// The traits of contacts.
+/// Writes the implementations of the traits of contacts.
 fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     let ContactSizes { count, rates } = i.facts.contacts;
     begin_with(head, out, name, "Contacts", s, [count, rates]);
@@ -101,7 +103,7 @@ fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, 
     }
 }
 
-/// The traits of constraints.
+/// Writes the implementations of the traits of constraints.
 fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     let counts = [i.constraints.holonomic, i.constraints.names.len()];
     begin_with(head, out, name, "Constrained", s, counts);
@@ -123,13 +125,14 @@ fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_
     }
 }
 
-/// The trait's functions, in terms of the inherent ones, which take only what they need.
+/// Writes the items of the trait `Mechanism`. Its functions call the inherent functions, which take only the
+/// arguments that they need.
 fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
     }
-    // A mechanism that failed to compile has none.
+    // The units of a mechanism that failed to compile are unknown.
     for (name, units, n) in
         [("VELOCITY_UNITS", &i.units.velocities, s.nv), ("INPUT_UNITS", &i.units.inputs, s.nu)]
     {

@@ -1,4 +1,4 @@
-//! Instructions and their operands as expressions of Rust.
+//! Rust expressions for instructions and their operands.
 
 use super::pieces::{Level, Piece, Statement};
 use super::scalar::ScalarSpelling;
@@ -9,41 +9,50 @@ use crate::mechanism::Quantity;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// For which builds a body is written.
+/// Builds for which a function body is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// For those that are optimised, and where there is no other body, for all.
+    /// Optimised builds, and all builds of a function without a separate debug body.
     Optimised,
-    /// For those with debug assertions. Without optimisation a call takes longer than what it computes, and every value
-    /// that is passed takes stack of its own: numbers alone, and operators instead of calls.
+    /// Builds with debug assertions. Without optimisation a call takes longer than the operation that it
+    /// computes, and every passed value takes stack of its own. The body therefore uses only scalars, and
+    /// operators instead of calls.
     Debug,
 }
 
-/// What is written of a body, and what is known while it is.
+/// State of the writer of one function body.
 pub struct Writer<'a> {
+    /// Builds for which the body is written.
     pub build: Build,
+    /// Program of the body.
     pub program: &'a Program,
-    /// By value: how many lanes it has, one for none.
+    /// Number of lanes of each value; one for a scalar.
     pub lanes: Vec<usize>,
+    /// Spelling of scalars.
     pub scalar: &'a ScalarSpelling,
-    /// Those of the function, and what it calls.
+    /// Arguments of the function, and results of the functions that it calls.
     pub arguments: Vec<Argument>,
+    /// Statements written so far.
     pub statements: Vec<Statement>,
-    /// By value: its text if it is not bound.
+    /// Text of each value that is not bound to a name.
     pub pieces: Vec<Option<Piece>>,
-    /// How many statements end with the angles, and the arguments that these need.
+    /// Number of statements up to and including sines and cosines.
     pub head: usize,
+    /// Arguments on which the angles depend.
     pub early: Vec<Argument>,
-    /// Operations of `Ops` that are named before all statements, each for so many lanes; none if they are not to be named.
+    /// Operations of `Ops`, with their numbers of lanes, that are bound to names before all statements;
+    /// `None` if operations are called directly.
     pub named: Option<BTreeSet<(&'static str, usize)>>,
 }
 
 impl Writer<'_> {
+    /// Returns the vector of the inputs of a gather.
     pub fn gathered(&self, gather: &[Symbol]) -> String {
         let symbols: Vec<String> = gather.iter().map(|s| self.symbol(*s)).collect();
         format!("Ops::lanes([{}])", symbols.join(", "))
     }
 
+    /// Returns the number of lanes of an operand.
     pub fn width(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
@@ -53,7 +62,7 @@ impl Writer<'_> {
         }
     }
 
-    /// An operand of an operation on so many lanes.
+    /// Returns an operand of an operation on `lanes` lanes; a scalar is broadcast to all lanes.
     fn widened(&mut self, o: Operand, lanes: usize) -> Piece {
         let own = self.width(o);
         let piece = self.operand(o);
@@ -67,6 +76,7 @@ impl Writer<'_> {
         Piece { text, needs: piece.needs, level: Level::Whole }
     }
 
+    /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
     pub fn operand(&mut self, o: Operand) -> Piece {
         let plain = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
         match o {
@@ -80,7 +90,7 @@ impl Writer<'_> {
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
                 let is_input = |a: &Argument| gather.iter().any(|s| a.index(Quantity::of(*s)).is_some());
-                // Parameters of the lanes are no arguments.
+                // Gathers of arguments are bound to names; gathers of parameters are not.
                 plain(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
                     false => self.gathered(gather),
@@ -94,7 +104,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A result: of several states no longer as a vector, but as lanes.
+    /// Returns the text of an output. For several states, a vector register is converted to lanes.
     pub fn output(&mut self, o: Operand) -> Piece {
         let piece = self.operand(o);
         match self.scalar.is_in_lanes() {
@@ -107,11 +117,13 @@ impl Writer<'_> {
         }
     }
 
+    /// Returns the text of a constant, in parentheses if it is negative.
     pub fn constant(&mut self, c: f64) -> String {
         let text = self.scalar.constant(c);
         if c < 0.0 { format!("({text})") } else { text }
     }
 
+    /// Returns the text of an input: a parameter, a prepared value or an entry of an argument.
     pub fn symbol(&self, s: Symbol) -> String {
         let quantity = Quantity::of(s);
         if quantity == Quantity::Time {
@@ -128,7 +140,7 @@ impl Writer<'_> {
             .unwrap_or_else(|| "missing".to_string())
     }
 
-    /// The text of an instruction whose result has so many lanes.
+    /// Returns the text of an instruction whose result has `lanes` lanes.
     pub fn instruction(&mut self, op: Op, lanes: usize) -> Piece {
         match op {
             Op::Neg(a) => {
@@ -184,7 +196,7 @@ impl Writer<'_> {
         Piece { text, needs, level }
     }
 
-    /// `a * b + c` or `a * b - c`.
+    /// Returns `a * b + c` or `a * b - c`.
     fn product_and(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
         let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
         let c = self.operand(c);
@@ -192,7 +204,7 @@ impl Writer<'_> {
         Piece { text, needs: [product.needs, c.needs].concat(), level: Level::Sum }
     }
 
-    /// `c - a * b`.
+    /// Returns `c - a * b`.
     fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
         let c = self.operand(c);
         let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
@@ -200,8 +212,8 @@ impl Writer<'_> {
         Piece { text, needs: [c.needs, product.needs].concat(), level: Level::Sum }
     }
 
-    /// A call of an operation that large bodies name. A number times lanes has an operation of its own: a call less for rustc
-    /// to check and to remember.
+    /// Returns a fused operation. The product of a scalar and a vector has an operation of its own, which
+    /// saves rustc the check of a broadcast.
     fn fused(
         &mut self,
         [function, scaled]: [&'static str; 2],
@@ -217,7 +229,8 @@ impl Writer<'_> {
         self.call_with(&name, factors.into_iter().chain([c]).collect())
     }
 
-    /// The factors of a product of a number and lanes, the number first.
+    /// Returns the factors of a product of a scalar and a vector, the scalar first; `None` for other
+    /// products.
     fn scaled(&mut self, [a, b]: [Operand; 2], lanes: usize) -> Option<Vec<Piece>> {
         let [x, v] = match (self.width(a), self.width(b)) {
             _ if lanes == 1 => return None,
@@ -228,14 +241,15 @@ impl Writer<'_> {
         Some(vec![self.operand(x), self.operand(v)])
     }
 
-    /// The name of an operation on so many lanes, if it gets one.
+    /// Returns the name to which an operation on `lanes` lanes is bound; `None` if operations are called
+    /// directly.
     fn name(&mut self, function: &'static str, lanes: usize) -> Option<String> {
         self.named.as_mut()?.insert((function, lanes));
         Some(if lanes == 1 { function.to_string() } else { format!("{function}{lanes}") })
     }
 
-    /// The operations that are called over and over, each as a value: rustc finds out once, not at every call, what they
-    /// are generic over and whether that has what they ask for.
+    /// Writes the bindings of named operations. With them rustc resolves the generic arguments and checks the
+    /// bounds of an operation once instead of at every call.
     pub fn write_named(&self, out: &mut String) {
         let one = self.scalar.one();
         for (function, lanes) in self.named.iter().flatten() {
@@ -259,7 +273,7 @@ impl Writer<'_> {
         self.call_by(&format!("Ops::{function}"), arguments, lanes)
     }
 
-    /// The value of a table, or one of its derivatives.
+    /// Returns the value of a table, or one of its derivatives.
     fn lookup(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
         let (field, orders) = (self.scalar.table(lookup.table()).to_string(), lookup.orders());
         let list = self.call_by("", x.get(..lookup.variables()).unwrap_or_default(), lanes);

@@ -1,20 +1,20 @@
-//! What the outside sees of a mechanism, and what stands around generated implementations.
+//! Public interface of a mechanism, and the heads of generated implementations.
 
 use super::constraints::Constraints;
-use super::contacts::Touching;
-use super::limits::Limited;
+use super::contacts::UnilateralContact;
+use super::limits::CoordinateLimits;
 use super::signature::Signature;
-use super::validate::Figure;
+use super::validate::ParameterCondition;
 use crate::catalogue::{Argument, Facts, Row};
 use crate::mechanism::{Diagram, Units};
 use crate::syntax::{ScalarType, Shell};
 use quote::ToTokens;
 
-/// Names and types that the outside sees.
+/// Names and types of the public interface.
 pub struct Interface<'a> {
-    /// The struct.
+    /// Declaration of the struct.
     pub shell: &'a Shell,
-    /// Its scalar type.
+    /// Scalar type.
     pub scalar: ScalarType,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
@@ -24,42 +24,42 @@ pub struct Interface<'a> {
     pub inputs: Vec<String>,
     /// Names of the frames.
     pub frames: Vec<String>,
-    /// One line for each joint: what it joins.
+    /// One line for each joint with the bodies that it connects.
     pub structure: Vec<String>,
     /// The constraints.
     pub constraints: Constraints,
-    /// Contacts that open and close.
-    pub contacts: Vec<Touching>,
+    /// Unilateral contacts.
+    pub contacts: Vec<UnilateralContact>,
     /// The limits of coordinates.
-    pub limits: Vec<Limited>,
-    /// What figures that follow from parameters fulfil.
-    pub figures: Vec<Figure>,
+    pub limits: Vec<CoordinateLimits>,
+    /// Conditions on values that depend on parameters.
+    pub figures: Vec<ParameterCondition>,
     /// States of first order, each with its index among the parameters.
     pub states: Vec<(String, usize)>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
-    /// The free-body diagrams among them.
+    /// Free-body diagrams, with the names of their outputs.
     pub diagrams: Vec<(String, Diagram)>,
-    /// Units of all of these and of the parameters.
+    /// Units of coordinates, inputs, outputs, constraints and parameters.
     pub units: Units,
-    /// The files that were read: when one changes, the crate is compiled again.
+    /// Imported files: if one changes, the crate is compiled again.
     pub files: Vec<String>,
-    /// What signatures depend on.
+    /// Facts on which signatures depend.
     pub facts: Facts,
-    /// Large functions choose their arithmetic at run time.
+    /// True if large functions select their arithmetic at run time.
     pub detect: bool,
-    /// Numbers of the file that were rounded.
+    /// Descriptions of rounded numbers of the file.
     pub snapped: &'a [String],
-    /// What is in the file and not in the mechanism.
+    /// Descriptions of elements of the file that are omitted from the mechanism.
     pub left_out: &'a [String],
-    /// What the mechanism does not have, and why.
+    /// Functions and constants that the mechanism does not have, by reason.
     pub absent: Vec<Absent>,
 }
 
-/// Functions and constants that are not there, all for one reason.
+/// Functions and constants that a mechanism lacks for one reason.
 #[derive(Clone, Debug)]
 pub struct Absent {
-    /// The trait of the runtime that says why.
+    /// Trait of the runtime whose error message explains the reason.
     pub reason: &'static str,
     /// Names of the functions.
     pub functions: Vec<String>,
@@ -67,7 +67,7 @@ pub struct Absent {
     pub constants: Vec<&'static str>,
 }
 
-/// What stands before generated implementations.
+/// Attributes of generated implementations.
 pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
 /// Generics of the struct's implementations as text.
@@ -81,7 +81,7 @@ pub struct Head {
 }
 
 impl Head {
-    /// Those of the struct, with the scalar's own bound.
+    /// Returns the generics of the struct, with the bound of a generic scalar added.
     pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
         let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
         let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
@@ -95,7 +95,7 @@ impl Head {
     }
 }
 
-/// The arguments that the inherent function takes of those of the trait's.
+/// Returns the arguments of the trait function that the inherent function takes.
 pub fn needed(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
     (row.declare)(&i.facts).arguments
 }

@@ -1,4 +1,4 @@
-//! The whole output: struct, inherent functions, trait, frames.
+//! The complete generated code: struct, inherent functions, trait implementations and frames.
 
 use super::absent::write_absent;
 use super::constants::{write_constants, write_frame_index};
@@ -22,18 +22,19 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::fmt::Write;
 
-/// Emitted code: the struct as tokens, which keep their places in the user's source, and everything else as text, since
-/// the compiler's own lexer is much faster than tokens made one by one.
+/// Generated code. The struct is stored as tokens, which keep their spans in the user's source. Everything
+/// else is text, because the lexer of the Rust compiler is much faster than tokens that are made
+/// individually.
 #[derive(Debug, Default)]
 pub struct Emitted {
-    /// The struct.
+    /// The struct, with documentation and file dependencies.
     pub tokens: TokenStream,
-    /// Implementations.
+    /// Implementations of the struct's functions and of the runtime's traits.
     pub text: String,
 }
 
 impl Emitted {
-    /// All of it as tokens.
+    /// Returns struct and implementations as tokens.
     pub fn into_tokens(self) -> Result<TokenStream, proc_macro2::LexError> {
         let mut tokens = self.tokens;
         tokens.extend(self.text.parse::<TokenStream>()?);
@@ -41,7 +42,7 @@ impl Emitted {
     }
 }
 
-/// Emits a mechanism that compiled.
+/// Returns the generated code of a mechanism without errors.
 pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
@@ -68,7 +69,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     differentiable::write_methods(&mut methods, Some(&output.charts), &output.functions, interface, &s);
     differentiable::write_second(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
-    // A parameter that drops out of the equations is not a field that nobody reads.
+    // A parameter that drops out of the equations must not cause a warning about an unused field.
     let fields: Vec<String> =
         (0..interface.shell.accesses().len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
     let fields: Vec<String> = fields
@@ -108,7 +109,8 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     emitted
 }
 
-/// Emits the interface alone, so that a mistake in a mechanism is not reported again wherever it is used.
+/// Returns stubs for the interface of a mechanism with an error, so that the error is not reported again at
+/// every use of the mechanism.
 pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants: &[Constant]) -> Emitted {
     let spelling = spelling(interface);
     let s = signature(interface, &spelling);
@@ -180,13 +182,14 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
     }
 }
 
-/// Access to one frame: `frame!(Robot, "tool")` names it, and the compiler checks the name.
+/// Writes the functions for one frame, which `frame!(Robot, "tool")` selects by name; the compiler checks the
+/// name.
 fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     let scalar = s.scalar.name();
     let frame = format!("impl ::linkwork::FrameName<Self, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    // What is not driven in time has no use for it.
+    // A mechanism that does not depend on time takes zero.
     let (t, at) = match s.time {
         true => (format!("t: {scalar}, "), "t".to_string()),
         false => (String::new(), format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
@@ -198,12 +201,12 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
         pub fn frame_placement(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {{
             ::linkwork::FrameName::placement(frame, self, {at}, q)
         }}
-        /// Velocity of a frame: of its origin, then angular; relative to the ground, resolved in ground axes.
+        /// Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.
         #[inline]\n#[must_use]
         pub fn frame_velocity(&self, frame: {frame}, {t}q: &{q}, v: &{v}) -> {six} {{
             ::linkwork::FrameName::velocity(frame, self, {at}, q, v)
         }}
-        /// Acceleration of a frame: of its origin, then angular; relative to the ground, resolved in ground axes; without gravity.
+        /// Acceleration of a frame relative to the ground, in ground axes: acceleration of its origin, then angular acceleration; without gravity.
         #[inline]\n#[must_use]
         pub fn frame_acceleration(&self, frame: {frame}, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {{
             ::linkwork::FrameName::acceleration(frame, self, {at}, q, v, a)
@@ -217,12 +220,13 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// The name under which generated code finds the runtime, where the attribute says where it is.
+/// Returns the alias of the runtime in generated code, for an attribute that contains the path of the
+/// runtime.
 fn alias_of(ident: &syn::Ident) -> String {
     format!("__linkwork_of_{}", ident.to_string().trim_start_matches("r#"))
 }
 
-/// The path of the runtime in tokens.
+/// Returns the path of the runtime as tokens.
 pub(super) fn runtime(shell: &Shell) -> TokenStream {
     match shell.runtime {
         None => quote!(::linkwork),
@@ -230,7 +234,7 @@ pub(super) fn runtime(shell: &Shell) -> TokenStream {
     }
 }
 
-/// The text with the runtime where the attribute says that it is.
+/// Returns the text with the path of the runtime replaced by its alias, if the attribute contains a path.
 fn with_runtime(text: String, shell: &Shell) -> String {
     match shell.runtime {
         None => text,
@@ -238,7 +242,7 @@ fn with_runtime(text: String, shell: &Shell) -> String {
     }
 }
 
-/// Puts struct and implementations together.
+/// Returns the struct with its implementations, without the frames.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, docs: &[Part]) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
@@ -257,9 +261,9 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
         Part::Pages(text) => quote!(#[cfg_attr(doc, doc = #text)]),
         Part::Editors(text) => quote!(#[cfg_attr(not(doc), doc = #text)]),
     });
-    // The types of the elements, so that an editor explains them.
+    // Types of the elements: an editor shows their documentation at the user's keywords.
     let words = elements.iter().map(|(_, kind)| kind);
-    // Under a name of its own, since the path may be one that can be written in the user's source alone.
+    // The alias is needed because the path may be valid only in the user's source.
     let alias = path.as_ref().map(|path| {
         let alias = quote::format_ident!("{}", alias_of(ident));
         quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)

@@ -1,17 +1,18 @@
-//! Functions of several states at once, which the word `batch` asks for: the same bodies with lanes for scalars.
+//! Functions of several states at once, which the option `batch` requests. They have the same bodies, with
+//! lanes in place of scalars.
 
 use super::dispatch::Bodies;
 use super::function::write_function;
 use super::interface::{Interface, needed};
 use super::manifold::write_manifold;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// Writes every public function of the state once more, its name with `_lanes`, if this was asked for; without the parts of
-/// the configuration space, for a mechanism that failed to compile, as stubs.
+/// Writes the variant of every public function of the state for several states, with the suffix `_lanes`, if
+/// the option `batch` is set. Without `charts`, for a mechanism that failed to compile, these are stubs.
 pub fn write_methods(
     out: &mut String,
     bodies: &mut Bodies,
@@ -25,16 +26,16 @@ pub fn write_methods(
     }
     let in_lanes = s.scalar.in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
-    let wanted = |f: &&Function| match f.id {
+    let is_batched = |f: &&Function| match f.id {
         Id::ConstrainedDynamics => !i.constraints.overdetermined,
-        // What other functions call.
+        // Hidden functions that other functions call.
         Id::AccelerationsAndInverse | Id::PassiveForces | Id::PassiveDerivatives => true,
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
-    for f in functions.iter().filter(wanted) {
+    for f in functions.iter().filter(is_batched) {
         let exact = match f.program.simd {
             None => "bit for bit",
-            Some(_) => "up to rounding: for a single state the lanes are limbs or joints",
+            Some(_) => "up to rounding: the function of a single state uses the lanes for limbs or joints",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let docs = if f.is_hidden() { Vec::new() } else { docs };
@@ -50,8 +51,9 @@ pub fn write_methods(
     write_manifold(out, charts, i.facts.speeds, &lanes);
 }
 
-/// The body of a function in lanes for debug builds, where lanes would need more stack than a thread has: one state after
-/// another. `None` for what only others call that have such a body.
+/// Returns the body of a function of several states for debug builds, which computes one state after another:
+/// lanes would need more stack than a thread has. Returns `None` for hidden functions that are called only
+/// from such bodies.
 pub fn one_by_one(f: &Function) -> Option<String> {
     let argument = |a: &Argument| match a {
         Argument::T => Some("t.0[k]".to_string()),
@@ -61,7 +63,7 @@ pub fn one_by_one(f: &Function) -> Option<String> {
     };
     let arguments: Option<Vec<String>> = f.arguments.iter().map(argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
-    let given = given(f);
+    let given = matrix_arguments(f);
     if !given.is_empty() {
         let each = |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
         let (first, last) = (
@@ -103,7 +105,8 @@ pub fn one_by_one(f: &Function) -> Option<String> {
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))
 }
 
-/// Forward dynamics with constraints. Where the elimination fails in some lane, all take the way of a single state.
+/// Writes forward dynamics with constraints. If the elimination fails in a lane, all lanes use the function
+/// of a single state.
 fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let nv = s.nv;
     let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau]);
@@ -119,7 +122,7 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.constraints.overdetermined {
         let _ = writeln!(
             out,
-            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, bit for bit; one after another.
+            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, computed one after another, bit for bit.
             #[inline]\n#[must_use]
             pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
                 use ::linkwork::__private::{{lane, lane_by_lane}};
@@ -157,7 +160,8 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
-/// Writes the functions of the trait `Batch` in terms of the inherent ones. They take time first, needed or not.
+/// Writes the functions of the trait `Batch`, which call the inherent functions. They always take time as the
+/// first argument.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let in_lanes = s.scalar.in_lanes();
     let s = &Signature { scalar: &in_lanes, ..*s };

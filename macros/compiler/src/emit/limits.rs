@@ -1,26 +1,27 @@
-//! The limits of the coordinates.
+//! Limits of the coordinates.
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
 use crate::mechanism::{Limit, Model};
 use std::fmt::Write;
 
-/// Where the bounds of an entry of `v` stand among the values of the hidden function, and its coordinate.
+/// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
 #[derive(Clone, Debug)]
-pub struct Limited {
+pub struct CoordinateLimits {
     /// Index of the coordinate in `q`.
     q: usize,
-    /// Index in `v`.
+    /// Index of the velocity in `v`.
     v: usize,
-    /// The name of the coordinate.
+    /// Name of the coordinate.
     name: String,
-    /// Lower, upper, speed, effort: index of the value, and the value if it is a number.
+    /// Lower limit, upper limit, velocity limit and effort limit: index of the value, and the value if it is
+    /// constant.
     bounds: [Option<(usize, Option<f64>)>; 4],
 }
 
-impl Limited {
-    /// All that are limited, in the order of the values.
-    pub fn of(model: &Model<'_>) -> Vec<Limited> {
+impl CoordinateLimits {
+    /// Returns all limits of a model, in the order of the values.
+    pub fn from_model(model: &Model<'_>) -> Vec<CoordinateLimits> {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
             let bounds = limit.bounds().map(|bound| {
@@ -30,18 +31,18 @@ impl Limited {
             });
             let names = model.speeds.as_ref().map_or(&model.velocities, |speeds| &speeds.velocities);
             let name = names.get(limit.v.0).map_or(String::new(), |(name, _)| name.clone());
-            Limited { q: limit.q.0, v: limit.v.0, name, bounds }
+            CoordinateLimits { q: limit.q.0, v: limit.v.0, name, bounds }
         };
         model.limits.iter().map(&mut place).collect()
     }
 
-    /// Where a bound stands.
+    /// Returns the index of the value of a bound.
     fn index(&self, which: usize) -> Option<usize> {
         self.bounds.get(which).copied().flatten().map(|(k, _)| k)
     }
 }
 
-/// The functions of the trait, with the sign of their infinity.
+/// Functions of the trait, with the infinity that they return for a missing limit.
 const FUNCTIONS: [(&str, &str); 4] = [
     ("lower_limits", "NEG_INFINITY"),
     ("upper_limits", "INFINITY"),
@@ -49,8 +50,8 @@ const FUNCTIONS: [(&str, &str); 4] = [
     ("effort_limits", "INFINITY"),
 ];
 
-/// The functions of the runtime's trait of limits; those that are not written say that there are none.
-pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Signature<'_>) {
+/// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
+pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool, s: &Signature<'_>) {
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
@@ -107,8 +108,8 @@ pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Sign
     );
 }
 
-/// A table for the struct's documentation.
-pub fn write_docs(text: &mut String, limited: &[Limited]) {
+/// Adds a table of the limits to the documentation of the struct.
+pub fn write_docs(text: &mut String, limited: &[CoordinateLimits]) {
     if limited.is_empty() {
         return;
     }

@@ -1,13 +1,13 @@
-//! The functions of the configuration space.
+//! Functions on the configuration manifold.
 
 use super::signature::Signature;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// `integrate`, `difference` and `tangent_rate`, part by part of the configuration space; without its parts, for a
-/// mechanism that failed to compile, their bodies never return.
+/// Writes `integrate`, `difference` and `tangent_rate`, with statements for each joint's coordinate chart.
+/// Without `charts`, for a mechanism that failed to compile, their bodies never return.
 ///
-/// With declared speeds these are hidden, and what the outside sees is made of them.
+/// With generalized speeds these functions are hidden, and the public functions call them.
 pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
@@ -16,21 +16,21 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     let functions = [
         on_manifold(
             "integrate",
-            "`q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised.",
+            "Returns `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time, with normalised quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
             [("q", s.nq), ("dv", s.nv)],
             s.nq,
         ),
         on_manifold(
             "difference",
-            "`to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            "Returns `to ⊖ from`: the constant velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
             [("from", s.nq), ("to", s.nq)],
             s.nv,
         ),
         on_manifold(
             "tangent_rate",
-            "Rate of `dv` such that `q ⊕ dv` moves with velocity `v` (the inverse of the exponential's derivative).",
+            "Returns the rate of `dv` for which `q ⊕ dv` moves with velocity `v` (inverse of the derivative of the exponential map).",
             format!("dv: &{v}, v: &{v}) -> {v}"),
             [("dv", s.nv), ("v", s.nv)],
             s.nv,
@@ -45,7 +45,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     }
 }
 
-/// What contacts need of the configuration space, by a function that is not shown.
+/// Writes the hidden function that transports velocities, which contacts need.
 pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let v = s.vector(s.nv);
     let carry = ManifoldFunction {
@@ -58,12 +58,17 @@ pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>
     carry.write(out, "__", charts, s);
 }
 
-/// One of the functions of the configuration space.
+/// A function on the configuration manifold.
 struct ManifoldFunction {
+    /// Name of the function.
     name: &'static str,
+    /// Documentation of the function.
     about: &'static str,
+    /// Parameters after `&self`, and the result type.
     signature: String,
+    /// Names and lengths of the arguments.
     arguments: [(&'static str, usize); 2],
+    /// Length of the result.
     result: usize,
 }
 
@@ -107,7 +112,7 @@ impl ManifoldFunction {
                 Chart::Ball(q, v) => ("ball", (q.0, 4), (v.0, 3)),
                 Chart::Free(q, v) => ("free", (q.0, 7), (v.0, 6)),
             };
-            // What the result and the two arguments are made of: configurations or velocities.
+            // Entries of the result and of the two arguments: configurations or velocities.
             let (on_q, on_v) = ((q, nq), (v, nv));
             let (r, a, b) = match self.name {
                 "integrate" => (on_q, on_q, on_v),

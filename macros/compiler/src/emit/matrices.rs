@@ -1,21 +1,22 @@
-//! Results of several matrices, and what is composed of them at run time.
+//! Results that consist of several matrices, and products and inverses that are completed at run time.
 
 use super::pieces::Outputs;
-use super::signature::{Signature, given};
+use super::signature::{Signature, matrix_arguments};
 use crate::catalogue::{InverseForm, Shape, Structure};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
 
 const RUNTIME: &str = "::linkwork::__private";
-/// Before the columns of a matrix.
+/// Start of the constructor of a matrix from its columns.
 const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
 
-/// No columns to multiply by the inverse.
+/// Empty list of columns to multiply by the inverse.
 const NOTHING: &str = "&mut []";
 
-/// What is left to do after the outputs are in their places.
+/// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
+/// matrices.
 pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let given: Vec<String> = given(f).iter().map(|name| format!("*{name}")).collect();
+    let given: Vec<String> = matrix_arguments(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}{}\n",
@@ -29,7 +30,7 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}a\n",
                 solved([by_q, by_v], inverse, n, s, &f.structure),
-                known(f, outputs, n)
+                store_known_columns(f, outputs, n)
             )
         }
         (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
@@ -46,19 +47,19 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
     }
 }
 
-/// The result from the outputs.
+/// Returns the expression of the result, composed of the outputs.
 pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
     let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
         Shape::Jacobians(rows, n, m) => {
-            let by = |k: usize| outputs.matrix(k * rows * n, rows, n);
+            let jacobian = |k: usize| outputs.matrix(k * rows * n, rows, n);
             let by_u = outputs.matrix(3 * rows * n, rows, m);
             format!(
                 "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
-                by(0),
-                by(1),
-                by(2)
+                jacobian(0),
+                jacobian(1),
+                jacobian(2)
             )
         }
         Shape::Hessian(n) => {
@@ -70,7 +71,7 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             let inputs = outputs.matrix(3 * n * n + 2 * n * m, m, m);
             format!("({state}, {}, {}, {inputs})\n", mixed(0), mixed(1))
         }
-        // Composed in what is returned, so that every matrix is moved once at most.
+        // The matrices are composed in the returned tuple, so that each of them is moved at most once.
         Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
         Shape::Forward(n) => format!(
             "let mut all = ({}, {}, {});\n{}{}all\n",
@@ -80,7 +81,7 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             completed(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
-        // Nothing moves.
+        // The mechanism has no velocities.
         Shape::Linear(0, m) => format!("({}, {})\n", outputs.matrix(0, 0, 0), outputs.matrix(0, 0, m)),
         Shape::Linear(n, m) => {
             format!(
@@ -113,14 +114,15 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
     }
 }
 
-/// `inverse`, which is `M⁻¹`, from the outputs after the first so many.
+/// Returns the statements that bind `inverse` to `M⁻¹`, from the outputs from index `first` on.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
     let rest = completed(["inverse", NOTHING], f, n, first, s, outputs);
     format!("let mut inverse = {};\n{rest}", outputs.matrix(first, n, n))
 }
 
-/// Makes `M⁻¹` of its parts, the first of which stand at `place`; nothing if it is whole. Where it is divided, given columns are
-/// multiplied by it, too.
+/// Returns the statement that completes `M⁻¹` from a factored form whose columns are in the matrix `place`
+/// and start at output `first`; empty for an explicit inverse. With a block arrow form, the columns `solved`
+/// are multiplied by the inverse, too.
 fn completed(
     [place, solved]: [&str; 2],
     f: &Function,
@@ -129,44 +131,48 @@ fn completed(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let beside = |width: usize| Beside { first: first + n * n, rows: n, width, outputs };
+    let additional_values = |width: usize| TrailingRows { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
-        InverseForm::LowRankUpdate(trunk) => beside(trunk.len()).completion(place, trunk, s),
+        InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).completion(place, trunk, s),
         InverseForm::BlockArrow { trunk, limbs } => {
-            beside(trunk.len()).inversion([place, solved], trunk, limbs, s)
+            additional_values(trunk.len()).inversion([place, solved], trunk, limbs, s)
         }
     }
 }
 
-/// From one up to another.
+/// Half-open range.
 type Span = (usize, usize);
 
-/// Rows of outputs beside those of a matrix, one for each velocity.
-struct Beside<'a> {
+/// Outputs that follow a matrix: a row of additional values for each velocity.
+struct TrailingRows<'a> {
+    /// Index of the first output.
     first: usize,
+    /// Number of rows.
     rows: usize,
+    /// Number of values per row.
     width: usize,
     outputs: &'a Outputs<'a>,
 }
 
-impl Beside<'_> {
-    /// The outputs of a row.
+impl TrailingRows<'_> {
+    /// Returns the indices of the outputs of a row.
     fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.first + row * self.width..self.first + (row + 1) * self.width
     }
 
-    /// Outside this they are always zero.
+    /// Returns the range of the values of a row outside which all are constant zeros; `None` if all are.
     fn used(&self, row: usize) -> Option<Span> {
         let first = self.range(row).start;
         let is_used = |t: &usize| !self.outputs.is_zero(first + t);
         Some(((0..self.width).find(is_used)?, (0..self.width).rfind(is_used)? + 1))
     }
 
-    /// Adds the product of the trunk's columns with these factors to the matrix at a place; nothing if there are none.
+    /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
+    /// `place`; empty if all factors are zero.
     fn completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
         let used: Vec<(usize, Span)> = (0..self.rows).filter_map(|k| Some((k, self.used(k)?))).collect();
-        let runs = together(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
+        let runs = factor_runs(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
         if runs.is_empty() {
             return String::new();
         }
@@ -179,7 +185,8 @@ impl Beside<'_> {
         )
     }
 
-    /// Inverts the matrix at a place, with these entries of the mass matrix, and multiplies given columns by the inverse.
+    /// Returns the statement that inverts the matrix `place`, using these entries of the mass matrix, and
+    /// multiplies the columns `solved` by the inverse.
     fn inversion(
         &self,
         [place, solved]: [&str; 2],
@@ -200,9 +207,9 @@ impl Beside<'_> {
             let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
             limb.iter().for_each(|k| used[*k] = all);
         }
-        let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+        let runs = factor_runs(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
         let neighbours = |limb: &Vec<usize>| {
-            let runs = together(limb.iter().map(|k| (*k, Span::default(), *k)));
+            let runs = factor_runs(limb.iter().map(|k| (*k, Span::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
         };
         let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
@@ -221,8 +228,9 @@ impl Beside<'_> {
     }
 }
 
-/// Neighbouring columns with the same rows of the trunk and neighbouring factors, from columns in their order.
-fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
+/// Groups neighbouring columns whose factors have the same range of trunk rows and consecutive indices.
+/// `columns` holds, in ascending order, the index of each column, the range and the index of the factors.
+fn factor_runs(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
     let mut runs: Vec<(Span, Span, usize)> = Vec::new();
     for (k, used, place) in columns {
         match runs.last_mut() {
@@ -237,9 +245,9 @@ fn together(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, S
     runs
 }
 
-/// The columns that are known, put into the matrices.
-fn known(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
-    let columns = given(f).into_iter().zip(&f.structure.known);
+/// Returns the statements that store the columns that are already computed in the matrix arguments.
+fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
+    let columns = matrix_arguments(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
         format!("{matrix}.data.0[{column}] = {};\n", outputs.list(k * n..(k + 1) * n))
@@ -247,7 +255,7 @@ fn known(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
     texts.collect()
 }
 
-/// Derivatives of the accelerations in the place of those of the forces: `−M⁻¹ ∂τ/∂x`.
+/// Returns the statement that replaces derivatives of forces by derivatives of accelerations, `−M⁻¹ ∂τ/∂x`.
 fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
     let is_known = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
     let is_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
@@ -255,7 +263,8 @@ fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structu
     products(inverse, n, n, &[factor(0), factor(1)], s)
 }
 
-/// Minus the products of the inverse with factors of so many columns, in the place of these; nothing where nothing moves.
+/// Returns the statement that replaces the factors, each with the given number of columns, by minus their
+/// products with the inverse; empty without velocities.
 fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
     if n == 0 {
         return String::new();
@@ -269,27 +278,30 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
     )
 }
 
-/// How a matrix is read, where registers hold eight numbers and where they hold four: so many rows at a time.
+/// Returns the types of the tilings of a matrix: for processors with registers of eight numbers, and for
+/// processors with registers of four numbers. `rows` returns for each the number of rows that are computed
+/// together.
 fn parts(rows: impl Fn(bool) -> String) -> String {
-    let of = |wide: bool| {
+    let tile = |wide: bool| {
         let n = rows(wide);
         format!(
             "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
         )
     };
-    format!("({}, {})", of(true), of(false))
+    format!("({}, {})", tile(true), tile(false))
 }
 
 /// Neighbouring columns of a matrix.
 struct Run {
-    /// From one up to another.
+    /// Half-open range of the columns.
     columns: (usize, usize),
-    /// The rows that are not zero in all of them.
+    /// Rows that are nonzero in at least one of the columns.
     rows: Vec<usize>,
 }
 
-/// The columns of the matrix after the first so many entries, those together that have zeros in about the same rows; and
-/// column and row of what is zero in rows where others of a run are not.
+/// Groups neighbouring columns with zeros in nearly the same rows, for the matrix that starts at entry
+/// `first`. The first list holds column and row of each zero entry in a row where another column of its group
+/// is nonzero.
 fn runs(
     n: usize,
     columns: usize,
@@ -323,14 +335,15 @@ fn runs(
     (runs.iter().flat_map(filled).collect(), runs)
 }
 
-/// Both as texts.
+/// Returns the result of [`runs`] as source text.
 fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
     let (filled, runs) = runs(n, columns, first, is_zero);
     let texts: Vec<String> = runs.iter().map(|run| format!("({:?}, &{:?})", run.columns, run.rows)).collect();
     format!("&{filled:?}, &[{}]", texts.join(", "))
 }
 
-/// The derivatives by a call of the function that puts so many of them into given matrices: nothing large is moved.
+/// Returns the body of a function that calls its variant with `count` matrix arguments, so that no large
+/// value is moved.
 pub fn called(f: &Function, count: usize, s: &Signature<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     let zeros = vec![format!("<{}>::zeros()", s.shape(Shape::Square(s.nv))); count];
@@ -347,7 +360,7 @@ pub fn called(f: &Function, count: usize, s: &Signature<'_>) -> String {
     )
 }
 
-/// The derivatives of forward dynamics under the forces `tau`.
+/// Returns the statement that calls the derivatives of forward dynamics under the forces `tau`.
 fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
     let t = if s.time { "t, " } else { "" };
     let lanes = s.suffix();
@@ -361,8 +374,8 @@ fn number(x: &str, s: &Signature<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>({x})", s.scalar.name())
 }
 
-/// The system's two matrices, with the derivatives by the inputs and what turns displacements after the first so many
-/// outputs.
+/// Returns the expression of the two matrices of a linear system. Starting at output `first`, the outputs are
+/// the derivatives by the inputs and the matrix `T` in the rate `ξ̇ = δv + T ξ` of displacements `ξ`.
 fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
     let factor = format!("(&mut by_u, {})", groups(n, m, first, &|k| outputs.is_zero(k)));
     format!(

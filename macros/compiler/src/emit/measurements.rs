@@ -1,4 +1,4 @@
-//! The runtime's traits of outputs: all of a mechanism's in one vector.
+//! Implementations of the runtime's traits of outputs, which return all outputs of a mechanism in one vector.
 
 use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
@@ -7,20 +7,27 @@ use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// The outputs of a mechanism that follow from state, accelerations and inputs, and for which type they are implemented.
+/// Outputs of a mechanism that are functions of state, accelerations and inputs, with the type for which the
+/// traits are implemented.
 struct Measurements<'a> {
+    /// Name of the type.
     name: &'a str,
+    /// Functions of the outputs.
     outputs: Vec<&'a Function>,
-    /// Entries of all together.
+    /// Total number of entries of all outputs.
     count: usize,
+    /// Generics of the implementations.
     head: Head,
+    /// Interface of the mechanism.
     i: &'a Interface<'a>,
+    /// Signatures of the functions.
     s: &'a Signature<'a>,
-    /// The arguments of all functions.
+    /// Parameters of the trait functions.
     parameters: String,
 }
 
-/// Implements them for the type of this name, if it has outputs that follow from state, accelerations and inputs.
+/// Writes the implementations for the type `name`, if it has outputs that are functions of state,
+/// accelerations and inputs.
 pub fn write_impls(
     out: &mut String,
     name: &str,
@@ -28,7 +35,7 @@ pub fn write_impls(
     i: &Interface<'_>,
     s: &Signature<'_>,
 ) {
-    // The rates of states are no measurements, nor are matrices.
+    // Rates of states and matrices are not part of the vector of outputs.
     let is_rate = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
     let outputs: Vec<&Function> = functions
         .iter()
@@ -45,14 +52,14 @@ pub fn write_impls(
         return;
     }
     measurements.write_derivatives(out);
-    // As of the derivatives of the states themselves.
+    // Derivatives of the states themselves have the same requirement.
     if !i.states.is_empty() && i.facts.constraints.is_none() {
         measurements.write_by_states(out);
     }
 }
 
 impl Measurements<'_> {
-    /// The head of an implementation of a trait with these sizes.
+    /// Writes the head of the implementation of the trait `of` with these sizes.
     fn begin(&self, out: &mut String, of: &str, sizes: &[usize]) {
         let Head { generics, arguments, bounds } = &self.head;
         let sizes = sizes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
@@ -63,12 +70,13 @@ impl Measurements<'_> {
         );
     }
 
-    /// The sizes of state, inputs and outputs.
+    /// Returns the sizes of configuration, velocity, inputs and outputs.
     fn sizes(&self) -> [usize; 4] {
         [self.s.nq, self.s.nv, self.s.nu, self.count]
     }
 
-    /// A statement for each output, with its first entry; then the end of function and implementation.
+    /// Writes a statement for each output, given the index of its first entry; then the end of function and
+    /// implementation.
     fn write_each(&self, out: &mut String, statement: impl Fn(usize, &Function) -> String) {
         let mut first = 0;
         for f in &self.outputs {
@@ -78,7 +86,7 @@ impl Measurements<'_> {
         out.push_str("all\n}\n}\n");
     }
 
-    /// The trait of the values, with names and units.
+    /// Writes the trait of the values, with names and units.
     fn write_outputs(&self, out: &mut String) {
         let (count, vector) = (self.count, self.s.vector(self.count));
         let names: Vec<String> =
@@ -108,7 +116,7 @@ impl Measurements<'_> {
         });
     }
 
-    /// The trait of the derivatives.
+    /// Writes the trait of the derivatives.
     fn write_derivatives(&self, out: &mut String) {
         self.begin(out, "OutputDerivatives", &self.sizes());
         let of = self.s.shape(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
@@ -120,7 +128,7 @@ impl Measurements<'_> {
         self.write_each(out, |first, f| format!("all.put_rows({first}, &{});", call(f, DERIVATIVES)));
     }
 
-    /// The trait of the derivatives by states of first order.
+    /// Writes the trait of the derivatives by states of first order.
     fn write_by_states(&self, out: &mut String) {
         let [nq, nv, nu, count] = self.sizes();
         let n = self.i.states.len();
@@ -142,12 +150,13 @@ impl Measurements<'_> {
     }
 }
 
-/// A call of an output, or of its derivatives.
+/// Returns a call of an output, or of its derivatives.
 fn call(f: &Function, suffix: &str) -> String {
     let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
+/// Returns the number of entries of an output.
 fn rows(f: &Function) -> usize {
     match f.shape {
         Shape::Vector(n) => n,
@@ -155,7 +164,7 @@ fn rows(f: &Function) -> usize {
     }
 }
 
-/// The names of an output's entries: its own, or those of its components in space.
+/// Returns the names of an output's entries: its own name, or the names of its spatial components.
 fn entries(f: &Function) -> Vec<String> {
     match f.shape {
         Shape::Vector(_) => ["x", "y", "z"].map(|axis| format!("{}.{axis}", f.name)).to_vec(),

@@ -1,5 +1,5 @@
-//! Lowered programs → Rust: the struct without its elements, the generated functions with their documentation, and the
-//! implementation of the trait. Emission never simplifies.
+//! Rust code from lowered programs: the struct without its elements, the generated functions with their
+//! documentation, and the trait implementations. This stage performs no simplification.
 
 mod absent;
 mod angles;
@@ -37,9 +37,9 @@ mod validate;
 
 pub use absent::absent;
 pub use constraints::Constraints;
-pub use contacts::Touching;
-pub use derived::a_mistake_in_a_type;
+pub use contacts::UnilateralContact;
+pub use derived::error_type;
 pub use interface::{Absent, Interface};
 pub use item::{Emitted, emit_failed, emit_mechanism};
-pub use limits::Limited;
-pub use validate::Figure;
+pub use limits::CoordinateLimits;
+pub use validate::ParameterCondition;

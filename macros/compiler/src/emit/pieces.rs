@@ -1,9 +1,9 @@
-//! Texts that a body is made of: values, statements, outputs.
+//! Source text of the parts of a body: values, statements, outputs.
 
 use crate::catalogue::Record;
 use std::fmt::Write;
 
-/// A binding, or statements without one.
+/// A binding, or statements that bind nothing.
 pub struct Statement {
     /// Values that the left side binds.
     pub names: Vec<usize>,
@@ -15,7 +15,7 @@ pub struct Statement {
     pub needs: Vec<usize>,
 }
 
-/// How closely the parts of a text hold together.
+/// Precedence of an expression's outermost operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// A sum or a difference.
@@ -23,7 +23,7 @@ pub enum Level {
     Sum,
     /// A product, a quotient or a negative.
     Product,
-    /// What needs no parentheses.
+    /// An expression that needs no parentheses.
     Whole,
 }
 
@@ -34,11 +34,11 @@ pub struct Piece {
     pub text: String,
     /// Values that it names.
     pub needs: Vec<usize>,
-    /// Whether it needs parentheses.
+    /// Precedence, which determines whether parentheses are needed.
     pub level: Level,
 }
 
-/// The outputs of a program as texts.
+/// Outputs of a program as source text.
 pub struct Outputs<'a> {
     /// The expressions.
     pub pieces: &'a [Piece],
@@ -47,24 +47,24 @@ pub struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// An array of some of them.
+    /// Returns an array of a range of outputs.
     pub fn list(&self, range: std::ops::Range<usize>) -> String {
         array(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
     }
 
-    /// An array of columns, from the first so many outputs on.
+    /// Returns an array of columns, starting at output `first`.
     fn columns(&self, first: usize, rows: usize, columns: usize) -> String {
         let columns: Vec<String> =
             (0..columns).map(|k| self.list(first + k * rows..first + (k + 1) * rows)).collect();
         array(columns.iter().map(String::as_str).collect())
     }
 
-    /// The matrix of so many rows and columns, from its columns after the first so many outputs.
+    /// Returns the matrix with these numbers of rows and columns, by columns, starting at output `first`.
     pub fn matrix(&self, first: usize, rows: usize, columns: usize) -> String {
         storage(&self.columns(first, rows, columns), "SMatrix")
     }
 
-    /// A struct whose fields are the outputs in their order.
+    /// Returns a struct whose fields are the outputs in order.
     pub fn record(&self, record: Record) -> String {
         let mut text = format!("::linkwork::__private::{} {{\n", record.name().0);
         let mut first = 0;
@@ -80,13 +80,13 @@ impl Outputs<'_> {
         text
     }
 
-    /// True for a constant zero.
+    /// Returns true for an output that is a constant zero.
     pub fn is_zero(&self, k: usize) -> bool {
         (self.is_zero)(k)
     }
 }
 
-/// An array; what is the same everywhere is written once.
+/// Returns an array expression; if all items are equal, in the form with one item and a count.
 fn array(texts: Vec<&str>) -> String {
     match texts.as_slice() {
         [first, rest @ ..] if rest.len() > 1 && rest.iter().all(|text| text == first) => {
@@ -96,6 +96,7 @@ fn array(texts: Vec<&str>) -> String {
     }
 }
 
+/// Returns the constructor of a vector or matrix from an array of columns.
 pub fn storage(columns: &str, matrix: &str) -> String {
     format!(
         "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))"

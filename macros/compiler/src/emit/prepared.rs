@@ -1,5 +1,5 @@
-//! The second struct of the word `prepare`: it holds the numbers that depend on the parameters alone, and has the
-//! functions of the first, which do what is left.
+//! The struct that the option `prepare` adds. It stores the values that depend only on parameters, and has
+//! the functions of the mechanism, which compute the remainder.
 
 use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
@@ -17,16 +17,16 @@ use crate::mechanism::Chart;
 use quote::ToTokens;
 use std::fmt::Write;
 
-/// What the functions are written from; nothing for a mechanism that failed to compile.
+/// Program and charts from which the functions are written; empty for a mechanism that failed to compile.
 #[derive(Default)]
 pub struct Content<'a> {
-    /// The numbers.
+    /// Program of the stored values.
     pub numbers: Option<&'a Program>,
-    /// Parts of the configuration space.
+    /// Coordinate charts of the configuration space.
     pub charts: Option<&'a [Chart]>,
 }
 
-/// Writes the struct, its functions, and `prepare`.
+/// Writes the prepared struct, its functions, and `prepare`.
 pub fn write_prepared(
     out: &mut String,
     i: &Interface<'_>,
@@ -75,8 +75,8 @@ pub fn write_prepared(
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} {ident}{arguments} {bounds} {{
-        /// This mechanism with all numbers computed that depend on its parameters alone. It has the same functions, and
-        /// does not notice if the parameters change afterwards.
+        /// Returns this mechanism with all values precomputed that depend only on its parameters. It has the same functions.
+        /// Later changes of the parameters have no effect on it.
         #[must_use]
         pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers(){tables} }} }}"
     );
@@ -86,6 +86,7 @@ pub fn write_prepared(
     out.push_str("}\n");
 }
 
+/// Writes the definition of the prepared struct with its documentation.
 fn write_struct(
     out: &mut String,
     i: &Interface<'_>,
@@ -97,8 +98,8 @@ fn write_struct(
     let (ident, generics) = (&i.shell.ident, &i.shell.generics);
     let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
     let docs = format!(
-        "[`{ident}`] with the numbers computed that depend on its parameters alone, made by [`prepare`]({ident}::prepare): \
-         its functions are the same and do only what depends on their arguments. Frames stay with the mechanism itself.\n{}",
+        "[`{ident}`] with precomputed values of everything that depends only on its parameters, created by \
+         [`prepare`]({ident}::prepare). It has the same functions, except those of frames.\n{}",
         operations(functions)
     );
     let tables: String = i

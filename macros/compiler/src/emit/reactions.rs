@@ -1,5 +1,5 @@
-//! Outputs that name reactions of joints or forces at contacts: the motion is solved first, then the reactions follow from its
-//! accelerations and multipliers.
+//! Outputs that contain joint reactions or contact forces. The generated functions first compute the motion,
+//! then the outputs from its accelerations, multipliers or contact forces.
 
 use super::docs::output_docs;
 use super::interface::Interface;
@@ -9,7 +9,8 @@ use crate::derive::Function;
 use crate::mechanism::{Diagram, Origin};
 use std::fmt::Write;
 
-/// Writes the outputs whose hidden functions are among these.
+/// Writes the functions of outputs that contain joint reactions, and of free-body diagrams, for the hidden
+/// functions among `functions`.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let c = &i.constraints;
     let t = if s.time { "t, " } else { "" };
@@ -42,7 +43,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let call = format!("self.{}({t}{pass})", f.name);
         let (docs, shape, result) = match diagram {
             Some(diagram) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
-            None => (about(i, s), s.shape(f.shape), call),
+            None => (reaction_docs(i, s), s.shape(f.shape), call),
         };
         let _ = writeln!(
             out,
@@ -59,7 +60,8 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
     }
 }
 
-/// A free-body diagram of a mechanism with contacts: under the forces that these exert, and under given ones.
+/// Writes the two functions of a free-body diagram of a mechanism with contacts: under the forces that the
+/// contacts exert in the state, and under contact forces passed as an argument.
 fn write_touched_diagram(
     out: &mut String,
     i: &Interface<'_>,
@@ -78,11 +80,11 @@ fn write_touched_diagram(
         _ => ("q, v, u", "u".to_string()),
     };
     let acting = format!(
-        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error where friction and constraints contradict each other.",
+        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error if friction and constraints contradict each other.",
         diagram_docs(diagram, s)
     );
     let under = format!(
-        "{} Under given forces of the contacts, N and N·m, in the order of `CONTACT_ROWS`.",
+        "{} Under the contact forces `forces`, N and N·m, in the order of `CONTACT_ROWS`.",
         diagram_docs(diagram, s)
     );
     let _ = writeln!(
@@ -106,8 +108,8 @@ fn write_touched_diagram(
     );
 }
 
-/// What a mechanism that failed to compile has of outputs that name forces at contacts, and free-body diagrams: what acts is not
-/// known.
+/// Writes stubs of contact force outputs and free-body diagrams for a mechanism that failed to compile. Its
+/// contact forces are unknown.
 pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let mut arguments = vec![Argument::Q, Argument::V];
     arguments.extend((s.nu > 0).then_some(Argument::U));
@@ -135,12 +137,12 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
     }
 }
 
-/// The type of a free-body diagram.
+/// Returns the type of a free-body diagram.
 fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.name(), diagram.actions.len())
 }
 
-/// A free-body diagram from its numbers.
+/// Returns the expression of a free-body diagram from the expression `numbers` of its values.
 fn made(diagram: &Diagram, numbers: &str) -> String {
     let origin =
         |(name, origin): &(String, Origin)| format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})");
@@ -152,7 +154,7 @@ fn made(diagram: &Diagram, numbers: &str) -> String {
     )
 }
 
-/// What the function of a free-body diagram gives.
+/// Returns the description of the function of a free-body diagram.
 fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
@@ -169,22 +171,22 @@ fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
     )
 }
 
-/// What the function of a reaction's output gives.
-fn about(i: &Interface<'_>, s: &Signature<'_>) -> String {
+/// Returns the description of the function of an output that contains reactions.
+fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",
     };
     let contacts = match i.contacts.is_empty() {
         true => "",
-        false => " without the forces of contacts that open and close",
+        false => " without the forces of unilateral contacts",
     };
     format!(
-        "{motion}{contacts}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
+        "{motion}{contacts}: a reaction is the force or torque that the parent of a joint exerts on its child, at the origin of the joint's frame. Along the joint's own coordinate it includes the forces of its motor, springs and dashpots. It has no derivatives yet."
     )
 }
 
-/// Outputs that name forces at contacts: these follow from the motion, then the outputs from them.
+/// Writes the functions of outputs that contain contact forces, which are computed from the motion first.
 pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let pass = if s.time { "t, " } else { "" };
     let scalar = s.scalar.name();
@@ -213,5 +215,5 @@ pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function]
     }
 }
 
-/// What the function of such an output gives.
-const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error where friction and constraints contradict each other. It has no derivatives.";
+/// Description of the function of an output that contains contact forces.
+const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error if friction and constraints contradict each other. It has no derivatives.";

@@ -1,30 +1,31 @@
-//! How scalars are spelt in generated code.
+//! Spelling of scalars in generated code.
 
 use crate::syntax::ScalarType;
 
-/// How scalars are spelt in generated code.
+/// Spelling of scalar types, constants and parameters in generated code.
 #[derive(Clone, Debug)]
 pub struct ScalarSpelling {
     scalar: ScalarType,
     parameters: Vec<String>,
     tables: Vec<String>,
-    /// The type where functions take several states at once.
+    /// Scalar type of functions of several states; `None` for functions of one state.
     lanes: Option<String>,
 }
 
 impl ScalarSpelling {
-    /// For a scalar type and the fields of the parameters and of the tables, as they are written.
+    /// Returns the spelling for a scalar type and the names of the fields of parameters and tables.
     pub fn new(scalar: ScalarType, parameters: Vec<String>, tables: Vec<String>) -> ScalarSpelling {
         ScalarSpelling { scalar, parameters, tables, lanes: None }
     }
 
-    /// The same for functions of several states at once, generic over `LANES`. Parameters have the same value in all.
+    /// Returns the spelling for functions of several states, generic over `LANES`. Parameters have the same
+    /// value in all lanes.
     pub fn in_lanes(&self) -> ScalarSpelling {
         let lanes = Some(format!("::linkwork::Lanes<{}, LANES>", self.one()));
         ScalarSpelling { lanes, ..self.clone() }
     }
 
-    /// The type of one lane.
+    /// Returns the type of one lane.
     pub fn one(&self) -> &str {
         match &self.scalar {
             ScalarType::F64 => "f64",
@@ -33,42 +34,42 @@ impl ScalarSpelling {
         }
     }
 
-    /// The type.
+    /// Returns the scalar type.
     pub fn name(&self) -> &str {
         self.lanes.as_deref().unwrap_or_else(|| self.one())
     }
 
-    /// True for the struct's own type parameter.
+    /// Returns true if the scalar is a type parameter of the struct.
     pub fn is_generic(&self) -> bool {
         matches!(self.scalar, ScalarType::Generic(_))
     }
 
-    /// True where functions take several states at once.
+    /// Returns true for functions of several states.
     pub fn is_in_lanes(&self) -> bool {
         self.lanes.is_some()
     }
 
-    /// The functions of the runtime that constants may call.
+    /// Returns the names of the runtime functions that constants may call.
     pub fn helpers(&self) -> impl Iterator<Item = &'static str> {
         self.is_generic().then_some("constant").into_iter()
     }
 
-    /// The field of a parameter.
+    /// Returns the name of a parameter's field.
     pub fn parameter(&self, k: usize) -> &str {
         &self.parameters[k]
     }
 
-    /// The field of a table.
+    /// Returns the name of a table's field.
     pub fn table(&self, k: usize) -> &str {
         self.tables.get(k).map_or("missing", String::as_str)
     }
 
-    /// The value of a parameter.
+    /// Returns the expression of a parameter's value.
     pub fn value(&self, k: usize) -> String {
         self.spread(format!("self.{}", self.parameters[k]))
     }
 
-    /// A constant.
+    /// Returns the expression of a constant.
     pub fn constant(&self, c: f64) -> String {
         self.spread(match &self.scalar {
             ScalarType::Generic(name) => format!("constant::<{name}>({c:?})"),
@@ -77,7 +78,7 @@ impl ScalarSpelling {
         })
     }
 
-    /// The same number in all lanes.
+    /// Returns the expression of a number, broadcast to all lanes for functions of several states.
     pub fn spread(&self, number: String) -> String {
         match self.is_in_lanes() {
             true => format!("Ops::splat::<{}, LANES>({number})", self.one()),

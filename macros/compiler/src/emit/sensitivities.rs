@@ -1,11 +1,11 @@
-//! The runtime's trait of derivatives by parameters.
+//! Implementation of the runtime's trait of derivatives with respect to parameters.
 
 use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
 use crate::catalogue::{Argument, Shape};
 use std::fmt::Write;
 
-/// Implements it for the type of this name, if it has them.
+/// Writes the implementation for the type `name`, if it has these derivatives.
 pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let facts = &i.facts;

@@ -1,5 +1,5 @@
-//! Signatures of generated functions: arguments, and the type of the result by its shape. How a result is put together stands in
-//! `matrices`.
+//! Signatures of generated functions: arguments, and the type of the result by its shape. The module
+//! `matrices` composes the results.
 
 use super::scalar::ScalarSpelling;
 use crate::catalogue::{Argument, Shape};
@@ -7,18 +7,18 @@ use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
 
-/// The names of the matrices that a function's results go into.
-pub fn given(f: &Function) -> Vec<&'static str> {
-    let given = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
-    f.arguments.iter().filter_map(given).collect()
+/// Returns the names of the matrix arguments to which a function writes its results.
+pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
+    let matrix_name = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+    f.arguments.iter().filter_map(matrix_name).collect()
 }
 
-/// How many matrices the variant for given ones fills, if a function is written as a call of that. A long function would else
-/// be two for rustc to read, and both do the same.
+/// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a
+/// body of its own. The call avoids two copies of a long body, which rustc would have to process.
 pub fn filled(f: &Function) -> Option<usize> {
     let has_variant = f.name == "inverse_dynamics_derivatives";
     match f.shape {
-        _ if !given(f).is_empty() => None,
+        _ if !matrix_arguments(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),
         Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
         _ => None,
@@ -36,22 +36,22 @@ pub struct Signature<'a> {
     pub nv: usize,
     /// `NU`.
     pub nu: usize,
-    /// Functions take time first.
+    /// True if functions take time as their first argument.
     pub time: bool,
 }
 
 impl Signature<'_> {
-    /// The type of what a function returns.
+    /// Returns the type of a function's result.
     pub fn result(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector(n),
-            Shape::Forward(n) | Shape::CalledForward(n) if !given(f).is_empty() => self.vector(n),
-            shape if given(f).is_empty() => self.shape(shape),
+            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_arguments(f).is_empty() => self.vector(n),
+            shape if matrix_arguments(f).is_empty() => self.shape(shape),
             _ => "()".to_string(),
         }
     }
 
-    /// The type of an argument.
+    /// Returns the type of an argument.
     pub fn argument(&self, a: Argument) -> String {
         let n = match a {
             Argument::T => return self.scalar.name().to_string(),
@@ -66,12 +66,12 @@ impl Signature<'_> {
         format!("&{}", self.vector(n))
     }
 
-    /// A column vector's type.
+    /// Returns the type of a column vector.
     pub fn vector(&self, n: usize) -> String {
         format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.name())
     }
 
-    /// A result's type.
+    /// Returns the type of a result of this shape.
     pub fn shape(&self, shape: Shape) -> String {
         let s = self.scalar.name();
         match shape {
@@ -99,22 +99,23 @@ impl Signature<'_> {
         }
     }
 
-    /// The arguments with time before them, where functions take it.
+    /// Returns the arguments, preceded by time if functions take it.
     pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
-    /// What stands after a function's name: nothing, or what tells it from the one of a single state.
+    /// Returns the text after a function's name in its definition: for several states the suffix and the
+    /// const parameter, otherwise nothing.
     pub fn generics(&self) -> &'static str {
         if self.scalar.is_in_lanes() { "_lanes<const LANES: usize>" } else { "" }
     }
 
-    /// What stands after a function's name where it is called.
+    /// Returns the suffix of a function's name in calls.
     pub fn suffix(&self) -> &'static str {
         if self.scalar.is_in_lanes() { "_lanes" } else { "" }
     }
 
-    /// `&self, q: …, v: …`.
+    /// Returns the parameter list `&self, q: …, v: …`.
     pub fn parameters(&self, arguments: &[Argument]) -> String {
         let mut text = "&self".to_string();
         for a in arguments {
@@ -124,7 +125,7 @@ impl Signature<'_> {
     }
 }
 
-/// Type of a result of several matrices.
+/// Returns the type of a result of several matrices.
 fn several(shape: Shape, s: &Signature<'_>) -> String {
     let square = |n| s.shape(Shape::Square(n));
     match shape {

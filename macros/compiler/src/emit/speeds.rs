@@ -1,29 +1,29 @@
-//! The configuration space of a mechanism with declared speeds: its functions, in terms of hidden ones for the velocities of the
-//! joints and of what leads from one to the other.
+//! Configuration space of a mechanism with generalized speeds. Its functions call hidden functions for joint
+//! velocities and convert between the two.
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
 use std::fmt::Write;
 
-/// `integrate`, `difference` and `displacement_rate`; stubs for a mechanism that failed to compile.
+/// Writes `integrate`, `difference` and `displacement_rate`, or stubs for a mechanism that failed to compile.
 pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     let (q, v, lanes) = (s.vector(s.nq), s.vector(s.nv), s.suffix());
     let functions = [
         (
             "integrate",
-            "`q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant velocities of the joints that the speeds `dv` stand for at `q`; quaternions are normalised.",
+            "Returns `q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
             format!("self.__integrate{lanes}(q, &self.rates_of_speeds{lanes}(q, dv))"),
         ),
         (
             "difference",
-            "`to ⊖ from`: the speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            "Returns `to ⊖ from`: the generalized speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
             format!("self.speeds_of_rates{lanes}(from, &self.__difference{lanes}(from, to))"),
         ),
         (
             "displacement_rate",
-            "Rate of `dv` such that `q ⊕ dv` moves with the speeds `v`, from `q`.",
+            "Returns the rate of `dv` for which `q ⊕ dv` moves with the generalized speeds `v`.",
             format!("q: &{q}, dv: &{v}, v: &{v}) -> {v}"),
             format!(
                 "let way = self.rates_of_speeds{lanes}(q, dv);
@@ -43,7 +43,8 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     }
 }
 
-/// The functions of the trait of mechanisms that others leave as they are.
+/// Writes the functions of the trait `Mechanism` for which only mechanisms with generalized speeds override
+/// the default.
 pub fn write_trait(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
@@ -55,7 +56,7 @@ pub fn write_trait(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// The functions of the trait of several states.
+/// Writes these functions for the trait `Batch`.
 pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
@@ -66,16 +67,17 @@ pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// A type that functions are called of.
+/// Returns a type in the form for calls of its functions.
 fn turbofish(v: &str) -> String {
     v.replacen("SVector<", "SVector::<", 1)
 }
 
+/// Returns the expression of NaN.
 fn nan(s: &Signature<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.name())
 }
 
-/// The functions of the trait of derivatives that belong to the configuration space.
+/// Writes the functions of the trait `Derivatives` on the configuration space.
 pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
     let (q, v, square) = (s.vector(s.nq), s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
@@ -115,7 +117,7 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// The function of the trait of second derivatives that belongs to the configuration space.
+/// Writes the function of the trait `SecondDerivatives` on the configuration space.
 pub fn write_second_derivatives(out: &mut String, s: &Signature<'_>) {
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));

@@ -1,13 +1,14 @@
-//! Bindings in their order.
+//! Statements of a function body, in order.
 
 use super::pieces::{Piece, Statement};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Most bindings of a block.
+/// Maximum number of bindings of a block.
 pub const BLOCK: usize = 200;
 
-/// Writes bindings, those of long bodies in blocks: rustc's debug information needs stack for every binding of a block.
+/// Writes the statements, and those of a long body in blocks: rustc's debug information needs stack for every
+/// binding of a block.
 pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {
     if statements.len() <= BLOCK {
         for statement in statements {
@@ -15,16 +16,18 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
         }
         return;
     }
-    // The last block that needs each value decides whether it leaves its own.
+    // A value outlives its block if a later block or an output needs it. The map holds the last block that
+    // needs each value.
     let blocks: Vec<&[Statement]> = statements.chunks(BLOCK).collect();
     let given = outputs.iter().flat_map(|p| &p.needs).map(|need| (*need, blocks.len()));
     let within = blocks
         .iter()
         .enumerate()
         .flat_map(|(b, block)| block.iter().flat_map(|s| &s.needs).map(move |need| (*need, b)));
-    // Sines and cosines stand before the blocks: they are needed, but bound by none.
+    // Sines and cosines are bound before the blocks, hence values may be needed that no block binds.
     let last_need: BTreeMap<usize, usize> = within.chain(given).collect();
-    // What leaves a block is declared before it: as the value of the block it would be bound twice, and passed in a tuple.
+    // Values that outlive a block are declared before it: as the value of the block they would be bound twice
+    // and passed in a tuple.
     for (b, block) in blocks.iter().enumerate() {
         let leaves = |s: &&Statement| s.names.iter().any(|k| last_need.get(k).is_some_and(|last| *last > b));
         let names: Vec<String> =
@@ -45,7 +48,7 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
     }
 }
 
-/// Writes one.
+/// Writes one statement.
 pub fn write_let(out: &mut String, statement: &Statement) {
     if statement.pattern.is_empty() {
         let _ = writeln!(out, "{}", statement.text);

@@ -1,4 +1,4 @@
-//! The runtime's traits of mechanisms with states of first order.
+//! Implementations of the runtime's traits for mechanisms with states of first order.
 
 use super::interface::{ALLOW, Head, Interface};
 use super::signature::Signature;
@@ -7,12 +7,12 @@ use crate::derive::Function;
 use crate::syntax::RATE_OF_STATE;
 use std::fmt::Write;
 
-/// The name of the function for a state's rate.
+/// Returns the name of the function for a state's rate.
 pub fn rate(state: &str) -> String {
     format!("{state}{RATE_OF_STATE}")
 }
 
-/// Implements them, if there are such states and dynamics.
+/// Writes the implementations if the mechanism has such states and dynamics.
 pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &Signature<'_>) {
     let rates: Option<Vec<&Function>> =
         i.states.iter().map(|(name, _)| functions.iter().find(|f| f.name == rate(name))).collect();
@@ -28,7 +28,7 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
     };
     begin(out, "FirstOrder");
     write_values(out, &rates, i, s);
-    // Of accelerations under constraints there are no derivatives by parameters.
+    // Accelerations under constraints have no derivatives by parameters.
     let differentiable = i.facts.requests.derivatives && i.facts.constraints.is_none();
     if differentiable {
         write_extended(out, n, s);
@@ -41,21 +41,24 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
     }
 }
 
+/// Returns a call of an output, or of its derivatives.
 fn call(f: &Function, suffix: &str) -> String {
     let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
+/// Arguments of the functions of the rates.
 const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U];
 
+/// Writes names, units and values of the states, and their rates.
 fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let n = rates.len();
     let (vector, parameters) = (s.vector(n), s.parameters(&TAKEN));
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
     let own: Vec<String> = i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter(*k))).collect();
-    // All fields by name: the struct need not be `Clone`.
-    let spelt = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
-    let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(spelt);
+    // All fields are named, because the struct need not be `Clone`.
+    let field_name = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
+    let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(field_name);
     let of_file = i.shell.file_fields.iter().map(|field| field.ident.clone());
     let fields = of_struct.chain(of_file).map(|field| {
         let plain = field.trim_start_matches("r#");
@@ -82,7 +85,7 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
     );
 }
 
-/// How velocities and states change, for methods of integration.
+/// Writes the derivatives of the rates of velocities and states, for implicit integration methods.
 fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
     let all = s.nv + n;
     let _ = writeln!(
@@ -99,6 +102,7 @@ fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
     );
 }
 
+/// Writes the derivatives of the rates of the states, and the derivatives of the dynamics by the states.
 fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let (n, scalar) = (rates.len(), s.scalar.name());
     let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();

@@ -1,19 +1,22 @@
-//! Results that go into matrices which a function is given: as soon as they are known, so that they need not wait in
-//! memory of their own.
+//! Stores of results in matrix arguments. A result is stored once it is computed, so that it needs no
+//! memory in between.
 
 use super::pieces::{Outputs, Piece, Statement};
-use super::signature::given;
+use super::signature::matrix_arguments;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
 use crate::machine::{NEAR_STATEMENTS, TRANSPOSED_STATEMENTS};
 use std::fmt;
 
-/// An entry of a matrix.
+/// An entry of a matrix argument.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
+    /// Name of the matrix.
     matrix: &'static str,
+    /// Column index.
     column: usize,
+    /// Row index.
     row: usize,
 }
 
@@ -23,7 +26,8 @@ impl fmt::Display for Entry {
     }
 }
 
-/// The statements with those that store results, and the results that are left.
+/// Returns the statements with stores of the results inserted, and the results that are not stored and not
+/// zero.
 pub fn with_stores(
     f: &Function,
     program: &Program,
@@ -41,10 +45,11 @@ pub fn with_stores(
     (all, left.map(|(_, (piece, _))| piece.clone()).collect())
 }
 
-/// Where each output goes. What is always zero goes nowhere, but in an inverse, to whose parts the rest is added; nor do the
-/// columns of it that are still to come.
+/// Returns the entries in which each output is stored. Constant zeros of derivatives are not stored; those of
+/// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
+/// stored, because they are computed later.
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
-    let given = given(f);
+    let given = matrix_arguments(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
@@ -74,7 +79,7 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     (0..before).map(|_| Vec::new()).chain(kept).collect()
 }
 
-/// Every result right after the last statement that it needs.
+/// Inserts the store of every result directly after the last statement on which it depends.
 fn as_known(
     program: &Program,
     statements: Vec<Statement>,
@@ -88,10 +93,10 @@ fn as_known(
     }
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
-    let known = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
-    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| known(*need)).max().unwrap_or(0);
+    let binding = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
+    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| binding(*need)).max().unwrap_or(0);
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
-    for [one, next] in neighbours(lanes(program, places, &known)) {
+    for [one, next] in neighbours(lanes(program, places, &binding)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
@@ -99,7 +104,7 @@ fn as_known(
     }
     let widths = program.lanes();
     for (pairs, ready) in pairs.iter().zip(&mut ready) {
-        ready.extend(together(pairs, &widths));
+        ready.extend(store_pairs(pairs, &widths));
     }
     for (piece, places) in outputs.pieces.iter().zip(&left).filter(|(_, places)| !places.is_empty()) {
         let text = match places.as_slice() {
@@ -119,17 +124,21 @@ fn as_known(
     all
 }
 
-/// A lane of a vector that is stored.
+/// A lane of a vector that is stored in a matrix.
 struct Lane {
+    /// Entry in which the lane is stored.
     place: Entry,
+    /// Index of the output.
     output: usize,
+    /// Value number of the vector.
     vector: usize,
+    /// Index of the lane.
     lane: usize,
-    /// The number of the statement that the vector is known after.
+    /// Number of statements up to the one that computes the vector.
     known: usize,
 }
 
-/// All results that are lanes of vectors with names, place by place.
+/// Returns all results that are lanes of named vectors, sorted by their entries.
 fn lanes(program: &Program, places: &[Vec<Entry>], known: &dyn Fn(usize) -> Option<usize>) -> Vec<Lane> {
     let mut all = Vec::new();
     for (output, (operand, places)) in program.outputs.iter().zip(places).enumerate() {
@@ -144,7 +153,8 @@ fn lanes(program: &Program, places: &[Vec<Entry>], known: &dyn Fn(usize) -> Opti
     all
 }
 
-/// Those that one instruction can store: one below the other, and of vectors that are known near each other.
+/// Returns pairs of lanes that one instruction can store: their entries are adjacent in a column, and their
+/// vectors are computed at most [`NEAR_STATEMENTS`] statements apart.
 fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     let mut pairs = Vec::new();
     let mut rest = lanes.into_iter().peekable();
@@ -158,9 +168,9 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     pairs
 }
 
-/// Statements that store pairs of lanes: all lanes of a vector at once that go below each other, all lanes of two vectors that
-/// go to columns side by side, and what is left pair by pair.
-fn together(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
+/// Returns the statements that store pairs of lanes. All lanes of a vector in adjacent rows are stored
+/// together, as are all lanes of two vectors in adjacent columns; remaining pairs are stored individually.
+fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
     let mut statements = Vec::new();
     let mut rest = pairs;
     while let [[one, next], ..] = rest {
@@ -194,7 +204,7 @@ fn together(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
     statements
 }
 
-/// All results after the last statement.
+/// Appends the stores of all results after the last statement, in the order of their entries.
 fn at_the_end(
     mut statements: Vec<Statement>,
     places: &[Vec<Entry>],

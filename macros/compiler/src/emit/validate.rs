@@ -1,25 +1,25 @@
-//! The function that checks parameters.
+//! The generated function that checks parameters.
 
 use super::interface::Interface;
 use crate::mechanism::{Model, Requirement};
 use std::fmt::Write;
 
-/// A condition on figures that follow from parameters.
+/// A condition on values that depend on parameters.
 #[derive(Clone, Debug)]
-pub struct Figure {
-    /// The condition's name in the runtime.
+pub struct ParameterCondition {
+    /// Name of the condition in the runtime.
     rule: &'static str,
-    /// What the figures are.
+    /// Description of the values.
     name: String,
-    /// The parameters that they follow from.
+    /// Names of the parameters on which the values depend.
     parameters: Vec<String>,
 }
 
-impl Figure {
-    /// All conditions of a model, in the order of the values of the hidden function.
-    pub fn of(model: &Model<'_>) -> Vec<Figure> {
+impl ParameterCondition {
+    /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
+    pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
         let name = |k: &usize| model.parameters.get(*k).cloned();
-        let figure = |requirement: &Requirement<'_>| Figure {
+        let figure = |requirement: &Requirement<'_>| ParameterCondition {
             rule: requirement.rule.name(),
             name: requirement.figure.clone(),
             parameters: requirement.parameters.iter().filter_map(name).collect(),
@@ -28,21 +28,21 @@ impl Figure {
     }
 }
 
-/// Writes the function; of a mechanism that failed to compile its body never returns.
+/// Writes `validate`. For a mechanism that failed to compile its body never returns.
 pub fn write_method(out: &mut String, i: &Interface<'_>, failed: bool) {
     if i.facts.parameters == 0 {
         return;
     }
     out.push_str(
-        "/// Whether a mechanism with these parameters can be: whether they are finite, masses, sizes and coefficients are not
-        /// negative, and bodies can have their inertias (none of the principal moments exceeds the sum of the others). What is
-        /// an error of the compiler in a number is one here in a parameter. No other function looks at it: call it where
-        /// parameters are loaded, estimated or drawn at random. Of lanes, all must be sound. A parameter whose name begins
-        /// with `_` and which nothing uses may be what it likes.
+        "/// Checks that the parameters are physically valid: values are finite; masses, sizes and coefficients are not negative;
+        /// and no principal moment of inertia exceeds the sum of the other two. These are the conditions that the compiler
+        /// checks for numbers. No other function checks them: call this one for parameters that are loaded, estimated or
+        /// random. With lanes, the values of all lanes must be valid. Unused parameters whose names begin with `_` are not
+        /// checked.
         ///
         /// # Errors
         ///
-        /// The first figure that is not sound, with the parameters that it follows from.
+        /// The first invalid value, with the parameters on which it depends.
         #[inline(never)]\npub fn validate(&self) -> ::core::result::Result<(), ::linkwork::ParameterError> {\n",
     );
     if failed {

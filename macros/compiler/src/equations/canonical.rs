@@ -1,6 +1,6 @@
 //! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::replace_all;
@@ -58,9 +58,9 @@ pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>)
     let rate = with_velocities(&rate, &velocity);
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
-    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?;
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?;
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());
     let velocity = all.split_off(1);
@@ -105,7 +105,8 @@ pub(super) fn velocities_of<'g>(
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
         let moves = |s: &Symbol| matches!(Quantity::of(*s), Quantity::Configuration(_));
-        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.of(divisor)?.terms.len() > 1) {
+        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.normal_form(divisor)?.terms.len() > 1)
+        {
             determinants.push(divisor);
             divisor = determinant(determinants.len() - 1).expr(divisor.graph());
         }
@@ -121,11 +122,11 @@ pub(super) fn velocities_of<'g>(
 fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
     // With cyclic indices no sign is needed.
-    let at = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
+    let entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
     match n {
         1 => m[0][0].num(1.0),
-        2 if i == j => at(1, 1),
-        2 => -at(1, 1),
-        _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
+        2 if i == j => entry(1, 1),
+        2 => -entry(1, 1),
+        _ => entry(1, 1) * entry(2, 2) - entry(1, 2) * entry(2, 1),
     }
 }

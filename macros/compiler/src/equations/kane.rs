@@ -10,7 +10,7 @@
 //! quasi-velocities).
 
 use super::written::{filled, name, names_with, rate_name, rates};
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::{Diagnostics, all_of};
@@ -61,7 +61,7 @@ pub struct Kane {
 }
 
 /// Reason for the absence of equations in independent velocities.
-pub enum Without {
+pub enum KaneFailure {
     /// No choice of dependent velocities was found.
     Choice,
     /// The equations would be too long.
@@ -75,16 +75,16 @@ pub fn kane<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     speeds: Option<&InSpeeds<'g>>,
-) -> Result<Kane, Without> {
+) -> Result<Kane, KaneFailure> {
     let own = speeds.map_or(model, |speeds| &speeds.model);
     let rows = constraints::jacobian(own);
     let dependent = match &model.dependent {
         Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
             pivots.iter().map(|pivot| pivot.velocity.0).collect()
         }
-        _ => chosen(model, own, &rows).ok_or(Without::Choice)?,
+        _ => chosen(model, own, &rows).ok_or(KaneFailure::Choice)?,
     };
-    let solved = Solved::of(own, &rows, dependent).ok_or(Without::Choice)?;
+    let solved = Solved::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
     let v = velocities(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
     let mut inputs = forces::generalized_forces(model, joints);
@@ -97,7 +97,7 @@ pub fn kane<'g>(
     let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
     let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
     let lists = [motion, forces, solved.values, rates, residuals];
-    let (ring, found) = polynomials(own, &lists).ok_or(Without::Length)?;
+    let (ring, found) = polynomials(own, &lists).ok_or(KaneFailure::Length)?;
     let [motion, forces, values, rates, residuals] = found;
     Ok(Kane {
         ring,
@@ -116,14 +116,14 @@ fn polynomials<'g, const N: usize>(
     lists: &[Vec<Expr<'g>>; N],
 ) -> Option<(Ring, [Vec<Polynomial>; N])> {
     let all: Vec<Expr<'g>> = lists.concat();
-    if Tape::of(&all).steps() > Limits::ASKED.operations[1] {
+    if Tape::new(&all).steps() > Limits::ASKED.operations[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
     normal.ring.allow_more();
-    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?.into_iter();
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?.into_iter();
     let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
     Some((short.ring, lists))
 }
@@ -136,14 +136,14 @@ fn polynomials<'g, const N: usize>(
 /// speeds.
 fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
-    let tape = Tape::of(&rows.concat());
-    let at = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
+    let tape = Tape::new(&rows.concat());
+    let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
         tape.values(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
-        (0..SAMPLES).map(|seed| at(&random_configuration(model, seed), seed)).collect();
-    let closed = sample_configurations(model, &Rows::of(model), &mut Diagnostics::new());
-    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| at(q, *seed)).collect();
+        (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
+    let closed = sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
+    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| sampled_rows(q, *seed)).collect();
     let is_regular = |columns: &[usize]| {
         closed.iter().all(|rows| {
             let mut basis = Basis::default();
@@ -208,7 +208,7 @@ struct Solved<'g> {
 }
 
 impl<'g> Solved<'g> {
-    fn of(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
+    fn new(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
         let g = model.graph;
         dependent.sort_unstable();
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
@@ -221,11 +221,11 @@ impl<'g> Solved<'g> {
             };
             inverse.iter().map(|row| shortened(model, entry(row))).collect()
         };
-        let still = |e: Expr<'g>| {
+        let at_zero_velocity = |e: Expr<'g>| {
             replace_all(&[e], &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()))[0]
         };
         // Motion that is driven in time also moves dependent velocities.
-        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| still(c.rate)).collect();
+        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| at_zero_velocity(c.rate)).collect();
         let mut values = times(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
         for k in &independent {
@@ -276,21 +276,21 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
         let (name, dots) = name(symbol);
         (names.get(&name), dots)
     };
-    let left = |k: usize| primed(rate_name(model, k));
-    let lines = Lines::of(kane, Plain { name: &marked }, &left);
+    let rate_text = |k: usize| primed(rate_name(model, k));
+    let lines = Lines::new(kane, Plain { name: &marked }, &rate_text);
     let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(line).collect();
     plain += "\n";
     plain.extend(lines.motion.iter().map(line));
     plain = plain + "\n" + &filled(&legend(model, kane, &marked)) + "\n";
-    let left = |k: usize| {
+    let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
-    let latex = |k: usize| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let latex = Lines::of(kane, Latex { name: &dotted }, &latex);
-    let mathml = |k: usize| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let mathml = Lines::of(kane, MathMl { name: &dotted }, &mathml);
+    let latex = |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let latex = Lines::new(kane, Latex { name: &dotted }, &latex);
+    let mathml = |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let mathml = Lines::new(kane, MathMl { name: &dotted }, &mathml);
     Written {
         plain,
         latex: aligned(&[latex.velocities, latex.motion].concat()),
@@ -307,7 +307,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
+    fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
         let writer = Writer::styled(&kane.ring, style);
         let of_speeds = kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {

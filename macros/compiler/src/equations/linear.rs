@@ -7,7 +7,7 @@
 //! `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, with all coefficients evaluated at rest. The contribution of the
 //! multipliers to `f_q` is their geometric stiffness.
 
-use super::{Limits, Short, right_sides};
+use super::{Limits, Simplifier, right_sides};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::diag::Diagnostics;
@@ -103,7 +103,7 @@ fn coefficients<'g>(
     for (s, state) in at.states.iter().enumerate() {
         let mut by = Derivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);
         for (k, row) in rows.iter().enumerate() {
-            by_deviation[k].push(by.of(*row));
+            by_deviation[k].push(by.differentiate(*row));
             let own = k == nv + model.constraints.len() + s;
             by_rate[k].push(if own { g.one() } else { g.zero() });
         }
@@ -118,7 +118,7 @@ fn coefficients<'g>(
         .map(|k| if k < nv { jacobian.iter().map(|row| row[k]).collect() } else { zeros.clone() })
         .collect();
     let inputs = symbolic::by_input(model, &rows);
-    let at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.of(row)).collect() };
+    let at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate(row)).collect() };
     Coefficients {
         orders: [at_rest(by_deviation), at_rest(by_rate), at_rest(by_acceleration)],
         inputs: at_rest(inputs),
@@ -150,11 +150,11 @@ fn written_out<'g>(
     }
     let values = rest.values(model, at);
     let values: Vec<(Quantity, Polynomial)> =
-        values.into_iter().map(|(what, e)| Some((what, normal.of(e)?))).collect::<Option<_>>()?;
-    let mut short = Short::new(normal.ring, Vec::new(), &Limits::ASKED);
-    let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
-    let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
-    let values: Option<Vec<_>> = values.iter().map(|(what, p)| Some((*what, short.of(p)?))).collect();
+        values.into_iter().map(|(what, e)| Some((what, normal.normal_form(e)?))).collect::<Option<_>>()?;
+    let mut short = Simplifier::new(normal.ring, Vec::new(), &Limits::ASKED);
+    let motion = motion.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
+    let values: Option<Vec<_>> = values.iter().map(|(what, p)| Some((*what, short.shorten(p)?))).collect();
     let values = values?.into_iter().filter(|(_, p)| !p.terms.is_empty()).collect();
     Some(Linear { ring: short.ring, motion, forces, values, stability: None })
 }
@@ -168,7 +168,7 @@ fn add_products<'g>(
     normal: &mut Normal<'g>,
 ) -> Option<()> {
     for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
-        let coefficient = normal.of(*coefficient)?;
+        let coefficient = normal.normal_form(*coefficient)?;
         let atom = normal.ring.atom(Atom::Symbol(symbol(k).symbol()))?;
         let product = normal.ring.times(&coefficient, &Polynomial::single(atom, sign))?;
         *sum = normal.ring.plus(sum, &product)?;
@@ -209,8 +209,8 @@ impl Linear {
     }
 
     fn with_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
-        if let Some(characteristic) = characteristic::of(model, all) {
-            self.stability = stability::of(characteristic);
+        if let Some(characteristic) = characteristic::characteristic_polynomial(model, all) {
+            self.stability = stability::analyse(characteristic);
         }
         self
     }

@@ -87,7 +87,7 @@ pub fn derive<'g>(
 ) -> Option<Equations> {
     let metric = |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.metric(mass));
     let entries: Vec<Expr<'g>> = metric(mass).concat();
-    if entries.is_empty() || Tape::of(&entries).steps() > limits.operations[0] {
+    if entries.is_empty() || Tape::new(&entries).steps() > limits.operations[0] {
         return None;
     }
     let bias = bias(model, joints, speeds);
@@ -99,7 +99,7 @@ pub fn derive<'g>(
     }
     let kept: Vec<Expr<'g>> = constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
     let all: Vec<Expr<'g>> = entries.iter().chain(&bias).chain(&right).chain(&kept).copied().collect();
-    if Tape::of(&all).steps() > limits.operations[1] {
+    if Tape::new(&all).steps() > limits.operations[1] {
         return None;
     }
     let mut normal = Normal::new(model.graph, rank);
@@ -108,7 +108,7 @@ pub fn derive<'g>(
     }
     // Angles in the order of `q`, so that sums of angles are printed in this order.
     for angle in angles(model) {
-        normal.of(angle.sin())?;
+        normal.normal_form(angle.sin())?;
     }
     let entries = normals(&mut normal, &entries)?;
     let mut motion = normals(&mut normal, &bias)?;
@@ -125,7 +125,7 @@ pub fn derive<'g>(
         motion[i] = normal.ring.plus(&motion[i], &force)?;
     }
     let kinetic = kinetic((model, speeds), joints, &entries, &v, &mut normal)?;
-    let potential = normal.of(energy::potential_energy(model, joints))?;
+    let potential = normal.normal_form(energy::potential_energy(model, joints))?;
     let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
     let mut forces = normals(&mut normal, &right)?;
     motion.extend(normals(&mut normal, &kept)?);
@@ -133,10 +133,10 @@ pub fn derive<'g>(
     let replaced: Vec<usize> = speeds.map_or_else(Vec::new, InSpeeds::replaced);
     let mut rates = Vec::new();
     for (k, speeds) in replaced.into_iter().filter_map(|k| Some((k, speeds?))) {
-        rates.push((k, normal.of(speeds.rates[k])?));
+        rates.push((k, normal.normal_form(speeds.rates[k])?));
     }
     let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates, without_forces: false };
-    shortened(Short::new(normal.ring, quaternions(model), limits), found)
+    shortened(Simplifier::new(normal.ring, quaternions(model), limits), found)
 }
 
 /// Derives the equations of a mechanism without constraints whose forces are too long to be readable: only
@@ -217,7 +217,7 @@ fn kinetic<'g>(
 ) -> Option<Polynomial> {
     if joints.iter().any(|joint| joint.drift.is_some()) {
         let energy = energy::kinetic_energy(model, joints, &velocities(model));
-        return normal.of(speeds.map_or(energy, |speeds| speeds.written(&[energy])[0]));
+        return normal.normal_form(speeds.map_or(energy, |speeds| speeds.written(&[energy])[0]));
     }
     let mut twice = Polynomial::default();
     for (k, entry) in mass.iter().enumerate() {
@@ -229,11 +229,11 @@ fn kinetic<'g>(
 }
 
 fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
-    list.iter().map(|e| normal.of(*e)).collect()
+    list.iter().map(|e| normal.normal_form(*e)).collect()
 }
 
 /// Simplifies polynomials within a maximum total number of terms.
-struct Short {
+struct Simplifier {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
@@ -243,13 +243,13 @@ struct Short {
     written_left: usize,
 }
 
-impl Short {
-    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Short {
+impl Simplifier {
+    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Simplifier {
         let written_left = limits.terms * NESTED_TERMS;
-        Short { ring, quaternions, long: limits.long, left: limits.terms, written_left }
+        Simplifier { ring, quaternions, long: limits.long, left: limits.terms, written_left }
     }
 
-    fn of(&mut self, p: &Polynomial) -> Option<Polynomial> {
+    fn shorten(&mut self, p: &Polynomial) -> Option<Polynomial> {
         let p = without_noise(&self.ring, p);
         let mut p = simplified(&mut self.ring, &p)?;
         for quaternion in &self.quaternions {
@@ -262,16 +262,16 @@ impl Short {
 }
 
 /// Simplifies all equations. `None` if they are too long.
-fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
+fn shortened(mut short: Simplifier, found: Equations) -> Option<Equations> {
     let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
     }
-    let lagrangian = short.of(&lagrangian)?;
-    let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
-    let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
-    let rates = rates.iter().map(|(k, p)| Some((*k, short.of(p)?))).collect::<Option<_>>()?;
+    let lagrangian = short.shorten(&lagrangian)?;
+    let motion = motion.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
+    let rates = rates.iter().map(|(k, p)| Some((*k, short.shorten(p)?))).collect::<Option<_>>()?;
     Some(Equations { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
 }
 

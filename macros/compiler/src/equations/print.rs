@@ -1,6 +1,6 @@
 //! Formatting of expressions and polynomials, as plain text or typeset.
 
-use crate::algebra::common::Among;
+use crate::algebra::common::FactorScope;
 use crate::algebra::factor::items;
 use crate::algebra::item::{Item, Order};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
@@ -40,7 +40,7 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     if depth == 0 {
         return "…".to_string();
     }
-    let at = |id, level| term(e.graph().expr(id), name, level, depth - 1);
+    let operand = |id, level| term(e.graph().expr(id), name, level, depth - 1);
     let (text, own) = match e.node() {
         Node::Const(c) => (format!("{c}"), if c < 0.0 { 1 } else { 4 }),
         Node::Symbol(s) => (name(s), 4),
@@ -49,23 +49,23 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
             let names: Vec<String> = e.graph().gather(k).into_iter().map(name).collect();
             (format!("[{}]", names.join(", ")), 4)
         }
-        Node::Sum(_, a) => (format!("sum({})", at(a, 0)), 4),
-        Node::Lane(k, a) => (format!("{}[{k}]", at(a, 4)), 4),
-        Node::Join(_, a, b) => (format!("[{}; {}]", at(a, 0), at(b, 0)), 4),
-        Node::Neg(a) => (format!("-{}", at(a, 2)), 1),
-        Node::Add(a, b) => (format!("{} + {}", at(a, 1), at(b, 1)), 1),
-        Node::Sub(a, b) => (format!("{} - {}", at(a, 1), at(b, 2)), 1),
-        Node::Mul(a, b) => (format!("{} * {}", at(a, 2), at(b, 2)), 2),
-        Node::Div(a, b) => (format!("{} / {}", at(a, 2), at(b, 3)), 2),
-        Node::Call(f, a) => (format!("{}({})", f.name(), at(a, 0)), 4),
-        Node::Atan2(a, b) => (format!("atan2({}, {})", at(a, 0), at(b, 0)), 4),
+        Node::Sum(_, a) => (format!("sum({})", operand(a, 0)), 4),
+        Node::Lane(k, a) => (format!("{}[{k}]", operand(a, 4)), 4),
+        Node::Join(_, a, b) => (format!("[{}; {}]", operand(a, 0), operand(b, 0)), 4),
+        Node::Neg(a) => (format!("-{}", operand(a, 2)), 1),
+        Node::Add(a, b) => (format!("{} + {}", operand(a, 1), operand(b, 1)), 1),
+        Node::Sub(a, b) => (format!("{} - {}", operand(a, 1), operand(b, 2)), 1),
+        Node::Mul(a, b) => (format!("{} * {}", operand(a, 2), operand(b, 2)), 2),
+        Node::Div(a, b) => (format!("{} / {}", operand(a, 2), operand(b, 3)), 2),
+        Node::Call(f, a) => (format!("{}({})", f.name(), operand(a, 0)), 4),
+        Node::Atan2(a, b) => (format!("atan2({}, {})", operand(a, 0), operand(b, 0)), 4),
         Node::Table(lookup, a, b, c) => {
             let arguments: Vec<String> =
-                [a, b, c].into_iter().take(lookup.variables()).map(|a| at(a, 0)).collect();
+                [a, b, c].into_iter().take(lookup.variables()).map(|a| operand(a, 0)).collect();
             (format!("{}({})", e.graph().table_name(lookup), arguments.join(", ")), 4)
         }
-        Node::Pow(a, b) => (format!("pow({}, {})", at(a, 0), at(b, 0)), 4),
-        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), at(a, 0), at(b, 0)), 4),
+        Node::Pow(a, b) => (format!("pow({}, {})", operand(a, 0), operand(b, 0)), 4),
+        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), operand(a, 0), operand(b, 0)), 4),
     };
     if own < level { format!("({text})") } else { text }
 }
@@ -88,22 +88,22 @@ impl<'a> Writer<'a> {
 impl<'a, S: Style> Writer<'a, S> {
     /// Creates a writer for the polynomials of a ring in the given style.
     pub fn styled(ring: &'a Ring, style: S) -> Writer<'a, S> {
-        Writer { ring, order: Order::of(ring), style }
+        Writer { ring, order: Order::new(ring), style }
     }
 
     /// Formats a polynomial with grouped terms and extracted common factors.
     pub fn polynomial(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::All))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::All))
     }
 
     /// Formats an energy. Terms of different degree in rates are not factored together.
     pub fn energy(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::Kinds))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::Kinds))
     }
 
     /// Formats a linear form. Its coefficients are not factored together.
     pub fn linear(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, Among::None))
+        self.sum(&items(self.ring, &self.order, p, FactorScope::None))
     }
 
     fn sum(&self, items: &[Item]) -> String {
@@ -139,8 +139,8 @@ impl<'a, S: Style> Writer<'a, S> {
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
         self.factors(front, &mut factors, &mut divisors);
         factors.extend(sums);
-        self.factors(m.without(front), &mut factors, &mut divisors);
-        let number = Number::of(coefficient.abs());
+        self.factors(m.cleared(front), &mut factors, &mut divisors);
+        let number = Number::classify(coefficient.abs());
         let number = (number != Number::ONE || factors.is_empty()).then_some(number);
         self.style.product(number, &factors, &divisors)
     }

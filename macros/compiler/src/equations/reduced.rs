@@ -3,7 +3,7 @@
 
 use super::canonical::{determinant, velocities_of};
 use super::written::{about_inertias, determinants, filled, name, names_with, rates};
-use super::{Limits, Short, quaternions, rank};
+use super::{Limits, Simplifier, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
@@ -14,7 +14,7 @@ use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::routh::{Solved, part, solved, with, with_velocities};
+use crate::mechanics::routh::{Solved, part, solved, with_cyclic_velocities, with_velocities};
 use crate::mechanics::{accelerations, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
@@ -58,36 +58,36 @@ pub fn reduced<'g>(
         divisors = found;
         Some(velocity)
     })?;
-    let all = with(model, &cyclic, &velocity);
+    let all = with_cyclic_velocities(model, &cyclic, &velocity);
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
     let a = accelerations(model);
     let dot = |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
-    let of = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
-    let a = of(&others, &a);
+    let selected = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
+    let a = selected(&others, &a);
     // Accelerations of the cyclic coordinates without inputs, and due to inputs.
     let across = part(mass, &cyclic, &others);
-    let carried = across.iter().zip(of(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
+    let carried = across.iter().zip(selected(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
     let (carried, _) = velocities_of(&own, &carried, &mut normal)?;
-    let (driven, _) = velocities_of(&own, &of(&cyclic, &inputs), &mut normal)?;
+    let (driven, _) = velocities_of(&own, &selected(&cyclic, &inputs), &mut normal)?;
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in &others {
-        let row = of(&cyclic, &mass[*k]);
-        motion.push(dot(&of(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
+        let row = selected(&cyclic, &mass[*k]);
+        motion.push(dot(&selected(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
         forces.push(inputs[*k] - dot(&row, &driven));
     }
-    let momentum_rate = of(&cyclic, &inputs);
+    let momentum_rate = selected(&cyclic, &inputs);
     let lists = [vec![routhian], motion, forces, velocity, momentum_rate, divisors];
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for list in &lists {
-        found.push(list.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?);
+        found.push(list.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?);
     }
-    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
     let mut found = found
         .iter()
-        .map(|list| list.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>())
+        .map(|list| list.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>())
         .collect::<Option<Vec<_>>>()?
         .into_iter();
     let mut next = || found.next().unwrap_or_default();

@@ -41,7 +41,7 @@ fn equations_of(gravity: &str, item: &str) -> String {
 fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let mut r = Random(seed * 2 + 1);
     let mut numbers =
-        |n: usize| -> Vec<f64> { (0..n).map(|_| r.below(2000) as f64 / 1000.0 - 1.0).collect() };
+        |n: usize| -> Vec<f64> { (0..n).map(|_| r.number_below(2000) as f64 / 1000.0 - 1.0).collect() };
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
     for first in model.charts.iter().filter_map(Chart::quaternion) {
@@ -164,7 +164,7 @@ fn normal_forms_are_what_is_generated() {
 }
 
 /// Places the tip of a link at `place`, rotated by `angle` about z.
-fn put<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
+fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
     model.links[link].placement = Pose { rotation: Rotation::about_axis(2, angle), translation: Vec3(place) };
@@ -177,7 +177,7 @@ fn absolute_angles() {
         let g = model.graph;
         let [a, b] = [0, 1].map(|k| Quantity::Configuration(k).expr(g));
         let length = Quantity::Parameter(3).expr(g);
-        put(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
+        place_tip(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
         model.inputs.clear();
         check(&model);
         crate::equations(&model)
@@ -197,7 +197,7 @@ fn driven_in_time() {
         let [radius, speed] = [2, 3].map(|k| Quantity::Parameter(k).expr(g));
         let (theta, turn) = (Quantity::Configuration(0).expr(g), speed * Quantity::Time.expr(g));
         let out = radius * theta.sin();
-        put(&mut model, 0, [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())], g.zero());
+        place_tip(&mut model, 0, [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())], g.zero());
         check(&model);
         crate::equations(&model)
     });
@@ -360,14 +360,14 @@ fn check_canonical(model: &Model<'_>) -> String {
             _ => symbol(s),
         };
         let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
-        let at = |s: Symbol| match Quantity::of(s) {
+        let symbol_value = |s: Symbol| match Quantity::of(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
             Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
             _ => symbol(s),
         };
         let all = [&c.hamiltonian].into_iter().chain(&c.velocity).chain(&c.momentum_rate);
-        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &at)).collect();
+        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &symbol_value)).collect();
         assert_near(&found, &eval(&expected, &symbol), &model.name);
     }
     let written = written_canonical(model, &c);

@@ -30,7 +30,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style>(equations: &Equations, style: S) -> Lines {
+    fn new<S: Style>(equations: &Equations, style: S) -> Lines {
         let writer = Writer::styled(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         Lines {
@@ -53,7 +53,7 @@ impl Lines {
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
 fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let name = |symbol| primed(name(model, rates, symbol));
-    let lines = Lines::of(equations, Plain { name: &name });
+    let lines = Lines::new(equations, Plain { name: &name });
     let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
     let mut out = line(&format!("{energy} = {}", lines.lagrangian));
@@ -173,7 +173,7 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         let (name, dots) = name(model, rates, symbol);
         (names.get(&name), dots)
     };
-    let left = |k: usize| {
+    let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
@@ -181,10 +181,12 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::of(equations, Latex { name: &name })
-        .equations(energy, &|k| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
-    let mathml = Lines::of(equations, MathMl { name: &name })
-        .equations(of_mathml, &|k| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
+    let latex = Lines::new(equations, Latex { name: &name }).equations(energy, &|k| {
+        Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
+    let mathml = Lines::new(equations, MathMl { name: &name }).equations(of_mathml, &|k| {
+        MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
     (aligned(&latex), page(&mathml))
 }
 
@@ -283,7 +285,7 @@ fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String
             _ => ("are the generalized forces", "their terms"),
         };
         format!(
-            "{} {are} of gravity, force elements and inputs; {terms} are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]` writes up to some thousand.",
+            "{} {are} of gravity, force elements and inputs; {terms} are too many to be readable. The option `equations = lagrange` of `#[mechanism]` prints up to some thousand.",
             all_of(&names)
         )
     });

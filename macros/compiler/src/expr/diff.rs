@@ -55,12 +55,12 @@ pub struct Derivative<'g> {
 impl<'g> Derivative<'g> {
     /// Creates the differentiation with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
-        Derivative::along(vec![(symbol, graph.one())], graph)
+        Derivative::with_rates(vec![(symbol, graph.one())], graph)
     }
 
     /// Creates the differentiation along a direction in which the symbols change at the given rates and all
     /// others are constant.
-    pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
+    pub fn with_rates(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
     }
 
@@ -72,16 +72,16 @@ impl<'g> Derivative<'g> {
             let (mut e, mut derivative) = (e, derivative);
             loop {
                 self.known.set(e.id(), derivative.id());
-                let at = |id: Id| self.graph.expr(id);
-                let constant = |id: Id| at(id).value();
+                let expr = |id: Id| self.graph.expr(id);
+                let constant = |id: Id| expr(id).value();
                 (e, derivative) = match e.node() {
-                    Node::Neg(a) => (at(a), -derivative),
-                    Node::Add(a, b) if constant(a).is_some() => (at(b), derivative),
-                    Node::Add(a, b) | Node::Sub(a, b) if constant(b).is_some() => (at(a), derivative),
-                    Node::Sub(a, b) if constant(a).is_some() => (at(b), -derivative),
+                    Node::Neg(a) => (expr(a), -derivative),
+                    Node::Add(a, b) if constant(a).is_some() => (expr(b), derivative),
+                    Node::Add(a, b) | Node::Sub(a, b) if constant(b).is_some() => (expr(a), derivative),
+                    Node::Sub(a, b) if constant(a).is_some() => (expr(b), -derivative),
                     Node::Mul(a, b) => match (constant(a), constant(b)) {
-                        (Some(c), _) if c != 0.0 => (at(b), derivative * (1.0 / c)),
-                        (_, Some(c)) if c != 0.0 => (at(a), derivative * (1.0 / c)),
+                        (Some(c), _) if c != 0.0 => (expr(b), derivative * (1.0 / c)),
+                        (_, Some(c)) if c != 0.0 => (expr(a), derivative * (1.0 / c)),
                         _ => break,
                     },
                     _ => break,
@@ -97,13 +97,13 @@ impl<'g> Derivative<'g> {
     /// Creates the partial differentiation of an operation with respect to its operand `id`. Its other
     /// operands are constant.
     fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
-        let mut derivative = Derivative::along(Vec::new(), graph);
+        let mut derivative = Derivative::with_rates(Vec::new(), graph);
         derivative.known.set(id, graph.one().id());
         derivative
     }
 
     /// Returns the derivative of `e`.
-    pub fn of(&mut self, e: Expr<'g>) -> Expr<'g> {
+    pub fn differentiate(&mut self, e: Expr<'g>) -> Expr<'g> {
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
         while let Some(&id) = todo.last() {
@@ -131,7 +131,7 @@ impl<'g> Derivative<'g> {
     }
 
     fn rule(&self, id: Id) -> Expr<'g> {
-        let at = |id: Id| self.graph.expr(id);
+        let expr = |id: Id| self.graph.expr(id);
         let d = |id: Id| self.derived(id);
         match self.graph.node(id) {
             // Derivatives are taken before the inputs of lanes are gathered.
@@ -147,14 +147,14 @@ impl<'g> Derivative<'g> {
             Node::Neg(a) => -d(a),
             Node::Add(a, b) => d(a) + d(b),
             Node::Sub(a, b) => d(a) - d(b),
-            Node::Mul(a, b) => d(a) * at(b) + at(a) * d(b),
-            Node::Div(a, b) => (d(a) - at(id) * d(b)) / at(b),
-            Node::Call(f, a) if d(a).is_zero() => at(a).call(f).zero(),
-            Node::Call(f, a) => self.outer(f, at(a), at(id)) * d(a),
-            Node::Atan2(y, x) => (at(x) * d(y) - at(y) * d(x)) / (at(x).square() + at(y).square()),
+            Node::Mul(a, b) => d(a) * expr(b) + expr(a) * d(b),
+            Node::Div(a, b) => (d(a) - expr(id) * d(b)) / expr(b),
+            Node::Call(f, a) if d(a).is_zero() => expr(a).call(f).zero(),
+            Node::Call(f, a) => self.outer(f, expr(a), expr(id)) * d(a),
+            Node::Atan2(y, x) => (expr(x) * d(y) - expr(y) * d(x)) / (expr(x).square() + expr(y).square()),
             Node::Extreme(_, a, b) if d(a) == d(b) => d(a),
             Node::Extreme(f, a, b) => {
-                let sign = (at(a) - at(b)).call(Function::Signum);
+                let sign = (expr(a) - expr(b)).call(Function::Signum);
                 let change = (d(a) - d(b)) * sign;
                 let sum = d(a) + d(b);
                 (if f == Extreme::Max { sum + change } else { sum - change }) * 0.5
@@ -162,17 +162,19 @@ impl<'g> Derivative<'g> {
             Node::Table(lookup, a, b, c) => {
                 let x = [a, b, c];
                 (0..lookup.variables()).fold(self.graph.zero(), |sum, k| match lookup.slope(k) {
-                    Some(slope) if !d(x[k]).is_zero() => sum + self.graph.lookup(slope, x.map(at)) * d(x[k]),
+                    Some(slope) if !d(x[k]).is_zero() => {
+                        sum + self.graph.lookup(slope, x.map(expr)) * d(x[k])
+                    }
                     _ => sum,
                 })
             }
             Node::Pow(a, b) => {
                 // This form is finite at a base of zero, where the power laws of force elements begin.
-                let slope = |b: Expr<'g>| b * at(a).pow(b - self.graph.one());
-                let base = if d(a).is_zero() { self.graph.zero() } else { slope(at(b)) * d(a) };
+                let slope = |b: Expr<'g>| b * expr(a).pow(b - self.graph.one());
+                let base = if d(a).is_zero() { self.graph.zero() } else { slope(expr(b)) * d(a) };
                 match d(b).is_zero() {
                     true => base,
-                    false => base + at(id) * d(b) * at(a).call(Function::Ln),
+                    false => base + expr(id) * d(b) * expr(a).call(Function::Ln),
                 }
             }
         }
@@ -219,10 +221,10 @@ mod tests {
         let e = shared * shared / (y.square() + z.call(Function::Exp)) + x.atan2(shared)
             - (z - x * shared).sqrt() * y.pow(x);
         let found = gradient(e, &symbols);
-        let at = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
+        let value = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
         for (symbol, found) in symbols.into_iter().zip(found) {
-            let expected = at(Derivative::with_respect_to(symbol, &g).of(e));
-            assert!((at(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{symbol:?}");
+            let expected = value(Derivative::with_respect_to(symbol, &g).differentiate(e));
+            assert!((value(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{symbol:?}");
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{Expr, Graph, Memo};
 
 /// Evaluates several expressions of one graph at the given values of the symbols.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-    Tape::of(roots).values(symbol)
+    Tape::new(roots).values(symbol)
 }
 
 /// Evaluates one expression at the given values of the symbols.
@@ -27,7 +27,7 @@ pub struct Tape<'g> {
 
 impl<'g> Tape<'g> {
     /// Collects the nodes of expressions, which belong to one graph.
-    pub fn of(roots: &[Expr<'g>]) -> Tape<'g> {
+    pub fn new(roots: &[Expr<'g>]) -> Tape<'g> {
         let mut tape = Tape { graph: None, steps: Vec::new(), roots: Vec::new(), in_lanes: false };
         let Some(first) = roots.first() else { return tape };
         let graph = first.graph();
@@ -59,7 +59,7 @@ impl<'g> Tape<'g> {
 
     /// Evaluates the expressions with estimates of their rounding errors.
     pub fn rounded(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
-        self.run_with(&|s| Rounded::of(symbol(s)))
+        self.run_with(&|s| Rounded::from_number(symbol(s)))
     }
 
     fn run_with<V: Value>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
@@ -72,20 +72,20 @@ impl<'g> Tape<'g> {
 
     /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
     fn run<V: Value, const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
-        let none = V::of(f64::NAN);
+        let none = V::from_number(f64::NAN);
         let padded = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
-            let at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
+            let value_at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
-                Node::Tuple(k) => padded(graph.tuple(k).into_iter().map(V::of).collect()),
+                Node::Tuple(k) => padded(graph.tuple(k).into_iter().map(V::from_number).collect()),
                 Node::Gather(k) => padded(graph.gather(k).into_iter().map(symbol).collect()),
-                Node::Sum(n, _) => [V::sum(&at(*a)[..usize::from(n)]); N],
-                Node::Lane(k, _) => [at(*a)[usize::from(k)]; N],
-                Node::Join(n, _, _) => joined(n.into(), at(*a), at(*b)),
+                Node::Sum(n, _) => [V::sum(&value_at(*a)[..usize::from(n)]); N],
+                Node::Lane(k, _) => [value_at(*a)[usize::from(k)]; N],
+                Node::Join(n, _, _) => joined(n.into(), value_at(*a), value_at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
-                    let (a, b, c) = (at(*a), at(*b), at(*c));
+                    let (a, b, c) = (value_at(*a), value_at(*b), value_at(*c));
                     std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
                 }
             };
@@ -98,14 +98,14 @@ impl<'g> Tape<'g> {
 /// Number type of an evaluation.
 trait Value: Copy {
     /// Converts a constant.
-    fn of(number: f64) -> Self;
+    fn from_number(number: f64) -> Self;
     fn sum(lanes: &[Self]) -> Self;
     /// Applies the operation of a node to the values of its operands.
     fn step(node: Node, operands: [Self; 3]) -> Self;
 }
 
 impl Value for f64 {
-    fn of(number: f64) -> f64 {
+    fn from_number(number: f64) -> f64 {
         number
     }
 
@@ -143,7 +143,7 @@ impl Rounded {
 }
 
 impl Value for Rounded {
-    fn of(number: f64) -> Rounded {
+    fn from_number(number: f64) -> Rounded {
         Rounded { value: number, error: f64::EPSILON * number.abs() }
     }
 

@@ -30,28 +30,28 @@ const DEPTH: usize = 16;
 
 /// Returns sine and cosine of an expression, with exact values if known.
 fn circle(x: Expr<'_>) -> [Expr<'_>; 2] {
-    known(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
+    known_sine_cosine(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
 }
 
 /// Returns sine and cosine of an expression if they are known without the functions themselves.
-fn known(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
+fn known_sine_cosine(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     let depth = depth.checked_sub(1)?;
-    let at = |id| x.graph().expr(id);
+    let expr = |id| x.graph().expr(id);
     let one = x.num(1.0);
     match x.node() {
         Node::Const(value) => of_number(value).map(|point| point.map(|c| x.num(c))),
-        Node::Neg(a) => known(at(a), depth).map(|[sin, cos]| [-sin, cos]),
-        Node::Add(a, b) => sum(at(a), at(b), one, depth),
-        Node::Sub(a, b) => sum(at(a), at(b), -one, depth),
-        Node::Call(Function::Asin, a) => Some([at(a), (one - at(a).square()).sqrt()]),
-        Node::Call(Function::Acos, a) => Some([(one - at(a).square()).sqrt(), at(a)]),
+        Node::Neg(a) => known_sine_cosine(expr(a), depth).map(|[sin, cos]| [-sin, cos]),
+        Node::Add(a, b) => sum(expr(a), expr(b), one, depth),
+        Node::Sub(a, b) => sum(expr(a), expr(b), -one, depth),
+        Node::Call(Function::Asin, a) => Some([expr(a), (one - expr(a).square()).sqrt()]),
+        Node::Call(Function::Acos, a) => Some([(one - expr(a).square()).sqrt(), expr(a)]),
         Node::Call(Function::Atan, a) => {
-            let length = (one + at(a).square()).sqrt();
-            Some([at(a) / length, one / length])
+            let length = (one + expr(a).square()).sqrt();
+            Some([expr(a) / length, one / length])
         }
         Node::Atan2(y, x) => {
-            let length = (at(x).square() + at(y).square()).sqrt();
-            Some([at(y) / length, at(x) / length])
+            let length = (expr(x).square() + expr(y).square()).sqrt();
+            Some([expr(y) / length, expr(x) / length])
         }
         _ => None,
     }
@@ -59,7 +59,7 @@ fn known(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
 
 /// Returns sine and cosine of `a ± b`, with the given sign, if those of `a` or `b` are known.
 fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
-    let (of_a, of_b) = (known(a, depth), known(b, depth));
+    let (of_a, of_b) = (known_sine_cosine(a, depth), known_sine_cosine(b, depth));
     if of_a.is_none() && of_b.is_none() {
         return None;
     }

@@ -227,13 +227,13 @@ impl<'g> Sym3<'g> {
     }
 
     /// Returns entry `(i, j)`.
-    pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
+    pub fn entry(&self, i: usize, j: usize) -> Expr<'g> {
         if i == j { self.diagonal[i] } else { self.off[i + j - 1] }
     }
 
     /// Returns the full matrix.
     pub fn full(&self) -> Mat3<'g> {
-        Mat3::from_fn(|i, j| self.at(i, j))
+        Mat3::from_fn(|i, j| self.entry(i, j))
     }
 
     /// Returns the inertia `s (|a|² 1 − a aᵀ)` of a point mass `s` at `a`.

@@ -71,27 +71,27 @@ fn rebuilt<'g>(
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
     call: Call<'_, 'g>,
 ) -> Expr<'g> {
-    let at = |a: Id| graph.expr(known.get(a).unwrap_or(a));
+    let replaced = |a: Id| graph.expr(known.get(a).unwrap_or(a));
     match graph.node(id) {
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
-        Node::Sum(n, a) => at(a).lane_sum(n.into()),
-        Node::Lane(k, a) => at(a).lane(k.into()),
-        Node::Join(n, a, b) => at(a).joined(n.into(), at(b)),
+        Node::Sum(n, a) => replaced(a).lane_sum(n.into()),
+        Node::Lane(k, a) => replaced(a).lane(k.into()),
+        Node::Join(n, a, b) => replaced(a).joined(n.into(), replaced(b)),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
-        Node::Neg(a) => -at(a),
-        Node::Add(a, b) => at(a) + at(b),
-        Node::Sub(a, b) => at(a) - at(b),
-        Node::Mul(a, b) => at(a) * at(b),
-        Node::Div(a, b) => at(a) / at(b),
-        Node::Call(f, a) => call(f, at(a)),
-        Node::Atan2(a, b) => at(a).atan2(at(b)),
-        Node::Pow(a, b) => at(a).pow(at(b)),
-        Node::Extreme(f, a, b) => at(a).extreme(f, at(b)),
+        Node::Neg(a) => -replaced(a),
+        Node::Add(a, b) => replaced(a) + replaced(b),
+        Node::Sub(a, b) => replaced(a) - replaced(b),
+        Node::Mul(a, b) => replaced(a) * replaced(b),
+        Node::Div(a, b) => replaced(a) / replaced(b),
+        Node::Call(f, a) => call(f, replaced(a)),
+        Node::Atan2(a, b) => replaced(a).atan2(replaced(b)),
+        Node::Pow(a, b) => replaced(a).pow(replaced(b)),
+        Node::Extreme(f, a, b) => replaced(a).extreme(f, replaced(b)),
         Node::Table(lookup, a, b, c) => {
             // Variables beyond those of the table are ignored.
             let x = [a, b, c];
             let last = lookup.variables().saturating_sub(1);
-            graph.lookup(lookup, std::array::from_fn(|k| at(x[k.min(last)])))
+            graph.lookup(lookup, std::array::from_fn(|k| replaced(x[k.min(last)])))
         }
     }
 }

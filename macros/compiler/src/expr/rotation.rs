@@ -155,13 +155,13 @@ impl<'g> Rotation<'g> {
         // The trailing steps that are of the same kind in all lanes are combined one by one. The steps before
         // them become one matrix.
         let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
-        let alike = |k: &usize| {
+        let is_common = |k: &usize| {
             let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.kind()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
         };
-        let common = (0..first.steps.len()).take_while(alike).count();
+        let common = (0..first.steps.len()).take_while(is_common).count();
         let rest = |r: &Rotation<'g>| {
             let steps = r.steps[..r.steps.len() - common].to_vec();
             Rotation { steps, graph: r.graph }
@@ -292,11 +292,11 @@ impl<'g> Step<'g> {
             return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
         };
         let part = |sine: bool| {
-            let of = |step: &Step<'g>| match *step {
+            let lane_part = |step: &Step<'g>| match *step {
                 Step::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
                 Step::Matrix(_) => None,
             };
-            lanes.iter().map(of).collect::<Option<Vec<_>>>()
+            lanes.iter().map(lane_part).collect::<Option<Vec<_>>>()
         };
         Some(Step::Axis { axis, sin: merge(&part(true)?)?, cos: merge(&part(false)?)? })
     }
@@ -391,16 +391,16 @@ impl<'g> Step<'g> {
                 let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
                 // Same formula as in `apply_mat`. Twice the sine can be shared between several tensors, but
                 // if `xy` is a multiple, doubling its coefficient costs nothing.
-                let xy = x.at(i, j);
+                let xy = x.entry(i, j);
                 let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
-                let u = *cos * (x.at(i, i) - x.at(j, j)) - twice;
+                let u = *cos * (x.entry(i, i) - x.entry(j, j)) - twice;
                 let (cu, su) = (*cos * u, *sin * u);
                 let mut out = x.full();
-                (out.0[i][i], out.0[j][j]) = (x.at(j, j) + cu, x.at(i, i) - cu);
+                (out.0[i][i], out.0[j][j]) = (x.entry(j, j) + cu, x.entry(i, i) - cu);
                 let (ij, ki, kj) = (
-                    x.at(i, j) + su,
-                    *cos * x.at(k, i) - *sin * x.at(k, j),
-                    *sin * x.at(k, i) + *cos * x.at(k, j),
+                    x.entry(i, j) + su,
+                    *cos * x.entry(k, i) - *sin * x.entry(k, j),
+                    *sin * x.entry(k, i) + *cos * x.entry(k, j),
                 );
                 for (a, b, e) in [(i, j, ij), (k, i, ki), (k, j, kj)] {
                     (out.0[a][b], out.0[b][a]) = (e, e);
@@ -432,16 +432,16 @@ mod tests {
     #[test]
     fn constant_rotations_take_as_few_steps_as_they_can() {
         let g = Graph::new();
-        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
         for (rotation, steps) in [
-            (about(1, 0.3).then(&about(1, -0.3)), 0),
+            (axis_rotation(1, 0.3).then(&axis_rotation(1, -0.3)), 0),
             (Rotation::from_matrix(right), 1),
-            (about(1, 0.3).then(&about(1, 0.4)), 1),
-            (about(0, 2.0), 2),
-            (Rotation::from_matrix(right).then(&about(2, 0.1)), 2),
-            (about(0, 0.3).then(&about(1, 0.4)), 2),
-            (about(0, 0.3).then(&about(1, 0.4)).then(&about(2, 0.5)), 1),
+            (axis_rotation(1, 0.3).then(&axis_rotation(1, 0.4)), 1),
+            (axis_rotation(0, 2.0), 2),
+            (Rotation::from_matrix(right).then(&axis_rotation(2, 0.1)), 2),
+            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)), 2),
+            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)).then(&axis_rotation(2, 0.5)), 1),
         ] {
             assert_eq!(rotation.steps.len(), steps, "{rotation:?}");
         }
@@ -450,15 +450,18 @@ mod tests {
     #[test]
     fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
         let g = Graph::new();
-        let about = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let v = Vec3::numbers(&g, [0.7, -1.1, 0.4]);
         let tensor =
             Sym3 { diagonal: [1.0, 2.0, 3.5].map(|c| g.num(c)), off: [0.2, -0.3, 0.6].map(|c| g.num(c)) };
-        for rotation in [about(0, 0.3).then(&about(1, 2.4)), about(2, -3.0).then(&about(0, 1.0))] {
+        for rotation in [
+            axis_rotation(0, 0.3).then(&axis_rotation(1, 2.4)),
+            axis_rotation(2, -3.0).then(&axis_rotation(0, 1.0)),
+        ] {
             let m = Mat3(numbers(&rotation).map(|r| r.map(|c| g.num(c))));
             let full = m * tensor.full() * m.transpose();
             let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(
-                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).at(k / 3, k % 3))),
+                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).entry(k / 3, k % 3))),
             );
             for (a, b) in pairs {
                 assert!((a.value().unwrap() - b.value().unwrap()).abs() < 1e-14);

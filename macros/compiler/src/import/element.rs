@@ -70,8 +70,8 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
 /// not two.
 pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
     let mut missing: Vec<&str> = required.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
-    let known = |name: &str| required.contains(&name) || optional.contains(&name);
-    for attribute in node.attributes().filter(|a| a.namespace().is_none() && !known(a.name())) {
+    let is_known = |name: &str| required.contains(&name) || optional.contains(&name);
+    for attribute in node.attributes().filter(|a| a.namespace().is_none() && !is_known(a.name())) {
         let absent = optional.iter().copied().filter(|name| !node.has_attribute(*name));
         let candidates: Vec<&str> = missing.iter().copied().chain(absent).collect();
         if let Some(best) = nearest(attribute.name(), &candidates) {
@@ -99,9 +99,9 @@ pub(super) fn check_only(
     cx: &mut Cx<'_>,
 ) {
     let all = [required, optional].concat();
-    let known = |name: &str| all.contains(&name) || foreign.contains(&name);
+    let is_known = |name: &str| all.contains(&name) || foreign.contains(&name);
     let help = expected(node.tag_name().name(), if required.is_empty() { optional } else { required });
-    let unknown = node.attributes().find(|a| a.namespace().is_none() && !known(a.name()));
+    let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_known(a.name()));
     if let Some(child) = contents(node).next() {
         report_unexpected(child, node, help, cx);
     } else if let Some(attribute) = unknown.filter(|a| nearest(a.name(), &all).is_none()) {

@@ -81,7 +81,7 @@ pub(in crate::import) fn transpose(m: &Matrix) -> Matrix {
 }
 
 /// Transforms a symmetric matrix with the rotation `m`: `m s mᵀ`.
-pub(in crate::import) fn turned(m: &Matrix, s: &Matrix) -> Matrix {
+pub(in crate::import) fn rotated_tensor(m: &Matrix, s: &Matrix) -> Matrix {
     product(&product(m, s), &transpose(m))
 }
 
@@ -94,8 +94,8 @@ pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// Returns the rotation matrix about a unit axis; the angle is in radians.
-pub(in crate::import) fn about(axis: Vector, angle: f64) -> Matrix {
+/// Returns the rotation matrix axis_rotation a unit axis; the angle is in radians.
+pub(in crate::import) fn axis_rotation(axis: Vector, angle: f64) -> Matrix {
     let (s, c) = sin_cos(angle);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -124,7 +124,7 @@ pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
     let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale(axis, 1.0 / size) };
-    about(axis, size.atan2(direction[2]))
+    axis_rotation(axis, size.atan2(direction[2]))
 }
 
 /// Returns roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. The rotations are removed
@@ -133,9 +133,9 @@ pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
     let upright = m[0][0].hypot(m[1][0]) < 1e-12;
     let yaw = if upright { 0.0 } else { round(m[1][0].atan2(m[0][0])) };
-    m = product(&about([0.0, 0.0, 1.0], -yaw), &m);
+    m = product(&axis_rotation([0.0, 0.0, 1.0], -yaw), &m);
     let pitch = round((-m[2][0]).atan2(m[0][0]));
-    m = product(&about([0.0, 1.0, 0.0], -pitch), &m);
+    m = product(&axis_rotation([0.0, 1.0, 0.0], -pitch), &m);
     let roll = round(m[2][1].atan2(m[1][1]));
     [roll, pitch, yaw]
 }
@@ -170,13 +170,13 @@ pub(in crate::import) fn principal(s: &Matrix) -> (Vector, Matrix) {
 mod tests {
     use super::*;
 
-    fn near(a: &Matrix, b: &Matrix) -> bool {
+    fn is_close(a: &Matrix, b: &Matrix) -> bool {
         a.iter().flatten().zip(b.iter().flatten()).all(|(x, y)| (x - y).abs() < 4e-15)
     }
 
     fn of_rpy([roll, pitch, yaw]: Vector) -> Matrix {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        product(&product(&about(z, yaw), &about(y, pitch)), &about(x, roll))
+        product(&product(&axis_rotation(z, yaw), &axis_rotation(y, pitch)), &axis_rotation(x, roll))
     }
 
     #[test]
@@ -186,7 +186,7 @@ mod tests {
             for pitch in angles {
                 for yaw in angles {
                     let m = of_rpy([roll, pitch, yaw]);
-                    assert!(near(&of_rpy(roll_pitch_yaw(&m)), &m), "{roll} {pitch} {yaw}");
+                    assert!(is_close(&of_rpy(roll_pitch_yaw(&m)), &m), "{roll} {pitch} {yaw}");
                 }
             }
         }
@@ -197,7 +197,7 @@ mod tests {
     fn quaternions_and_turns_about_an_axis_agree() {
         let (axis, angle) = (scale([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
         let [x, y, z] = scale(axis, (angle / 2.0).sin());
-        assert!(near(&about(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
+        assert!(is_close(&axis_rotation(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
         assert!((apply(&of_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
     }
 
@@ -207,6 +207,6 @@ mod tests {
         let (values, axes) = principal(&s);
         let diagonal: Matrix =
             std::array::from_fn(|i| std::array::from_fn(|j| if i == j { values[i] } else { 0.0 }));
-        assert!(near(&turned(&axes, &diagonal), &s));
+        assert!(is_close(&rotated_tensor(&axes, &diagonal), &s));
     }
 }

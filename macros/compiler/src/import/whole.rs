@@ -57,7 +57,7 @@ impl Whole {
     }
 
     /// Appends a text that is attributed to a position in a file.
-    pub(super) fn put(
+    pub(super) fn append(
         &mut self,
         text: &str,
         (file, offset): (usize, usize),

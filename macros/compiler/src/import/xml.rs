@@ -88,7 +88,7 @@ pub(super) fn parse<'t>(
     cx.add(at, &declarations);
     let error = match &declarations {
         none if none.is_empty() => error,
-        some => match parse_plain(declared.get_or_init(|| with(text, at, some))) {
+        some => match parse_plain(declared.get_or_init(|| insert_text(text, at, some))) {
             Ok(document) => return refuse_template(&document, format, cx).then_some(document),
             Err(error) => error,
         },
@@ -105,7 +105,7 @@ fn behind_name(text: &str, element: usize) -> usize {
     end.map_or(text.len(), |length| element + 1 + length)
 }
 
-fn with(text: &str, at: usize, more: &str) -> String {
+fn insert_text(text: &str, at: usize, more: &str) -> String {
     let (before, after) = text.split_at(at);
     [before, more, after].concat()
 }

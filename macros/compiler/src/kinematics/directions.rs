@@ -23,8 +23,8 @@ pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
 pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     let g = axis[0].graph();
     let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::axis(g, k)));
-    let along = |k: usize| axis.values().is_some_and(|n| n[k].abs() == 1.0);
-    if let Some(k) = (0..3).find(|k| along(*k)) {
+    let is_along = |k: usize| axis.values().is_some_and(|n| n[k].abs() == 1.0);
+    if let Some(k) = (0..3).find(|k| is_along(*k)) {
         return [words[(k + 1) % 3], words[(k + 2) % 3]];
     }
     let [first, second] = match in_plane(axis) {

@@ -113,16 +113,16 @@ pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving
     let (w, a) = (on.twist.angular, &on.acceleration);
     let rate = on.twist.linear + w.cross(p);
     let second = a.linear + a.angular.cross(p) + w.cross(w.cross(p));
-    let out = |v| change_axes(joints, v, on.link, on.ancestor);
-    Moving { value, rate: out(rate), second: out(second) }
+    let in_ancestor = |v| change_axes(joints, v, on.link, on.ancestor);
+    Moving { value, rate: in_ancestor(rate), second: in_ancestor(second) }
 }
 
 /// Returns the motion of a direction fixed in a link, in the axes of the ancestor.
 pub fn direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
     let w = on.twist.angular;
     let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
-    let out = |v| direction_out(joints, on, v);
-    Moving { value: out(e), rate: out(w.cross(e)), second: out(second) }
+    let in_ancestor = |v| direction_out(joints, on, v);
+    Moving { value: in_ancestor(e), rate: in_ancestor(w.cross(e)), second: in_ancestor(second) }
 }
 
 /// Returns the components of a vector, given in a link's axes, in the axes of the ancestor.

@@ -198,7 +198,7 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partia
     // time.
     let drift = map_spatial(&twist, |c| at_rest(space.graph, c));
     for index in velocities_in(&twist) {
-        let subspace = map_spatial(&twist, |c| partials.of(Quantity::Velocity(index).symbol(), c));
+        let subspace = map_spatial(&twist, |c| partials.derivative(Quantity::Velocity(index).symbol(), c));
         subspace_rates.push(map_spatial(&subspace, |c| partials.time_derivative(space, c)));
         dofs.push(Dof { index, ratio: 1.0, subspace });
     }

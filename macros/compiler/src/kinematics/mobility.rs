@@ -153,7 +153,7 @@ fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Ve
         }
         let jacobian = &rows.jacobian(&q, seed)[..r.len()];
         let step = damped_step(jacobian, &r, damping);
-        let next = moved(model, &q, &step);
+        let next = displaced(model, &q, &step);
         let trial = rows.residuals(&next, seed);
         if size(&trial) < size(&r) {
             (q, r, damping) = (next, trial, damping * 0.1);
@@ -195,7 +195,7 @@ fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
 }
 
 /// Returns `q ⊕ dv`, to first order for free joints.
-fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
+fn displaced(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
     let mut out = q.to_vec();
     for chart in &model.charts {
         match *chart {

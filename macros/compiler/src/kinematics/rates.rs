@@ -23,7 +23,7 @@ pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// Returns the time derivative of an expression of `q`, `v` and `t` along the motion, at constant `v`.
 pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-    rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).of(e))
+    rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).differentiate(e))
 }
 
 /// Returns the time derivatives of expressions of `q`, `v` and `t` along the motion, with accelerations or at
@@ -38,8 +38,8 @@ pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool)
         _ => None,
     };
     let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
-    let mut along = Derivative::along(seeds.collect(), g).knowing(rotation_rates(space));
-    e.iter().map(|e| along.of(*e)).collect()
+    let mut along = Derivative::with_rates(seeds.collect(), g).knowing(rotation_rates(space));
+    e.iter().map(|e| along.differentiate(*e)).collect()
 }
 
 /// Returns the entries of the rotation matrices of ball and free joints, each with its time derivative by
@@ -85,14 +85,14 @@ pub struct Partials<'g>(BTreeMap<Symbol, Derivative<'g>>);
 
 impl<'g> Partials<'g> {
     /// Returns the derivative of an expression with respect to a symbol.
-    pub fn of(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
+    pub fn derivative(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
         let new = || Derivative::with_respect_to(symbol, e.graph());
-        self.0.entry(symbol).or_insert_with(new).of(e)
+        self.0.entry(symbol).or_insert_with(new).differentiate(e)
     }
 
     /// Returns the time derivative of an expression along the motion, at constant `v`.
     pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-        rate_by(space, e, |symbol| self.of(symbol, e))
+        rate_by(space, e, |symbol| self.derivative(symbol, e))
     }
 }
 
@@ -181,7 +181,7 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
         let Quantity::Velocity(k) = Quantity::of(rows[0].0) else { continue };
         let mut derivative = Derivative::with_respect_to(rows[0].0, graph);
         for (_, row) in rows {
-            gradients[*row].push((k, derivative.of(all[*row])));
+            gradients[*row].push((k, derivative.differentiate(all[*row])));
         }
     }
     gradients

@@ -46,7 +46,7 @@ pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
 pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
     let all = model.constraints.iter().zip(constant);
     let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
-    let tape = Tape::of(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
+    let tape = Tape::new(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
     let values = |seed| {
         let q = random_configuration(model, seed);
         tape.values(&|s| value_of(s, &q, seed))

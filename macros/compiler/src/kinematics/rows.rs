@@ -19,7 +19,7 @@ pub struct Rows<'g> {
 
 impl<'g> Rows<'g> {
     /// Compiles all constraints of a model.
-    pub fn of(model: &Model<'g>) -> Rows<'g> {
+    pub fn new(model: &Model<'g>) -> Rows<'g> {
         let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
         let gradients = velocity_gradients(&rates).into_iter().enumerate();
         let (at, entries): (Vec<_>, Vec<_>) = gradients
@@ -29,10 +29,10 @@ impl<'g> Rows<'g> {
             .unzip();
         let residuals: Vec<Expr<'g>> = model.constraints.iter().filter_map(|c| c.residual).collect();
         Rows {
-            residuals: Tape::of(&residuals),
+            residuals: Tape::new(&residuals),
             at,
-            entries: Tape::of(&entries),
-            rates: Tape::of(&rates),
+            entries: Tape::new(&entries),
+            rates: Tape::new(&rates),
             size: (model.constraints.len(), model.nv()),
         }
     }

@@ -23,12 +23,12 @@ type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 /// Returns the entries of a matrix in random configurations, row by row.
 fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
-    let (tape, width) = (Tape::of(&entries), rows.first().map_or(0, Vec::len).max(1));
-    let at = |seed| {
+    let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
+    let sampled_rows = |seed| {
         let q = random_configuration(model, seed);
         tape.values(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
     };
-    (0..SAMPLES).map(at).collect()
+    (0..SAMPLES).map(sampled_rows).collect()
 }
 
 /// Returns the columns of a matrix that are not zero in all configurations.
@@ -106,9 +106,9 @@ fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
     let n = rows.len();
     let mut minors = Minors { model, rows, known: BTreeMap::new() };
     let all = (1_u32 << n) - 1;
-    let whole = minors.of(all, all);
+    let whole = minors.determinant(all, all);
     let mut entry = |i: usize, j: usize| {
-        let minor = minors.of(all & !(1 << j), all & !(1 << i));
+        let minor = minors.determinant(all & !(1 << j), all & !(1 << i));
         let signed = if (i + j).is_multiple_of(2) { minor } else { -minor };
         shortened(model, signed / whole)
     };
@@ -124,7 +124,7 @@ struct Minors<'a, 'g> {
 
 impl<'g> Minors<'_, 'g> {
     /// Returns the determinant of a submatrix, expanded along its first row.
-    fn of(&mut self, rows: u32, columns: u32) -> Expr<'g> {
+    fn determinant(&mut self, rows: u32, columns: u32) -> Expr<'g> {
         if rows == 0 {
             return self.model.graph.one();
         }
@@ -139,7 +139,7 @@ impl<'g> Minors<'_, 'g> {
             if entry.is_zero() {
                 continue;
             }
-            let product = entry * self.of(rows & (rows - 1), columns & !(1 << j));
+            let product = entry * self.determinant(rows & (rows - 1), columns & !(1 << j));
             if k % 2 == 0 { sum += product } else { sum -= product }
         }
         let sum = shortened(self.model, sum);
@@ -152,12 +152,12 @@ impl<'g> Minors<'_, 'g> {
 /// cosines or of unit quaternions give one; otherwise the expression itself.
 pub fn shortened<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let found = short_form(model, e);
-    found.filter(|found| Tape::of(&[*found]).steps() < Tape::of(&[e]).steps()).unwrap_or(e)
+    found.filter(|found| Tape::new(&[*found]).steps() < Tape::new(&[e]).steps()).unwrap_or(e)
 }
 
 fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     let mut normal = Normal::new(model.graph, |_: Symbol| Rank::Position);
-    let p = normal.of(e)?;
+    let p = normal.normal_form(e)?;
     let mut p = simplified(&mut normal.ring, &p)?;
     for quaternion in quaternions(model) {
         p = on_unit_sphere(&mut normal.ring, &p, &quaternion)?;

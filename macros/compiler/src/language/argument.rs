@@ -7,11 +7,11 @@ use super::dimension::{Dimension, INERTIA, LENGTH, MASS, PLAIN};
 pub struct Argument {
     /// The name, as messages print it.
     pub name: &'static str,
-    /// The quantity that stands there.
+    /// Quantity that the argument expects.
     pub kind: ArgumentKind,
 }
 
-/// The quantity that stands at an argument.
+/// Quantity that an argument expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArgumentKind {
     /// A mass, kg.
@@ -28,11 +28,11 @@ pub enum ArgumentKind {
     Number,
     /// A direction.
     Direction,
-    /// A vector or a curve that is no length.
+    /// A vector or a curve that is not a length.
     Vector,
     /// A coordinate, by its name.
     Coordinate,
-    /// A height, m, as an expression of the place `u`, `w`.
+    /// A height, m, as an expression of the horizontal coordinates `u`, `w`.
     Height,
 }
 
@@ -64,7 +64,7 @@ impl ArgumentKind {
         self == ArgumentKind::Direction
     }
 
-    /// Returns the dimension, and how its unit is written; `None` if nothing is known of it.
+    /// Returns the dimension and the text of its unit; `None` if the dimension is unknown.
     pub fn dimension(self) -> Option<(Dimension, &'static str)> {
         match self {
             ArgumentKind::Mass => Some((MASS, "kg")),

@@ -1,18 +1,18 @@
-//! Words that stand before parentheses: `sin(angle)`, `rod(m, l, y)`, `z(angle)`.
+//! Names that can be called with arguments in parentheses: `sin(angle)`, `rod(m, l, y)`, `z(angle)`.
 
 use super::{FunctionId, Rotation, Solid};
 use crate::expr::Function;
 
-/// A word of the language that can be called.
+/// A name of the language that can be called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Callable {
-    /// A law in two pieces: `if a < b { below } else { above }`, with the operands and the pieces.
+    /// A piecewise expression `if a < b { below } else { above }`, with its operands and pieces.
     If,
     /// An elementary function.
     Elementary(Function),
     /// Another function.
     Function(FunctionId),
-    /// A solid, which stands in `inertia = …`.
+    /// A solid, as in `inertia = …`.
     Solid(Solid),
     /// A rotation.
     Rotation(Rotation),
@@ -26,13 +26,13 @@ pub enum Callable {
     Poisson,
 }
 
-/// The name of calls that stand for laws in two pieces, which no function can have.
+/// Name of the calls that represent piecewise expressions; a keyword, so that no function can have it.
 pub const IF: &str = "if";
 
-/// The word for the collision geometry of a file's link.
+/// Name of the collision geometry of a file's link.
 pub const COLLISION: &str = "collision";
 
-/// The callable words that are in no table.
+/// Callable names that are in no table.
 const OTHERS: [(&str, Callable); 5] = [
     (IF, Callable::If),
     ("rolls", Callable::Rolls),
@@ -42,7 +42,7 @@ const OTHERS: [(&str, Callable); 5] = [
 ];
 
 impl Callable {
-    /// Returns the word of this name.
+    /// Returns the callable with this name.
     pub fn of_name(name: &str) -> Option<Callable> {
         let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
         let other = || OTHERS.iter().find(|(known, _)| *known == name);
@@ -54,7 +54,7 @@ impl Callable {
             .or_else(|| other().map(|(_, callable)| *callable))
     }
 
-    /// Returns the word of a pair of surfaces.
+    /// Returns the name `rolls` or `slips` of a pair of surfaces.
     pub fn verb(self) -> &'static str {
         OTHERS.iter().find(|(_, callable)| *callable == self).map_or("", |(word, _)| word)
     }

@@ -10,53 +10,53 @@ pub type Variable = usize;
 pub struct Dimension {
     /// Exponents of length, mass and time.
     pub base: [Ratio; 3],
-    /// Exponents of the unknowns, by rising number; none is zero.
+    /// Nonzero exponents of the unknown dimensions, in ascending order of their numbers.
     pub unknown: Vec<(Variable, Ratio)>,
 }
 
 impl Dimension {
-    /// Powers of metre, kilogram and second.
+    /// Returns a dimension from its powers of metre, kilogram and second.
     pub const fn new(length: i64, mass: i64, time: i64) -> Dimension {
         let base = [Ratio::integer(length), Ratio::integer(mass), Ratio::integer(time)];
         Dimension { base, unknown: Vec::new() }
     }
 
-    /// An unknown one.
+    /// Returns an unknown dimension.
     pub fn variable(v: Variable) -> Dimension {
         Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
     }
 
-    /// True if nothing in it is unknown.
+    /// Returns true if the dimension contains no unknown.
     pub fn is_known(&self) -> bool {
         self.unknown.is_empty()
     }
 
-    /// True for plain numbers and angles.
+    /// Returns true for plain numbers and angles.
     pub fn is_plain(&self) -> bool {
         self.is_known() && self.base.iter().all(|e| e.is_zero())
     }
 
-    /// The exponent of an unknown.
+    /// Returns the exponent of an unknown dimension.
     pub fn exponent(&self, v: Variable) -> Ratio {
         self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
     }
 
-    /// The dimension of a product.
+    /// Returns the dimension of a product.
     pub fn times(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::ONE)
     }
 
-    /// The dimension of a quotient.
-    pub fn over(&self, other: &Dimension) -> Option<Dimension> {
+    /// Returns the dimension of a quotient.
+    pub fn quotient(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::integer(-1))
     }
 
-    /// The dimension of a power.
+    /// Returns the dimension of a power.
     pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
         Dimension::new(0, 0, 0).times_power(self, exponent)
     }
 
-    /// `self × other^exponent`; nothing if the exponents become too large.
+    /// Returns `self × other^exponent`, or `None` if the exponents become too large.
     pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
         let mut base = self.base;
         for (sum, e) in base.iter_mut().zip(other.base) {

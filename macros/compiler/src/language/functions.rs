@@ -82,7 +82,7 @@ pub enum UnitRule {
     Moment,
     /// A length; the arguments are two points and a round surface.
     Cable,
-    /// This one, if there is a unit for it; the argument is a height.
+    /// This dimension, if it has a unit; the argument is a height.
     OfHeight(Option<Dimension>),
 }
 
@@ -104,7 +104,7 @@ const fn row(
 }
 
 table! {
-    /// A function of the language that is no elementary one.
+    /// A function of the language that is not an elementary one.
     FunctionId: FunctionRow {
         /// The angle of the point `(x, y)`, from −π to π.
         Atan2 = row("atan2", "arctan2", (TWO, "write `atan2(y, x)`"), Arguments, Quotient);

@@ -1,14 +1,14 @@
-//! Words behind the dot of a body: `body.at(vector)`, `body.rotated(z(angle))`, `ball.sphere(radius)`.
+//! Methods of a body: `body.at(vector)`, `body.rotated(z(angle))`, `ball.sphere(radius)`.
 
 use super::SurfaceId;
 use super::callable::COLLISION;
 
-/// A word that stands behind the dot of a body or an inertia.
+/// A method of a body or an inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// `body.at(vector)`: a point of a body.
     At,
-    /// `body.rotated(rotation, …)`: axes, or an inertia, rotated about carried axes.
+    /// `body.rotated(rotation, …)`: axes, or an inertia, after successive rotations about the rotated axes.
     Rotated,
     /// `link.collision()`: the collision geometry of a file's link.
     Collision,

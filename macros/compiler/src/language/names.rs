@@ -3,7 +3,7 @@
 /// A name with a value in every expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Builtin {
-    /// The direction of an axis of the frame at hand, by its index.
+    /// Direction of an axis of the current frame, by its index.
     Axis(usize),
     /// The number π.
     Pi,

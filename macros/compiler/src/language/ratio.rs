@@ -1,4 +1,5 @@
-//! Exponents: small fractions, since a root of a length is a length to the power one half.
+//! Exponents as small fractions, since the square root of a length has the dimension of length to the power
+//! one half.
 
 /// A fraction in lowest terms with a positive denominator. Numerator and denominator stay small, so that
 /// products of two never overflow; arithmetic that would leave this range has no result.
@@ -14,17 +15,17 @@ const LIMIT: i64 = 1_000_000;
 const READABLE: i64 = 120;
 
 impl Ratio {
-    /// Nothing.
+    /// Zero.
     pub const ZERO: Ratio = Ratio::integer(0);
     /// One.
     pub const ONE: Ratio = Ratio::integer(1);
 
-    /// A small integer.
+    /// Returns a small integer.
     pub const fn integer(n: i64) -> Ratio {
         Ratio { n, d: 1 }
     }
 
-    /// The fraction `n / d`.
+    /// Returns the fraction `n / d`.
     pub fn new(n: i64, d: i64) -> Option<Ratio> {
         if d == 0 {
             return None;
@@ -34,47 +35,47 @@ impl Ratio {
         (n.abs() <= LIMIT && d <= LIMIT).then_some(Ratio { n, d })
     }
 
-    /// The fraction that a number is, if it is a simple one.
-    pub fn of(x: f64) -> Option<Ratio> {
-        let near = |d: i64| {
+    /// Returns the simple fraction that equals a number, if there is one.
+    pub fn from_value(x: f64) -> Option<Ratio> {
+        let numerator = |d: i64| {
             let n = x * d as f64;
             ((n - n.round()).abs() < 1e-9 && n.abs() < 1e6).then(|| n.round() as i64)
         };
-        (1..=READABLE).find_map(|d| near(d).and_then(|n| Ratio::new(n, d)))
+        (1..=READABLE).find_map(|d| numerator(d).and_then(|n| Ratio::new(n, d)))
     }
 
-    /// True for zero.
+    /// Returns true for zero.
     pub fn is_zero(self) -> bool {
         self.n == 0
     }
 
-    /// Numerator and denominator.
+    /// Returns numerator and denominator.
     pub fn parts(self) -> (i64, i64) {
         (self.n, self.d)
     }
 
-    /// `−self`
+    /// Returns `−self`.
     pub fn negated(self) -> Ratio {
         Ratio { n: -self.n, d: self.d }
     }
 
-    /// `self + other`
+    /// Returns `self + other`.
     pub fn plus(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.d + other.n * self.d, self.d * other.d)
     }
 
-    /// `self × other`
+    /// Returns `self × other`.
     pub fn times(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.n, self.d * other.d)
     }
 
-    /// `1 / self`
+    /// Returns `1 / self`.
     pub fn inverse(self) -> Option<Ratio> {
         Ratio::new(self.d, self.n)
     }
 }
 
-/// Greatest common divisor (Euclid).
+/// Returns the greatest common divisor (Euclid).
 fn divisor(mut a: i64, mut b: i64) -> i64 {
     while b != 0 {
         (a, b) = (b, a % b);
@@ -92,10 +93,10 @@ mod tests {
         assert_eq!(Ratio::new(3, -6), Ratio::new(-1, 2));
         assert_eq!(Ratio::new(1, 0), None);
         assert_eq!(Ratio::new(i64::MAX, 1), None);
-        assert_eq!(Ratio::of(1.5), Ratio::new(3, 2));
-        assert_eq!(Ratio::of(1.0 / 3.0), Ratio::new(1, 3));
-        assert_eq!(Ratio::of(std::f64::consts::PI), None);
-        assert_eq!(Ratio::of(f64::NAN), None);
+        assert_eq!(Ratio::from_value(1.5), Ratio::new(3, 2));
+        assert_eq!(Ratio::from_value(1.0 / 3.0), Ratio::new(1, 3));
+        assert_eq!(Ratio::from_value(std::f64::consts::PI), None);
+        assert_eq!(Ratio::from_value(f64::NAN), None);
         let half = Ratio::new(1, 2).unwrap();
         assert_eq!(half.plus(half), Some(Ratio::ONE));
         assert_eq!(half.times(half).unwrap().parts(), (1, 4));

@@ -1,4 +1,4 @@
-//! Rotations: `z(angle)`, `eigenaxis(direction, angle)`, and the axes that follow from a vector or a curve.
+//! Rotations: `z(angle)`, `eigenaxis(direction, angle)`, and axes determined by a vector or a curve.
 
 use super::{Argument, ArgumentKind};
 
@@ -11,7 +11,7 @@ pub struct RotationRow {
     pub synonyms: &'static str,
     /// The arguments.
     pub arguments: &'static [Argument],
-    /// True for axes that follow from a vector or a curve; they stand first in a `Frame`.
+    /// True for axes determined by a vector or a curve; they come first in a `Frame`.
     pub natural: bool,
 }
 
@@ -55,7 +55,7 @@ table! {
 }
 
 impl Rotation {
-    /// The number of the coordinate axis that it is about.
+    /// Returns the index of the coordinate axis of the rotation.
     pub fn axis(self) -> Option<usize> {
         [Rotation::X, Rotation::Y, Rotation::Z].iter().position(|about| *about == self)
     }

@@ -13,9 +13,10 @@ pub struct SolidRow {
     pub synonyms: &'static str,
     /// The arguments; a direction comes last, and the masses and lengths are not negative.
     pub arguments: &'static [Argument],
-    /// How the solid is drawn; `None` for moments given one by one.
+    /// Shape of the drawing; `None` for individual moments of inertia.
     pub piece: Option<PieceKind>,
-    /// The inertia, by the values of the arguments without the direction, and by the direction.
+    /// Function that returns the inertia from the values of the arguments without the direction, and from the
+    /// direction.
     pub inertia: for<'g> fn(&[Expr<'g>], Vec3<'g>) -> Sym3<'g>,
 }
 
@@ -33,7 +34,7 @@ const fn moment(name: &'static str) -> Argument {
 }
 
 table! {
-    /// A homogeneous solid, or moments of inertia given one by one.
+    /// A homogeneous solid, or individual moments of inertia.
     Solid: SolidRow {
         /// A thin rod.
         Rod = SolidRow {
@@ -152,7 +153,7 @@ table! {
 }
 
 impl Solid {
-    /// Returns how the solid is written: `rod(mass, length, axis)`.
+    /// Returns the syntax of the solid: `rod(mass, length, axis)`.
     pub fn usage(self) -> String {
         format!("{}({})", self.name(), Argument::list(self.row().arguments))
     }
@@ -173,7 +174,7 @@ fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
     diagonal([m * (square(2) + square(3)), m * (square(1) + square(3)), m * (square(1) + square(2))])
 }
 
-/// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.
+/// Returns `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, moment `t` about all normals of `n`.
 fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
     if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
         let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });

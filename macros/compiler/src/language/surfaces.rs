@@ -1,4 +1,5 @@
-//! Surfaces of bodies that touch: `ball.sphere(radius)`, `ground.plane(z)`, and which pairs of them may.
+//! Contact surfaces of bodies: `ball.sphere(radius)`, `ground.plane(z)`, and the pairs of surfaces that are
+//! supported.
 
 use super::{Argument, ArgumentKind};
 use SurfaceId::{Capsule, Circle, Cone, Cuboid, Drum, Ellipsoid, Sphere, Torus};
@@ -12,9 +13,9 @@ pub struct SurfaceRow {
     pub synonyms: &'static str,
     /// The arguments.
     pub arguments: &'static [Argument],
-    /// The surfaces that a contact with this one is known for; `None` stands for a point.
+    /// Surfaces with which contacts are supported; `None` for a point.
     pub contacts: &'static [Option<SurfaceId>],
-    /// The surfaces that roll or slip on this one.
+    /// Surfaces that may roll or slip on this one.
     pub rollers: &'static [SurfaceId],
 }
 
@@ -58,7 +59,7 @@ table! {
         Sphere = row("sphere", &[RADIUS], ROUND, &[Sphere]);
         /// An ellipsoid, by its semi-axes.
         Ellipsoid = row("ellipsoid", AXES, NONE, &[]);
-        /// A plane, by its normal towards what touches it.
+        /// A plane, by its normal towards the other surface.
         Plane = row("plane", &[Argument::new("normal", ArgumentKind::Direction)], ON_PLANE,
             &[Circle, Torus, Sphere, Ellipsoid, Cone]);
         /// The inside of a sphere.
@@ -78,7 +79,7 @@ table! {
             &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
                 Argument::length("point")],
             NONE, &[Circle, Torus, Sphere, Ellipsoid]);
-        /// A height over x and y, as an expression of the place `u`, `w`.
+        /// A height over x and y, as an expression of the horizontal coordinates `u`, `w`.
         Terrain = row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
         /// A box, by its edges.
         Cuboid = row("cuboid", AXES, &[Some(Sphere), Some(Capsule), Some(Cuboid)], &[]);
@@ -91,7 +92,7 @@ impl SurfaceId {
     /// Returns the surface with a name and a number of arguments; if none has this number, another surface
     /// of this name.
     pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
-        let named = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
-        named().find(|id| id.row().arguments.len() == count).or_else(|| named().next())
+        let candidates = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
+        candidates().find(|id| id.row().arguments.len() == count).or_else(|| candidates().next())
     }
 }

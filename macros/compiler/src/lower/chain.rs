@@ -15,7 +15,7 @@ impl Program {
         let mut late = vec![false; self.instructions.len()];
         let mut times = Times::default();
         for k in 0..self.instructions.len() {
-            let before = times.of(&self, k);
+            let before = times.instruction_time(&self, k);
             times.known.push(before);
             let Some((sum, ops)) = self.sum_to_chain(k).and_then(|sum| sum.chain().map(|ops| (sum, ops)))
             else {
@@ -61,7 +61,7 @@ impl Program {
         let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
             return false;
         };
-        let mut terms = terms.map(|t| t.within(top.negative));
+        let mut terms = terms.map(|t| t.with_outer_sign(top.negative));
         sum.additions.push(top.operand.number());
         let products = terms.map(|t| self.fuses(t));
         match products {
@@ -139,7 +139,7 @@ mod tests {
         let rest = symbols[5..].iter().fold(symbols[4], |sum, s| sum + *s);
         let first = symbols[4..].iter().fold(products, |sum, s| sum + *s);
         for (sum, fused) in [(first, 2), (rest + products, 1)] {
-            let program = lower(&[sum]).through(PART);
+            let program = lower(&[sum]).run_passes(PART);
             assert_eq!(program.instructions.len() + fused, program.counts.total());
             // Each of 0, 1, … 7 occurs equally often; 0 · 1 + 2 · 3 equals 0 + 1 + 2 + 3.
             assert_eq!(program.run(&|s| f64::from(s.0 % 8)), [140_000.0]);

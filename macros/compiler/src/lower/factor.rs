@@ -57,7 +57,9 @@ impl Program {
                 return None;
             }
             match self.lone_addition(term.operand) {
-                Some([a, b]) => todo.extend([b.within(term.negative), a.within(term.negative)]),
+                Some([a, b]) => {
+                    todo.extend([b.with_outer_sign(term.negative), a.with_outer_sign(term.negative)])
+                }
                 None => terms.push(term),
             }
         }

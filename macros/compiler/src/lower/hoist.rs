@@ -93,7 +93,7 @@ mod tests {
     fn hoisted_values_are_not_computed() {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
-        let known = |s: Symbol| s.0 < 2;
+        let is_known = |s: Symbol| s.0 < 2;
         let value = |s: Symbol| 0.7 + f64::from(s.0);
         let ml = m * l;
         for (outputs, operations) in [
@@ -103,7 +103,7 @@ mod tests {
             (vec![m / (l + g.num(2.0)), g.num(3.0)], 0),
             (vec![x * y - ml, ml - x * y + y], 3),
         ] {
-            let program = lower_without(&outputs, &known);
+            let program = lower_without(&outputs, &is_known);
             let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value)).collect();
             let found = program.run(&|s| match hoisted(s) {
                 Some((id, negative)) => eval_one(g.expr(id), &value) * if negative { -1.0 } else { 1.0 },

@@ -37,7 +37,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     let start = Instant::now();
     let program = select(outputs, known);
     pipeline::observe(pipeline::SELECT, &program, start.elapsed());
-    let mut program = program.through(pipeline::DRAFT);
+    let mut program = program.run_passes(pipeline::DRAFT);
     program.counts = program.count();
     program
 }
@@ -66,37 +66,37 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let mut values: Vec<Operand> = Vec::with_capacity(order.len());
     let mut lanes = lanes::Lanes::default();
     for (k, node) in nodes.iter().enumerate() {
-        let at = |a: Id| values[place(a)];
+        let operand = |a: Id| values[place(a)];
         if hoisted[k] {
             values.push(match *node {
-                Node::Neg(a) => hoist::negated(at(a)),
+                Node::Neg(a) => hoist::negated(operand(a)),
                 _ => hoist::operand(order[k]),
             });
             continue;
         }
-        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &at) {
+        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &operand) {
             values.push(leaf);
             continue;
         }
         let op = match *node {
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => continue,
-            Node::Sum(n, a) => lanes.sum(n.into(), at(a)),
-            Node::Lane(k, a) => Op::Lane(k.into(), at(a)),
-            Node::Join(n, a, b) => Op::Join(n.into(), at(a), at(b)),
+            Node::Sum(n, a) => lanes.sum(n.into(), operand(a)),
+            Node::Lane(k, a) => Op::Lane(k.into(), operand(a)),
+            Node::Join(n, a, b) => Op::Join(n.into(), operand(a), operand(b)),
             Node::Neg(a) => match nodes[place(a)] {
                 // −(a − b) is b − a if nothing else uses a − b.
-                Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(at(y), at(x)),
-                _ => Op::Neg(at(a)),
+                Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(operand(y), operand(x)),
+                _ => Op::Neg(operand(a)),
             },
-            Node::Add(a, b) => Op::Add(at(a), at(b)),
-            Node::Sub(a, b) => Op::Sub(at(a), at(b)),
-            Node::Mul(a, b) => Op::Mul(at(a), at(b)),
-            Node::Div(a, b) => Op::Div(at(a), at(b)),
-            Node::Call(f, a) => Op::Call(f, at(a)),
-            Node::Atan2(a, b) => Op::Atan2(at(a), at(b)),
-            Node::Pow(a, b) => Op::Pow(at(a), at(b)),
-            Node::Extreme(f, a, b) => Op::Extreme(f, at(a), at(b)),
-            Node::Table(lookup, a, b, c) => Op::Table(lookup, at(a), at(b), at(c)),
+            Node::Add(a, b) => Op::Add(operand(a), operand(b)),
+            Node::Sub(a, b) => Op::Sub(operand(a), operand(b)),
+            Node::Mul(a, b) => Op::Mul(operand(a), operand(b)),
+            Node::Div(a, b) => Op::Div(operand(a), operand(b)),
+            Node::Call(f, a) => Op::Call(f, operand(a)),
+            Node::Atan2(a, b) => Op::Atan2(operand(a), operand(b)),
+            Node::Pow(a, b) => Op::Pow(operand(a), operand(b)),
+            Node::Extreme(f, a, b) => Op::Extreme(f, operand(a), operand(b)),
+            Node::Table(lookup, a, b, c) => Op::Table(lookup, operand(a), operand(b), operand(c)),
         };
         values.push(Operand::Value(program.instructions.len()));
         lanes.push(&op);

@@ -296,7 +296,9 @@ impl Rewrite<'_> {
                 self.push(Op::Sum(n, a))
             }
             op => match op.terms() {
-                Some(terms) => self.sum(terms.map(|t| t.within(signs.is_negative(t.operand) != negative))),
+                Some(terms) => {
+                    self.sum(terms.map(|t| t.with_outer_sign(signs.is_negative(t.operand) != negative)))
+                }
                 None => {
                     let op = op.mapped(|o| self.positive(o));
                     self.push(op)

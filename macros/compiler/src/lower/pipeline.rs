@@ -63,8 +63,8 @@ pub const PART: &[Pass] = &[FUSE];
 impl Program {
     /// Runs passes over the program and its SIMD variant.
     #[must_use]
-    pub fn through(mut self, passes: &[Pass]) -> Program {
-        let simd = self.simd.take().map(|program| Box::new(program.through(passes)));
+    pub fn run_passes(mut self, passes: &[Pass]) -> Program {
+        let simd = self.simd.take().map(|program| Box::new(program.run_passes(passes)));
         for pass in passes {
             let start = Instant::now();
             self = (pass.run)(self);

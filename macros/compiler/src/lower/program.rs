@@ -300,7 +300,7 @@ impl Program {
     ) -> Vec<f64> {
         let each = |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
         let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
-        let at = |values: &[[f64; N]], o: Operand| match o {
+        let operand = |values: &[[f64; N]], o: Operand| match o {
             Operand::Const(c) => [c; N],
             Operand::Symbol(s) => [symbol(s); N],
             Operand::Value(k) => values[k],
@@ -309,18 +309,18 @@ impl Program {
         };
         for op in &self.instructions {
             let result = match *op {
-                Op::Sum(n, a) => [at(&values, a)[..n].iter().sum(); N],
-                Op::Lane(k, a) => [at(&values, a)[k]; N],
-                Op::Join(n, a, b) => joined(n, at(&values, a), at(&values, b)),
+                Op::Sum(n, a) => [operand(&values, a)[..n].iter().sum(); N],
+                Op::Lane(k, a) => [operand(&values, a)[k]; N],
+                Op::Join(n, a, b) => joined(n, operand(&values, a), operand(&values, b)),
                 op => {
                     let mut operands = Vec::with_capacity(3);
-                    op.operands(|o| operands.push(at(&values, o)));
+                    op.operands(|o| operands.push(operand(&values, o)));
                     std::array::from_fn(|lane| op.apply(|k| operands[k][lane], table))
                 }
             };
             values.push(result);
         }
-        self.outputs.iter().map(|o| at(&values, *o)[0]).collect()
+        self.outputs.iter().map(|o| operand(&values, *o)[0]).collect()
     }
 }
 

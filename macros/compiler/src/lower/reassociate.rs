@@ -22,7 +22,7 @@ impl Program {
         let mut times = Times::default();
         let mut ordered: Vec<Option<Sum>> = Vec::with_capacity(sums.len());
         for (k, sum) in sums.into_iter().enumerate() {
-            let before = times.of(&self, k);
+            let before = times.instruction_time(&self, k);
             let sum = sum.map(|sum| times.ordered(&self, sum, &is_wide));
             let sum =
                 sum.map(|sum| (times.chain(&self, &sum.terms), sum)).filter(|(time, _)| *time <= before);
@@ -37,7 +37,7 @@ impl Program {
         let mut rewritten = Vec::new();
         times.known.clear();
         for (k, sum) in ordered.iter().enumerate() {
-            let before = times.of(&self, k);
+            let before = times.instruction_time(&self, k);
             times.known.push(before);
             let Some(sum) = sum.as_ref().filter(|_| before + rest[k] > end) else { continue };
             let time = times.chain(&self, &sum.terms);
@@ -71,7 +71,7 @@ impl Program {
                     Some(inner) => {
                         sum.additions.push(term.operand.number());
                         inside[term.operand.number()] = true;
-                        todo.extend(inner.map(|t| t.within(term.negative)));
+                        todo.extend(inner.map(|t| t.with_outer_sign(term.negative)));
                     }
                     None => sum.terms.push(term),
                 }

@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn scheduling_keeps_values_and_uses() {
         let g = Graph::new();
-        let before = lower(&chains(&g)).through(PART);
+        let before = lower(&chains(&g)).run_passes(PART);
         let after = before.clone().scheduled();
         let symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
         assert_eq!(before.run(&symbol), after.run(&symbol));
@@ -135,7 +135,7 @@ mod tests {
         let place = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
         };
-        let program = lower(&chains(&g)).through(PART);
+        let program = lower(&chains(&g)).run_passes(PART);
         assert!(place(&program) > 8, "the quotient comes after the other chain");
         assert!(place(&program.scheduled()) < 6, "the quotient begins the longest chain");
     }

@@ -1,7 +1,7 @@
-//! Sums that have terms in common. All sums of a program are written out, as far as they are short, so that
-//! what cancels goes and constants meet; then the two terms that most of them share become a sum of their
-//! own, again and again (the greedy elimination of common subexpressions of linear systems, as for digital
-//! filters: Hartley 1996). What comes of it is kept if it takes fewer instructions.
+//! Sharing of terms that several sums have in common. First, short sums are expanded into the sums that
+//! contain them, so that terms cancel and constants combine. Then the pair of terms that the most sums share
+//! becomes a sum of its own, repeatedly (greedy elimination of common subexpressions of linear systems, as
+//! for digital filters: Hartley 1996). The result is used if it has fewer instructions.
 
 use super::lanes::Lanes;
 use super::{Op, Operand, Program};
@@ -11,21 +11,22 @@ mod pairs;
 
 use pairs::{Pair, Pairs};
 
-/// Largest program that is looked at, in instructions.
+/// Maximum size of a program to which the pass applies, in instructions.
 const MOST_INSTRUCTIONS: usize = 3000;
-/// Up to how many instructions all ways are tried that may take as few operations as another.
+/// Maximum size of a program, in instructions, for which all expansions with the fewest operations are tried.
 const EXHAUSTIVE_INSTRUCTIONS: usize = 1000;
-/// Most times that sums are shared again where that has helped.
+/// Maximum number of repetitions of the pass after it has shortened the program.
 const ROUNDS: usize = 5;
-/// Longest sum that is looked at as one: there are as many pairs as half its square.
+/// Maximum length of a sum into which inner sums are merged. The number of pairs grows as half the square of
+/// the length.
 const LONGEST: usize = 32;
-/// Longest sum that is written out.
+/// Maximum length of a sum after expansion.
 const MOST_TERMS: usize = 8;
-/// Up to how many terms a sum is written out in another, and whether also if products would not fuse into it
-/// any more: each is tried.
+/// Expansions that are tried: the maximum number of terms of an inner sum that is expanded into an outer one,
+/// and whether inner sums are expanded whose products could then no longer be fused.
 const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), (4, false)];
 
-/// What is summed: the number 1, a value that is no sum, or a sum.
+/// Term of a sum without its coefficient: the number 1, a value that is not a sum, or a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Key {
     One,
@@ -34,7 +35,7 @@ enum Key {
 }
 
 impl Key {
-    /// Numbers in order: 1, then the values, then the sums.
+    /// Returns the number of the key: zero for the number 1, then the values, then the sums.
     fn number(self) -> u32 {
         match self {
             Key::One => 0,
@@ -44,7 +45,7 @@ impl Key {
     }
 }
 
-/// The number of the first sum: there are fewer values.
+/// Number of the first sum, larger than that of any value.
 const FIRST_SUM: u32 = 1 << 31;
 
 /// Terms with their coefficients, by key.
@@ -53,18 +54,20 @@ type Terms = Vec<(Key, f64)>;
 /// The sums of a program.
 #[derive(Clone)]
 struct Sums {
+    /// Operands that are not sums.
     atoms: Vec<Operand>,
-    /// By atom: a product that is used once.
+    /// True for each atom that is a product with a single use.
     lone_products: Vec<bool>,
+    /// Terms of each sum.
     sums: Vec<Terms>,
-    /// By instruction: the sum that it ends.
+    /// Index of the sum that each instruction completes.
     ends: Vec<Option<usize>>,
-    /// Sums that are used by other instructions, or are outputs.
+    /// Indices of the sums that other instructions or outputs use.
     wanted: Vec<usize>,
 }
 
 impl Program {
-    /// Sums the terms once that several sums have in common.
+    /// Computes terms that several sums have in common only once.
     pub(super) fn with_shared_sums(mut self) -> Program {
         let mut length = self.fused_length();
         for _ in 0..=ROUNDS {
@@ -77,10 +80,10 @@ impl Program {
         self
     }
 
-    /// The program with sums shared in a way that takes fewer instructions: of a small program the best one,
-    /// of others the first, with its length once products are fused. `None` if none is shorter than `length`.
+    /// Returns a program with shared sums and its length after fusing: for a small program the best one,
+    /// otherwise the first improvement. Returns `None` if none is shorter than `length`.
     fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
-        let all = Sums::of(self);
+        let all = Sums::from_program(self);
         let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;
         let mut cost = (length, self.counts.total());
         let mut best: Option<(usize, Program)> = None;
@@ -99,7 +102,7 @@ impl Program {
                 continue;
             }
             fewest = operations;
-            // Sums are as cheap with the opposite sign, and begin with a product again.
+            // Choose the signs of the new sums, and let sums begin with a product again.
             let mut program = self.with_sums(&sums).with_cheap_signs().chained();
             program.counts = program.count();
             let operations = program.counts.total();
@@ -118,7 +121,7 @@ impl Program {
         best
     }
 
-    /// The same program with other sums.
+    /// Returns the program with its sums replaced.
     fn with_sums(&self, sums: &Sums) -> Program {
         let mut out = Writer {
             sums,
@@ -132,7 +135,7 @@ impl Program {
                 Some(sum) => out.sum(sum),
                 None => {
                     let values = &out.values;
-                    // What had lanes may have lost them with the terms that cancel.
+                    // An operand may have become a scalar because its terms in lanes cancelled.
                     match op.mapped(|o| o.among(values)) {
                         Op::Lane(_, a) if out.lanes.width(a) == 1 => a,
                         Op::Sum(n, a) => out.push(out.lanes.sum(n, a)),
@@ -156,7 +159,7 @@ impl Program {
 }
 
 impl Sums {
-    fn of(program: &Program) -> Sums {
+    fn from_program(program: &Program) -> Sums {
         let n = program.instructions.len();
         let mut sums = Sums {
             atoms: Vec::new(),
@@ -165,7 +168,7 @@ impl Sums {
             ends: vec![None; n],
             wanted: Vec::new(),
         };
-        let mut known = Known { values: vec![None; n], others: BTreeMap::new() };
+        let mut known = AtomNumbers { values: vec![None; n], others: BTreeMap::new() };
         for (k, op) in program.instructions.iter().enumerate() {
             let Some(signed) = op.terms() else { continue };
             let mut terms = Terms::new();
@@ -176,7 +179,7 @@ impl Sums {
                         add(&mut terms, Key::One, sign * c);
                         continue;
                     }
-                    // A sum that is used here alone is a part of this one.
+                    // A sum with this single use is merged into this one.
                     Operand::Value(a) => match sums.ends[a] {
                         Some(sum) if program.uses[a] == 1 && sums.sums[sum].len() + terms.len() < LONGEST => {
                             let inner = std::mem::take(&mut sums.sums[sum]);
@@ -207,7 +210,7 @@ impl Sums {
         sums
     }
 
-    /// Additions and multiplications that the sums take.
+    /// Returns the number of additions and multiplications of the sums.
     fn operations(&self) -> usize {
         let mut seen = vec![false; self.sums.len()];
         let mut todo = self.wanted.clone();
@@ -227,7 +230,8 @@ impl Sums {
         operations
     }
 
-    fn atom(&mut self, o: Operand, known: &mut Known) -> Key {
+    /// Returns the key of an operand that is not a sum.
+    fn atom(&mut self, o: Operand, known: &mut AtomNumbers) -> Key {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -242,7 +246,8 @@ impl Sums {
         }))
     }
 
-    /// Writes sums of up to so many terms out where they are terms of others.
+    /// Expands inner sums of up to `short` terms into the sums that contain them; unless `products` is set,
+    /// sums with products that fuse are not expanded.
     fn write_out(&mut self, short: usize, products: bool) {
         let fuses = |key: &Key| matches!(key, Key::Atom(a) if self.lone_products[*a]);
         let keeps: Vec<bool> =
@@ -264,9 +269,9 @@ impl Sums {
         }
     }
 
-    /// Makes sums of the pairs of terms that are shared most.
+    /// Replaces the most frequently shared pairs of terms by sums of their own.
     fn share(&mut self) {
-        let mut pairs = Pairs::of(&self.sums, self.atoms.len());
+        let mut pairs = Pairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
             let new = Key::Sum(self.sums.len());
             let mut with_new = Vec::new();
@@ -280,12 +285,12 @@ impl Sums {
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
                         if is_gone(a.0.number()) || is_gone(b.0.number()) {
-                            pairs.remove(Pair::of(*a, *b), k);
+                            pairs.remove(Pair::new(*a, *b), k);
                         }
                     }
                 }
                 terms.retain(|(key, _)| !is_gone(key.number()));
-                with_new.extend(terms.iter().map(|term| (Pair::of(*term, (new, c)), k)));
+                with_new.extend(terms.iter().map(|term| (Pair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
             pairs.add(with_new);
@@ -294,6 +299,7 @@ impl Sums {
         }
     }
 
+    /// Returns the key with a number.
     fn key(&self, number: u32) -> Key {
         match number {
             0 => Key::One,
@@ -303,14 +309,15 @@ impl Sums {
     }
 }
 
-/// The numbers of the values that were met as terms.
-struct Known {
-    /// By instruction.
+/// Atoms that already have an index.
+struct AtomNumbers {
+    /// Atom of each instruction.
     values: Vec<Option<usize>>,
-    /// By kind and number.
+    /// Atom of each other operand, by kind and number.
     others: BTreeMap<(u8, u64), Option<usize>>,
 }
 
+/// Adds a term to a sum and removes a term that cancels.
 fn add(terms: &mut Terms, key: Key, c: f64) {
     match terms.iter().position(|(other, _)| *other == key) {
         Some(k) => {
@@ -324,18 +331,18 @@ fn add(terms: &mut Terms, key: Key, c: f64) {
     }
 }
 
-/// A program with other sums, as far as it is written.
+/// Program that is being written with replaced sums.
 struct Writer<'a> {
     sums: &'a Sums,
     instructions: Vec<Op>,
     lanes: Lanes,
-    /// By instruction of the first program.
+    /// Operand of each instruction of the original program.
     values: Vec<Operand>,
-    /// By sum.
+    /// Operand of each sum that is already written.
     written: Vec<Option<Operand>>,
 }
 
-/// Stands for a sum that was not written, which is an internal error: a program with it is refused.
+/// Placeholder for a sum that was not written, which is an internal error: a program with it is rejected.
 const LOST: Operand = Operand::Const(f64::NAN);
 
 impl Writer<'_> {
@@ -345,9 +352,9 @@ impl Writer<'_> {
         Operand::Value(self.instructions.len() - 1)
     }
 
-    /// The value of a sum, written where it is first wanted.
+    /// Returns the operand of a sum, which is written before its first use.
     fn sum(&mut self, k: usize) -> Operand {
-        // Without recursion: sums may be nested deeply.
+        // Iterative, because sums may be nested deeply.
         let mut todo = vec![k];
         while let Some(&top) = todo.last() {
             let inner = self.sums.sums[top].iter().filter_map(|(key, _)| match key {
@@ -367,6 +374,7 @@ impl Writer<'_> {
         self.written[k].unwrap_or(LOST)
     }
 
+    /// Writes the instructions of a sum whose inner sums are already written.
     fn written_out(&mut self, k: usize) -> Operand {
         let mut terms: Vec<(Operand, f64)> = Vec::new();
         for (key, c) in &self.sums.sums[k] {
@@ -376,7 +384,7 @@ impl Writer<'_> {
                 Key::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }
-        // What is there first comes first, but not a negative one if there is another.
+        // Terms are added in the order in which they are computed, positive ones before negative ones.
         terms.sort_by_key(|(o, c)| (*c < 0.0, o.number()));
         let mut sum: Option<Operand> = None;
         for (o, c) in terms {

@@ -18,7 +18,7 @@ impl Term {
     }
 
     /// Returns the term of a sum that itself has this sign.
-    pub fn within(self, negative: bool) -> Term {
+    pub fn with_outer_sign(self, negative: bool) -> Term {
         Term { negative: self.negative != negative, ..self }
     }
 

@@ -8,11 +8,11 @@ impl Program {
     /// Returns the instructions and outputs as text, with names for symbols.
     pub fn text(&self, name: &dyn Fn(Symbol) -> String) -> String {
         let mut text = String::new();
-        let at = |o: Operand| self.operand_text(o, name);
+        let operand = |o: Operand| self.operand_text(o, name);
         for (k, op) in self.instructions.iter().enumerate() {
-            let _ = writeln!(text, "t{k} = {}", op_text(op, &at));
+            let _ = writeln!(text, "t{k} = {}", op_text(op, &operand));
         }
-        let outputs: Vec<String> = self.outputs.iter().map(|o| at(*o)).collect();
+        let outputs: Vec<String> = self.outputs.iter().map(|o| operand(*o)).collect();
         let _ = writeln!(text, "-> {}", outputs.join(", "));
         text
     }

@@ -20,7 +20,7 @@ impl Times {
     }
 
     /// Returns the time at which the value of instruction `k` is available.
-    pub fn of(&self, program: &Program, k: usize) -> u32 {
+    pub fn instruction_time(&self, program: &Program, k: usize) -> u32 {
         let op = &program.instructions[k];
         if let Some([a, b]) = op.terms() {
             return self.chain(program, &[a, b]);

@@ -96,7 +96,7 @@ struct Axis {
 }
 
 impl Axis {
-    fn of(s: &Spatial<'_>) -> Option<Axis> {
+    fn from_subspace(s: &Spatial<'_>) -> Option<Axis> {
         let mut nonzero = (0..6).filter(|e| !entry(s, *e).is_zero());
         let first = nonzero.next()?;
         let value = entry(s, first).value().filter(|c| c.abs() == 1.0)?;
@@ -130,7 +130,7 @@ impl<'g> Eliminated<'g> {
         r: Expr<'g>,
         inverse: Option<Expr<'g>>,
     ) -> Eliminated<'g> {
-        let axis = Axis::of(&dof.subspace);
+        let axis = Axis::from_subspace(&dof.subspace);
         let mut column = inertia.times(&dof.subspace);
         let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
         if let Some(axis) = axis {

@@ -42,7 +42,7 @@ pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'
     }
     let candidates = candidates(model, joints);
     let values: Vec<Expr<'g>> = candidates.iter().map(|c| c.value).collect();
-    let (tape, motion) = (Tape::of(&values), Motion::of(model, joints));
+    let (tape, motion) = (Tape::new(&values), Motion::new(model, joints));
     let mut kept = vec![true; values.len()];
     let mut gradients: Vec<Vec<Vec<f64>>> = Vec::new();
     let places = places(model);
@@ -104,7 +104,7 @@ fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     if model.constraints.is_empty() {
         return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
     }
-    let found = mobility::sample_configurations(model, &Rows::of(model), &mut Diagnostics::new());
+    let found = mobility::sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
     found.into_iter().cycle().take(STATES as usize).collect()
 }
 
@@ -119,13 +119,13 @@ struct Motion<'g> {
 }
 
 impl<'g> Motion<'g> {
-    fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Motion<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> Motion<'g> {
         let mut all = added_mass::effective(model, &crba::mass_matrix(model, joints)).concat();
         all.extend(rnea::inverse_dynamics(model, joints, &velocities(model), None));
         all.extend(constraints::jacobian(model).concat());
         all.extend(constraints::rates(model));
         all.extend(constraints::biases(model));
-        let (equations, rates) = (Tape::of(&all), Tape::of(&lagrange::configuration_rates(model)));
+        let (equations, rates) = (Tape::new(&all), Tape::new(&lagrange::configuration_rates(model)));
         Motion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
     }
 }
@@ -197,16 +197,16 @@ impl State {
     }
 
     /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
-    fn after(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
-        let moved = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
-        State { t: self.t + h * t, q: moved(&self.q, q), v: moved(&self.v, v), seed: self.seed }
+    fn displaced(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
+        let displaced = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
+        State { t: self.t + h * t, q: displaced(&self.q, q), v: displaced(&self.v, v), seed: self.seed }
     }
 
     /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
     /// velocity, by central differences of fourth order.
-    fn along(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let at = |h: f64| self.after(h * STEP, t, q, v).values(tape);
-        let all = [at(-2.0), at(-1.0), at(1.0), at(2.0)];
+    fn directional_derivatives(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let values_at = |h: f64| self.displaced(h * STEP, t, q, v).values(tape);
+        let all = [values_at(-2.0), values_at(-1.0), values_at(1.0), values_at(2.0)];
         let rate = |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
         (0..all[0].len()).map(rate).collect()
     }
@@ -215,11 +215,11 @@ impl State {
     fn are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
         let (q, v) = self.motion(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
-        let whole = self.along(tape, 1.0, &q, &v);
+        let whole = self.directional_derivatives(tape, 1.0, &q, &v);
         let parts = [
-            self.along(tape, 1.0, &no_q, &no_v),
-            self.along(tape, 0.0, &q, &no_v),
-            self.along(tape, 0.0, &no_q, &v),
+            self.directional_derivatives(tape, 1.0, &no_q, &no_v),
+            self.directional_derivatives(tape, 0.0, &q, &no_v),
+            self.directional_derivatives(tape, 0.0, &no_q, &v),
         ];
         let now = self.values(tape);
         let constant = |k: usize| {
@@ -234,8 +234,9 @@ impl State {
     fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
         let (nq, nv) = (self.q.len(), self.v.len());
         let unit = |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let by = |k: usize| self.along(tape, 0.0, &unit(nq, k), &unit(nv, k.wrapping_sub(nq)));
-        let columns: Vec<Vec<f64>> = (0..nq + nv).map(by).collect();
+        let gradient_entry =
+            |k: usize| self.directional_derivatives(tape, 0.0, &unit(nq, k), &unit(nv, k.wrapping_sub(nq)));
+        let columns: Vec<Vec<f64>> = (0..nq + nv).map(gradient_entry).collect();
         let count = columns.first().map_or(0, Vec::len);
         (0..count).map(|value| columns.iter().map(|column| column[value]).collect()).collect()
     }

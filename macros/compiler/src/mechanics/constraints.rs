@@ -157,9 +157,11 @@ pub fn solve_by_speeds<'g>(
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
     let (solved, sizes) = eliminate(rows.clone(), right, &pivots);
     let column = |c: usize| -> Vec<Expr<'g>> {
-        let own = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
-        let of = |k: usize| pivots.iter().find(|(_, j)| *j == k).map_or(own(k), |(row, _)| solved[*row][c]);
-        (0..nv).map(of).collect()
+        let independent_velocity = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
+        let velocity = |k: usize| {
+            pivots.iter().find(|(_, j)| *j == k).map_or(independent_velocity(k), |(row, _)| solved[*row][c])
+        };
+        (0..nv).map(velocity).collect()
     };
     let columns: Matrix<'g> = (0..free.len()).map(column).collect();
     let start = column(free.len());
@@ -258,7 +260,7 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
 
 /// Returns the forces and biases of the equations of motion as the symbols that [`solve`] takes as arguments
 /// at run time.
-pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let symbols =
         |range: std::ops::Range<usize>| range.map(|k| Quantity::Given(k).expr(model.graph)).collect();
@@ -280,9 +282,9 @@ pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
     let rows = jacobian(model);
     let zero = model.graph.zero();
     let forces = forces(model, &multipliers(model));
-    let along = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
+    let along_accelerations = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
     let accelerations: Vec<Expr<'g>> =
-        rows.iter().zip(biases(model)).map(|(row, bias)| along(row) + bias).collect();
+        rows.iter().zip(biases(model)).map(|(row, bias)| along_accelerations(row) + bias).collect();
     FirstOrder {
         forces: symbolic::derivatives(model, &forces),
         accelerations: symbolic::derivatives(model, &accelerations),

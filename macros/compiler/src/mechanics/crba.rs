@@ -1,7 +1,7 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
-use super::alike::Alike;
 use super::inertances;
+use super::shared_motions::SharedMotions;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
 use crate::mechanism::{Inertia, Model};
@@ -17,15 +17,15 @@ pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
 
 /// Returns `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of one expression.
 pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
-    let paths = Paths::of(joints, most);
+    let paths = Paths::new(joints, most);
     let dofs =
         joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let (composites, alike) = (composites(model, joints), Alike::of(model, joints));
-    let mut columns = Columns { joints, dofs: dofs.collect(), composites, alike, matrix };
+    let (composites, shared) = (composites(model, joints), SharedMotions::new(model, joints));
+    let mut columns = Columns { joints, dofs: dofs.collect(), composites, shared, matrix };
     paths.propagate(&mut columns);
-    let Columns { composites, alike, matrix: mut m, .. } = columns;
-    alike.add_masses(&composites, &mut m);
+    let Columns { composites, shared, matrix: mut m, .. } = columns;
+    shared.add_masses(&composites, &mut m);
     inertances::add_to_mass_matrix(model, &mut m);
     m
 }
@@ -37,7 +37,7 @@ struct Columns<'a, 'g> {
     /// Joint, and index of the degree of freedom in the joint.
     dofs: Vec<(usize, usize)>,
     composites: Vec<Inertia<'g>>,
-    alike: Alike<'g>,
+    shared: SharedMotions<'g>,
     matrix: Matrix<'g>,
 }
 
@@ -57,9 +57,9 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
-        if self.alike.has(link) {
-            // A link in `Alike` is placed on the ground, so no ancestor has entries with it. `Alike` adds its
-            // own entries.
+        if self.shared.has(link) {
+            // A link in `SharedMotions` is placed on the ground, so no ancestor has entries with it.
+            // `SharedMotions` adds its own entries.
             return own.subspace;
         }
         let wrench = momentum(&self.composites[link], &own.subspace);

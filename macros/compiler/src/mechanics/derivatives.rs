@@ -75,11 +75,11 @@ pub fn inverse_dynamics<'g>(
     if a == symbols {
         return found;
     }
-    let by = |s| match Quantity::of(s) {
+    let acceleration = |s| match Quantity::of(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };
-    let replaced = |m: Matrix<'g>| m.iter().map(|row| replace_all(row, &by)).collect();
+    let replaced = |m: Matrix<'g>| m.iter().map(|row| replace_all(row, &acceleration)).collect();
     ForceDerivatives { by_q: replaced(found.by_q), by_v: replaced(found.by_v) }
 }
 
@@ -91,7 +91,7 @@ pub fn forward_dynamics<'g>(
     tau: &[Expr<'g>],
     method: DerivationMethod,
 ) -> Linearized<'g> {
-    let factor = Factor::of(mass, joints);
+    let factor = Factor::new(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let accelerations = factor.solve(r);

@@ -39,19 +39,23 @@ impl<'g> Placement<'g> {
     }
 }
 
-fn given<'g>(model: &Model<'g>, first: usize) -> Vec3<'g> {
+fn position_argument<'g>(model: &Model<'g>, first: usize) -> Vec3<'g> {
     Vec3(std::array::from_fn(|k| Quantity::Given(first + k).expr(model.graph)))
 }
 
 fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
     Placement {
-        rotation: Mat3([given(model, 0).0, given(model, 3).0, given(model, 6).0]),
-        position: given(model, 9),
+        rotation: Mat3([
+            position_argument(model, 0).0,
+            position_argument(model, 3).0,
+            position_argument(model, 6).0,
+        ]),
+        position: position_argument(model, 9),
     }
 }
 
 fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
-    Spatial { linear: given(model, first), angular: given(model, first + 3) }
+    Spatial { linear: position_argument(model, first), angular: position_argument(model, first + 3) }
 }
 
 /// Returns the six components of a spatial vector.
@@ -122,7 +126,7 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
 /// unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
 pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
     let placement = given_placement(model);
-    let arm = given(model, 12) - placement.position;
+    let arm = position_argument(model, 12) - placement.position;
     joint
         .dofs
         .iter()

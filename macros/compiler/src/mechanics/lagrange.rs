@@ -44,13 +44,13 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let mut by_v: Vec<Derivative<'g>> =
         (0..model.nv()).map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g)).collect();
     let (kinetic, potential) = energies(model, joints, &rates, &mut by_q);
-    let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.of(kinetic)).collect();
+    let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.differentiate(kinetic)).collect();
     let mass_matrix: Matrix<'g> =
-        momenta.iter().map(|p| by_v.iter_mut().map(|d| d.of(*p)).collect()).collect();
+        momenta.iter().map(|p| by_v.iter_mut().map(|d| d.differentiate(*p)).collect()).collect();
     let lagrangian = kinetic - potential;
-    let dl_dq: Vec<Expr<'g>> = by_q.iter_mut().map(|d| d.of(lagrangian)).collect();
+    let dl_dq: Vec<Expr<'g>> = by_q.iter_mut().map(|d| d.differentiate(lagrangian)).collect();
     // d/dt ∂T/∂v at constant v: the derivative along the motion.
-    let mut bias: Vec<Expr<'g>> = momenta.iter().map(|p| along(&rates, &mut by_q, *p)).collect();
+    let mut bias: Vec<Expr<'g>> = momenta.iter().map(|p| time_derivative(&rates, &mut by_q, *p)).collect();
     subtract_tangent_gradient(&rates, &dl_dq, &mut by_v, &mut bias);
     add_commutators(model, &momenta, &v, &mut bias);
     for (bias, passive) in bias.iter_mut().zip(dissipation(model)) {
@@ -60,10 +60,10 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
 }
 
 /// Returns `Σ ∂e/∂q q̇ + ∂e/∂t`.
-fn along<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
-    let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).of(e);
+fn time_derivative<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
+    let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).differentiate(e);
     for (rate, d) in rates.iter().zip(by_q) {
-        sum += d.of(e) * *rate;
+        sum += d.differentiate(e) * *rate;
     }
     sum
 }
@@ -78,7 +78,7 @@ fn subtract_tangent_gradient<'g>(
 ) {
     for (k, d) in by_v.iter_mut().enumerate() {
         for (rate, dl) in rates.iter().zip(dl_dq) {
-            bias[k] -= d.of(*rate) * *dl;
+            bias[k] -= d.differentiate(*rate) * *dl;
         }
     }
 }
@@ -127,8 +127,8 @@ fn energies<'g>(
         frames.push((r, p));
         let inertia = &link.inertia;
         // Columns of the rotation's rate give the angular velocity in link axes: [w]× = Rᵀ Ṙ.
-        let r_rate = Mat3::from_fn(|i, j| along(rates, by_q, r.0[i][j]));
-        let p_rate = p.map(|c| along(rates, by_q, c));
+        let r_rate = Mat3::from_fn(|i, j| time_derivative(rates, by_q, r.0[i][j]));
+        let p_rate = p.map(|c| time_derivative(rates, by_q, c));
         let w = Vec3([
             r.column(2).dot(r_rate.column(1)),
             r.column(0).dot(r_rate.column(2)),

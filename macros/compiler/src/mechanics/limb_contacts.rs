@@ -7,7 +7,7 @@ use crate::vectorise::{LimbRows, Limbs, Merge};
 /// Contacts of identical limbs, each limb with the same number of contact velocities.
 pub struct LimbContacts<'a, 'g> {
     limbs: &'a Limbs<'g>,
-    alike: Vec<LimbRows>,
+    groups: Vec<LimbRows>,
     merge: Merge<'g>,
     /// Number of contact velocities.
     count: usize,
@@ -17,15 +17,15 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// Groups the contact velocities with the given Jacobian rows. Returns `None` unless each contact
     /// velocity depends on one limb of a group of identical limbs, and all limbs of a group have the same
     /// number of them.
-    pub fn of(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
-        let alike = limbs.limb_rows(jacobian)?;
-        Some(LimbContacts { limbs, alike, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
+    pub fn new(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
+        let groups = limbs.limb_rows(jacobian)?;
+        Some(LimbContacts { limbs, groups, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
     }
 
     /// Returns, for each group of limbs, the indices of the contact velocities of each limb.
     pub fn of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
-        self.alike.iter().map(|alike| {
-            (0..alike.width).map(|lane| alike.rows.iter().map(|row| row[lane]).collect()).collect()
+        self.groups.iter().map(|group| {
+            (0..group.width).map(|lane| group.rows.iter().map(|row| row[lane]).collect()).collect()
         })
     }
 
@@ -33,7 +33,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// limbs differ in structure.
     pub fn values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
-        for row in self.alike.iter().flat_map(|alike| &alike.rows) {
+        for row in self.groups.iter().flat_map(|group| &group.rows) {
             let all = self.merge.lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
             row.iter().enumerate().for_each(|(lane, i)| out[*i] = all.lane(lane));
         }
@@ -44,7 +44,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// only on the limb of its contact velocity.
     pub fn rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
         let mut out = vec![Vec::new(); self.count];
-        for numbers in self.alike.iter().flat_map(|alike| &alike.rows) {
+        for numbers in self.groups.iter().flat_map(|group| &group.rows) {
             let lanes: Vec<&[Expr<'g>]> = numbers.iter().map(|i| rows[*i].as_slice()).collect();
             let all = self.limbs.merged_rows(&lanes, &mut self.merge)?;
             for (lane, i) in numbers.iter().enumerate() {

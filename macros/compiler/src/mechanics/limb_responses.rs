@@ -46,18 +46,18 @@ struct Factor<'g> {
 /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. Returns `None` unless each row
 /// depends on one limb of a group of identical limbs, and all limbs of a group have the same number of rows.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
-    let alike = limbs.limb_rows(rows)?;
-    let factor = Factor::of(limbs, limbs.groups());
+    let groups = limbs.limb_rows(rows)?;
+    let factor = Factor::new(limbs, limbs.groups());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
-    for LimbRows { group, width, rows: numbers } in alike {
+    for LimbRows { group, width, rows: numbers } in groups {
         for (row, lanes) in numbers.iter().enumerate() {
             for (lane, i) in lanes.iter().enumerate() {
                 places.insert(*i, Place { family: families.len(), row, lane });
             }
         }
         let all = numbers.iter().map(|lanes| {
-            let alike: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
-            factor.row(limbs.side_by_side(&alike), group)
+            let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
+            factor.row(limbs.side_by_side(&lane_rows), group)
         });
         families.push(Family { group, width, rows: all.collect() });
     }
@@ -73,13 +73,13 @@ pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Ex
 }
 
 /// Rotates `n` lanes: lane `k` of the result is lane `k + by` modulo `n`.
-fn turned(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
+fn rotated_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
     let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
     joined(&lanes)
 }
 
 impl<'g> Factor<'g> {
-    fn of(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> Factor<'g> {
+    fn new(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> Factor<'g> {
         let mut m: Matrix<'g> = mass_matrix(&limbs.model, &limbs.joints);
         let order = elimination_order(&limbs.joints, m.len());
         let (mut rows, mut inverse) = (vec![Vec::new(); m.len()], Vec::new());
@@ -127,7 +127,7 @@ impl<'g> Factor<'g> {
             None => own[index].lane(at.lane),
             Some(of) if of == *group && lane == at.lane => own[index],
             Some(of) if of == *group => {
-                self.carried(index, &|k| turned(own[k], *width, width + at.lane - lane))
+                self.carried(index, &|k| rotated_lanes(own[k], *width, width + at.lane - lane))
             }
             Some(_) => self.carried(index, &|k| own[k].lane(at.lane)),
         }
@@ -163,7 +163,7 @@ impl<'g> Factor<'g> {
         }
         match by {
             0 => sum(&|k| trunk(k) || self.groups[k] == Some(first.group), &|k| [x[k], y[k]]).lane(a.lane),
-            _ => sum(&trunk, &|k| [x[k], turned(y[k], n, by)]).lane(a.lane),
+            _ => sum(&trunk, &|k| [x[k], rotated_lanes(y[k], n, by)]).lane(a.lane),
         }
     }
 }

@@ -8,7 +8,6 @@ use crate::mechanism::{Coordinate, Model, Quantity};
 
 pub mod aba;
 pub mod added_mass;
-mod alike;
 pub mod conserved;
 pub mod constraints;
 pub mod crba;
@@ -33,6 +32,7 @@ pub mod regressor;
 pub mod regularity;
 pub mod rnea;
 pub mod routh;
+mod shared_motions;
 pub mod speeds;
 
 /// Returns all velocities as symbols.

@@ -1,12 +1,12 @@
 //! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the total momentum of
 //! the mechanism.
 
-use super::alike::Alike;
 use super::crba::{composites, momentum};
 use super::energy::center_of_mass;
 use super::frames::{Placement, flat};
 use super::inertances;
 use super::rnea::wrenches;
+use super::shared_motions::SharedMotions;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
@@ -34,13 +34,13 @@ fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<S
 
 fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
-    let alike = Alike::of(model, joints);
-    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !alike.has(*k)) {
+    let shared = SharedMotions::new(model, joints);
+    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.has(*k)) {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
         }
     }
-    alike.add_forces(wrenches, &mut out);
+    shared.add_forces(wrenches, &mut out);
     out
 }
 
@@ -70,9 +70,9 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         .collect();
     let mut rate = project(model, joints, &wrenches);
     // Contribution of a subspace that is not constant: Ṡᵀ F.
-    let alike = Alike::by_rates(model, joints);
-    alike.add_forces(&momenta, &mut rate);
-    for (_, (joint, momentum)) in joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !alike.has(*k)) {
+    let shared = SharedMotions::by_rates(model, joints);
+    shared.add_forces(&momenta, &mut rate);
+    for (_, (joint, momentum)) in joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.has(*k)) {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
         }

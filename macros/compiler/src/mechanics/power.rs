@@ -37,9 +37,9 @@ pub fn control<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
 /// Returns the power of the other applied forces.
 pub fn disturbance<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
-    let alone = |load: &Load<'g>| {
+    let without_inputs = |load: &Load<'g>| {
         replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()))
     };
     let applied = model.loads.iter().filter(|l| !l.dissipative);
-    applied.fold(g.zero(), |sum, load| sum + alone(load) * load.rate)
+    applied.fold(g.zero(), |sum, load| sum + without_inputs(load) * load.rate)
 }

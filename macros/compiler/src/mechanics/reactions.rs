@@ -30,17 +30,17 @@ pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Exp
         return replace_all(e, &|s| multiplier(s, &all));
     };
     let (held, multipliers) = on_released_coordinates(model, released, touched);
-    let of = |s: Symbol| {
+    let reaction = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::of(s) else { return None };
         if k >= Quantity::MULTIPLIERS {
             return multiplier(s, &multipliers);
         }
         let (joint, component) = (k / SIX, k % SIX);
-        let at = || released.joints.iter().position(|j| *j == joint);
+        let released_index = || released.joints.iter().position(|j| *j == joint);
         of_multipliers(model, released, &multipliers, joint, component)
-            .or_else(|| Some(held[SIX * at()? + component]))
+            .or_else(|| Some(held[SIX * released_index()? + component]))
     };
-    replace_all(e, &of)
+    replace_all(e, &reaction)
 }
 
 /// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
@@ -114,16 +114,17 @@ fn on_released_coordinates<'g>(
 /// multipliers make the forces along the motions of the joints zero for which the loops are solved.
 fn closing_forces<'g>(released: &Released<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
     let g = released.model.graph;
-    let along = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
+    let axis_component = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
         let at = released.joints.iter().position(|j| *j == side.joint)?;
         let first = SIX * at + if side.turns { 3 } else { 0 };
         Some((0..3).fold(g.zero(), |sum, k| sum + side.axis[k] * forces[first + k]))
     };
-    let own = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
-        released.model.solved.iter().filter_map(|side| along(side, forces)).collect()
+    let axis_components = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        released.model.solved.iter().filter_map(|side| axis_component(side, forces)).collect()
     };
     // Equations by side, with their right sides last. Two successive rows and columns belong to one loop.
-    let columns: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| own(row)).chain([own(needed)]).collect();
+    let columns: Vec<Vec<Expr<'g>>> =
+        rows.iter().map(|row| axis_components(row)).chain([axis_components(needed)]).collect();
     let sides = columns.last().map_or(0, Vec::len);
     let mut m: Matrix<'g> = (0..sides).map(|k| columns.iter().map(|column| column[k]).collect()).collect();
     for k in (0..sides).step_by(2) {

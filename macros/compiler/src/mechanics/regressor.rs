@@ -31,7 +31,7 @@ pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
     std::array::from_fn(|k| match k {
         0 => inertia.mass,
         1..4 => inertia.moment[k - 1],
-        _ => inertia.tensor.at(ENTRIES[k - 4].0, ENTRIES[k - 4].1),
+        _ => inertia.tensor.entry(ENTRIES[k - 4].0, ENTRIES[k - 4].1),
     })
 }
 

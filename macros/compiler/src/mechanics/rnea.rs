@@ -2,7 +2,7 @@
 //! ch. 5). The acceleration of the points of a link is given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
-use super::alike::Alike;
+use super::shared_motions::SharedMotions;
 use super::{added_mass, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
@@ -22,17 +22,17 @@ pub fn inverse_dynamics<'g>(
     if let Some(a) = a {
         added_mass::subtract_from_forces(model, a, &mut tau);
     }
-    let alike = Alike::of(model, joints);
+    let shared = SharedMotions::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !alike.has(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.has(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
             wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
-    alike.add_forces(&wrenches, &mut tau);
+    shared.add_forces(&wrenches, &mut tau);
     tau
 }
 
@@ -77,8 +77,8 @@ impl<'g> State<'g> {
 
     /// Returns the motion of a frame that is fixed in the link.
     pub(super) fn seen_from(&self, pose: &Pose<'g>) -> State<'g> {
-        let turned = |v| pose.rotation.to_child(v);
-        State::new(turned(self.w), turned(self.dw), turned(self.a + self.u * pose.translation))
+        let to_child = |v| pose.rotation.to_child(v);
+        State::new(to_child(self.w), to_child(self.dw), to_child(self.a + self.u * pose.translation))
     }
 }
 
@@ -122,9 +122,9 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
     let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        moment.0[k] += diagonal_terms(i, s, k) + i.at(l, m) * (s.squares[l] - s.squares[m])
-            - i.at(k, l) * u[m][k]
-            + i.at(k, m) * u[l][k];
+        moment.0[k] += diagonal_terms(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
+            - i.entry(k, l) * u[m][k]
+            + i.entry(k, m) * u[l][k];
     }
     Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
 }

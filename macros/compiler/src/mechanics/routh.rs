@@ -33,7 +33,7 @@ pub struct Routh<'g> {
 /// Returns the cyclic coordinates: plain coordinates whose momenta are constant without inputs. A coordinate
 /// that is cyclic for special parameters only is not found.
 pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
-    let rates = Tape::of(&momentum::momentum_rate(model, joints, &velocities(model)));
+    let rates = Tape::new(&momentum::momentum_rate(model, joints, &velocities(model)));
     let mut plain: Vec<usize> = model
         .charts
         .iter()
@@ -73,7 +73,7 @@ pub fn solved<'g>(
     solve: &mut dyn FnMut(Vec<Expr<'g>>) -> Option<Vec<Expr<'g>>>,
 ) -> Option<Solved<'g>> {
     let g = model.graph;
-    let others = with(model, cyclic, &vec![g.zero(); cyclic.len()]);
+    let others = with_cyclic_velocities(model, cyclic, &vec![g.zero(); cyclic.len()]);
     let given = with_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
     let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Momentum(c).expr(g) - given[*k]);
     let p: Vec<Expr<'g>> = p.collect();
@@ -97,13 +97,13 @@ pub fn derive<'g>(
     let found = solved(model, joints, &cyclic, &mut solve);
     let Solved { routhian, velocity } =
         found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
-    let all = with(model, &cyclic, &velocity);
+    let all = with_cyclic_velocities(model, &cyclic, &velocity);
     // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, with b eliminated.
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let force: Vec<Expr<'g>> =
         bias.iter().enumerate().map(|(k, bias)| Quantity::Force(k).expr(g) - *bias).collect();
-    let of = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
+    let selected_forces = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
     let across = part(mass, &others, &cyclic);
     let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
     let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
@@ -111,14 +111,18 @@ pub fn derive<'g>(
     for (row, across) in reduced.iter_mut().zip(&across) {
         row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot(across, taken));
     }
-    let of_cyclic = of(&cyclic);
-    let right = of(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
+    let of_cyclic = selected_forces(&cyclic);
+    let right = selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
     let acceleration = solved_by(&reduced, right.collect());
     Routh { cyclic, routhian, velocity, acceleration }
 }
 
 /// Returns all velocity symbols, with those of the cyclic coordinates replaced by `velocity`.
-pub fn with<'g>(model: &Model<'g>, cyclic: &[usize], velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub fn with_cyclic_velocities<'g>(
+    model: &Model<'g>,
+    cyclic: &[usize],
+    velocity: &[Expr<'g>],
+) -> Vec<Expr<'g>> {
     let mut all = velocities(model);
     cyclic.iter().zip(velocity).for_each(|(k, w)| all[*k] = *w);
     all

@@ -65,7 +65,7 @@ pub struct InSpeeds<'g> {
 
 impl<'g> InSpeeds<'g> {
     /// Returns the transformation for a mechanism with generalized speeds; `None` for a mechanism without.
-    pub fn of(model: &Model<'g>) -> Option<InSpeeds<'g>> {
+    pub fn new(model: &Model<'g>) -> Option<InSpeeds<'g>> {
         let speeds = model.speeds.clone()?;
         let g = model.graph;
         let native = Model { speeds: None, velocities: speeds.velocities.clone(), ..model.clone() };
@@ -210,7 +210,7 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Returns `Zᵀ X` for a matrix `X` whose rows correspond to displacements.
-    pub fn along(&self, m: &Matrix<'g>) -> Matrix<'g> {
+    pub fn project(&self, m: &Matrix<'g>) -> Matrix<'g> {
         transposed(&transposed(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect())
     }
 

@@ -15,12 +15,12 @@ pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
 pub struct Gradients(Rc<RefCell<Found>>);
 
 /// For each expression: indices of velocities, and derivatives.
-type Known = BTreeMap<Id, Vec<(usize, Id)>>;
+type GradientTable = BTreeMap<Id, Vec<(usize, Id)>>;
 
 #[derive(Debug, Default)]
 struct Found {
-    of_energies: Known,
-    by_velocities: Known,
+    of_energies: GradientTable,
+    by_velocities: GradientTable,
     /// Configuration space for which the forces of energies were computed.
     charts: Vec<Chart>,
 }
@@ -48,7 +48,7 @@ impl Gradients {
     }
 }
 
-fn known_or<'g>(known: &mut Known, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
+fn known_or<'g>(known: &mut GradientTable, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
     if let Some(list) = known.get(&e.id()) {
         return list.iter().map(|(k, d)| (*k, e.graph().expr(*d))).collect();
     }

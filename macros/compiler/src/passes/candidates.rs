@@ -2,7 +2,7 @@
 
 use super::motions::{Freedom, freedom};
 use super::number::{
-    Frame, IDENTITY, Mass, Vector, about, axis, clean, column, cross, dot, norm, times, transpose,
+    Frame, IDENTITY, Mass, Vector, axis, axis_rotation, clean, column, cross, dot, norm, times, transpose,
     transposed_times,
 };
 use crate::mechanism::{Link, Motion};
@@ -19,15 +19,15 @@ pub struct Site {
     /// Mass properties, if numeric.
     pub mass: Option<Mass>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
-    /// The rounding error of moments of inertia about the origin grows as the square of this distance.
+    /// The rounding error of moments of inertia axis_rotation the origin grows as the square of this distance.
     pub reach: f64,
 }
 
 impl Site {
     /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be
     /// numeric.
-    pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
-        let (place, mass) = (Frame::of(&link.placement), Mass::of(&link.inertia));
+    pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
+        let (place, mass) = (Frame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
         let free = freedom(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
@@ -72,7 +72,7 @@ pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame>
             let list = turning(sites, k, a, chosen);
             let mut places = Vec::new();
             for angle in &list.angles {
-                let rotation = about(a, *angle);
+                let rotation = axis_rotation(a, *angle);
                 places.extend(
                     list.shifts.iter().map(|s| Frame { rotation, translation: axis(a).map(|c| c * s) }),
                 );
@@ -87,7 +87,7 @@ fn children(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
-/// Candidate angles about, and shifts along, a link's axis.
+/// Candidate angles axis_rotation, and shifts along, a link's axis.
 struct Choices {
     /// Index of the coordinate axis.
     a: usize,

@@ -24,7 +24,7 @@ const GROUND: f64 = 0.02;
 /// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,
 /// placement, and the angle to be added to the joint. Returns `None` if the placement is not numeric.
 pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
-    let plain = site.place.as_ref()?.between(parent, frame);
+    let plain = site.place.as_ref()?.transform_between(parent, frame);
     let mut best = (placement(site, &plain, frame), plain, 0.0);
     if let Freedom::Turn { k, offset: true } = site.freedom {
         for (rotation, angle) in alignments(&plain.rotation, k) {

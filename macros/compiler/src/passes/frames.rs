@@ -40,12 +40,13 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
 /// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus
 /// its radius of gyration, and of its children's joints, as far as these are numeric.
 pub fn sizes(model: &Model<'_>) -> Vec<f64> {
-    let places: Vec<Option<Frame>> = model.links.iter().map(|link| Frame::of(&link.placement)).collect();
+    let places: Vec<Option<Frame>> =
+        model.links.iter().map(|link| Frame::from_pose(&link.placement)).collect();
     let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
     let size = |(k, link): (usize, &Link<'_>)| {
         let children =
             (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
-        let masses = Mass::of(&link.inertia).map_or(0.0, |mass| mass.radius());
+        let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.radius());
         children.map(length).fold(length(k) + masses, f64::max)
     };
     model.links.iter().enumerate().map(size).collect()
@@ -53,8 +54,8 @@ pub fn sizes(model: &Model<'_>) -> Vec<f64> {
 
 /// Returns the data that the choice of frames depends on.
 fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
-    let of = |(link, size): (&Link<'_>, &f64)| Site::of(link, *size, free_parameters);
-    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(of).collect();
+    let site = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
+    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site).collect();
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {

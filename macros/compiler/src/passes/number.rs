@@ -37,11 +37,11 @@ pub fn norm(a: Vector) -> f64 {
 }
 
 /// Returns `s a + b`.
-pub fn along(s: f64, a: Vector, b: Vector) -> Vector {
+pub fn scaled_sum(s: f64, a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| s * a[k] + b[k])
 }
 
-/// Returns the unit vector along coordinate axis `k`.
+/// Returns the unit vector scaled_sum coordinate axis `k`.
 pub fn axis(k: usize) -> Vector {
     std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
 }
@@ -74,8 +74,8 @@ pub fn transpose(m: &Matrix) -> Matrix {
 /// Identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Returns the rotation about coordinate axis `k`.
-pub fn about(k: usize, angle: f64) -> Matrix {
+/// Returns the rotation axis_rotation coordinate axis `k`.
+pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let (sin, cos) = angle.sin_cos();
     let (sin, cos) = (clean_entry(sin), clean_entry(cos));
@@ -103,7 +103,7 @@ impl Frame {
     pub const IDENTITY: Frame = Frame { rotation: IDENTITY, translation: [0.0; 3] };
 
     /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
-    pub fn of(pose: &Pose<'_>) -> Option<Frame> {
+    pub fn from_pose(pose: &Pose<'_>) -> Option<Frame> {
         let rotation = clean_rotation(&pose.rotation.matrix().values()?);
         let square = product(&transpose(&rotation), &rotation);
         let error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
@@ -120,7 +120,7 @@ impl Frame {
     }
 
     /// Returns `other⁻¹ self next`.
-    pub fn between(&self, other: &Frame, next: &Frame) -> Frame {
+    pub fn transform_between(&self, other: &Frame, next: &Frame) -> Frame {
         let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
         let ahead = times(&self.rotation, next.translation);
         let scale = norm(self.translation) + norm(ahead) + norm(other.translation);
@@ -142,15 +142,15 @@ fn clean_vector(v: Vector) -> Vector {
 pub struct Mass {
     /// Mass.
     pub mass: f64,
-    /// First moment about the origin.
+    /// First moment axis_rotation the origin.
     pub moment: Vector,
-    /// Inertia about the origin.
+    /// Inertia axis_rotation the origin.
     pub tensor: Matrix,
 }
 
 impl Mass {
     /// Returns mass properties if they are numeric.
-    pub fn of(inertia: &Inertia<'_>) -> Option<Mass> {
+    pub fn from_inertia(inertia: &Inertia<'_>) -> Option<Mass> {
         Some(Mass {
             mass: inertia.mass.value()?,
             moment: inertia.moment.values()?,
@@ -173,7 +173,7 @@ impl Mass {
         }
     }
 
-    /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first moment
+    /// Returns the mass properties axis_rotation the origin `p` of another frame, in its axes. With the first moment
     /// `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
     pub fn seen_from(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
@@ -185,7 +185,7 @@ impl Mass {
             })
         });
         let tensor = product(&transpose(r), &product(&tensor, r));
-        let moment = transposed_times(r, along(-self.mass, p, h));
+        let moment = transposed_times(r, scaled_sum(-self.mass, p, h));
         Mass { mass: self.mass, moment, tensor }.cleaned()
     }
 
@@ -194,7 +194,7 @@ impl Mass {
         let square = dot(p, p);
         let entry = |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
         let tensor = std::array::from_fn(|i| std::array::from_fn(|j| self.tensor[i][j] + mass * entry(i, j)));
-        Mass { mass: self.mass + mass, moment: along(mass, p, self.moment), tensor }
+        Mass { mass: self.mass + mass, moment: scaled_sum(mass, p, self.moment), tensor }
     }
 
     /// Replaces first moments and products of inertia at rounding level by zero.

@@ -50,7 +50,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
             joint.translation = above.to_parent(joint.translation);
         }
         let Some(Member { axis, along, .. }) = member else {
-            joint.rotation = after(above, &joint.rotation);
+            joint.rotation = composed(above, &joint.rotation);
             angles.push(None);
             turned.push(None);
             continue;
@@ -58,7 +58,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         let carried = along.zip(joint.parent.and_then(|p| angles[p.0])).map(|(cosine, angle)| angle * cosine);
         // A constant rotation about the same axis commutes with the joint's rotation.
         let above = if along.is_some() { None } else { above };
-        joint.rotation = after(above, &link.placement.rotation);
+        joint.rotation = composed(above, &link.placement.rotation);
         let own = own_angle(link, axis);
         let angle = own.map_or(carried, |own| Some(carried.map_or(own, |carried| carried + own)));
         let turn = angle.map(|angle| Rotation::about_axis(axis, angle));
@@ -111,7 +111,7 @@ fn own_angle<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
     Some(if backwards { -angle } else { angle })
 }
 
-fn after<'g>(above: Option<Rotation<'g>>, rotation: &Rotation<'g>) -> Rotation<'g> {
+fn composed<'g>(above: Option<Rotation<'g>>, rotation: &Rotation<'g>) -> Rotation<'g> {
     match above {
         Some(above) => above.then(rotation),
         None => rotation.clone(),

@@ -37,7 +37,7 @@ pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: 
         let Some(part) = movable(link, gauge) else { continue };
         let placement = link.placement.clone();
         let parent = link.parent;
-        model.links[k].inertia = without(&model.links[k], &part);
+        model.links[k].inertia = remaining_inertia(&model.links[k], &part);
         let target = match parent {
             Some(p) => &mut model.links[p.0].inertia,
             None => &mut model.still,
@@ -51,7 +51,9 @@ pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: 
 /// computed anyway.
 fn anchor(model: &mut Model<'_>, k: usize) {
     let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
-    let (Some(own), Some(mut inertia)) = (coordinate_axis(*axis), Mass::of(&model.links[k].inertia)) else {
+    let (Some(own), Some(mut inertia)) =
+        (coordinate_axis(*axis), Mass::from_inertia(&model.links[k].inertia))
+    else {
         return;
     };
     if !pushes(model, k) {
@@ -63,7 +65,9 @@ fn anchor(model: &mut Model<'_>, k: usize) {
     for c in k + 1..model.links.len() {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
-        let (Some(place), Some(mut other)) = (Frame::of(&child.placement), Mass::of(&child.inertia)) else {
+        let (Some(place), Some(mut other)) =
+            (Frame::from_pose(&child.placement), Mass::from_inertia(&child.inertia))
+        else {
             continue;
         };
         // The acceleration of a child without first moment may not be needed at all.
@@ -118,7 +122,7 @@ fn has_numeric_place(link: &Link<'_>) -> bool {
     link.placement.translation.values().is_some() && link.placement.rotation.matrix().values().is_some()
 }
 
-fn without<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
+fn remaining_inertia<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
     let Inertia { mass, moment, tensor } = link.inertia;
     Inertia { mass: mass - part.mass, moment: moment - part.moment, tensor: tensor - part.tensor }
 }

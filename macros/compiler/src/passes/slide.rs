@@ -49,7 +49,7 @@ fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
         let lengths = lengths + if link.parent.is_some() { nonzero(own + along * s) } else { 0 };
         let h = link.inertia.moment;
         let products = [(a + 1) % 3, (a + 2) % 3]
-            .map(|i| usize::from(!(link.inertia.tensor.at(a, i) - h[i] * s).is_zero()));
+            .map(|i| usize::from(!(link.inertia.tensor.entry(a, i) - h[i] * s).is_zero()));
         LENGTH * lengths as f64 + PRODUCT * products.iter().sum::<usize>() as f64
     };
     let mut best = (model.graph.zero(), cost(model.graph.zero()));

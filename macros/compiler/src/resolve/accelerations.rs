@@ -145,7 +145,7 @@ impl<'g> Builder<'_, 'g> {
             self.model.loads.push(Load { rate, force, dissipative: false });
             return;
         }
-        let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).of(force));
+        let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).differentiate(force));
         let factors: Vec<(usize, Expr<'g>)> =
             acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
         let all: Vec<Expr<'g>> = factors.iter().map(|(_, factor)| *factor).collect();

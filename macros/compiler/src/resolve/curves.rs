@@ -143,7 +143,7 @@ impl<'g> Scope<'_, 'g> {
         let position = kinematics.resolve(&terms, link, zero);
         let mut derivative = Derivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
-        let mut next = |v: Vec3<'g>| v.map(|c| derivative.of(c) * scale);
+        let mut next = |v: Vec3<'g>| v.map(|c| derivative.differentiate(c) * scale);
         let first = next(position);
         if first.is_zero() {
             cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.to_source()))
@@ -199,7 +199,8 @@ impl<'g> Scope<'_, 'g> {
         self.definition_values.borrow_mut().clear();
         let value = value?;
         let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
-        let gradient = Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).of(value))));
+        let gradient =
+            Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).differentiate(value))));
         if gradient.is_zero() {
             cx.error(field.place.clone(), format!("this does not depend on the place of `{name}`"))
                 .help(format!("a field is an expression of `r({name} / ground)`"));

@@ -9,7 +9,7 @@ use crate::syntax::{ExprKind, Formulation};
 impl<'g> Builder<'_, 'g> {
     /// Removes redundant rows and counts the degrees of freedom.
     pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
-        let mut rows = Rows::of(&self.model);
+        let mut rows = Rows::new(&self.model);
         let constant = redundancy::constant(&self.model, &rows);
         redundancy::check_constant(&self.model, &constant, cx);
         if !cx.is_empty() {
@@ -19,7 +19,7 @@ impl<'g> Builder<'_, 'g> {
         let before = self.model.constraints.clone();
         if redundancy::prune(&mut self.model, &rows, &constant, &samples) {
             contact::check_pressed(&before, &self.model.redundant, cx);
-            rows = Rows::of(&self.model);
+            rows = Rows::new(&self.model);
         }
         self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &samples, cx);
         self.choose_speeds(&rows, &samples, cx);

@@ -93,7 +93,7 @@ impl<'g> Scope<'_, 'g> {
             false => (left, x, border, [below, above]),
         };
         if compared.value().is_some() {
-            cx.error(left.place.to(&right.place), "this comparison of two numbers is always the same")
+            cx.error(left.place.join(&right.place), "this comparison of two numbers is always the same")
                 .help("keep the piece that holds alone");
             return None;
         }
@@ -106,7 +106,7 @@ impl<'g> Scope<'_, 'g> {
         let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
-            cx.error(left.place.to(&right.place), "the border between the pieces moves with what decides")
+            cx.error(left.place.join(&right.place), "the border between the pieces moves with what decides")
                 .help("solve the comparison: what decides on one side, the border on the other");
             return None;
         }
@@ -148,7 +148,7 @@ impl<'g> Scope<'_, 'g> {
         right: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> bool {
-        let place = left.place.to(&right.place);
+        let place = left.place.join(&right.place);
         let (a, b) = (left.to_source(), right.to_source());
         match law.gap(nested_borders) {
             Ok(None) => true,

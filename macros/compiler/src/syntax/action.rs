@@ -53,7 +53,7 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow() {
-        cx.error(a.place.to(&b.place), format!("{} is no joint", kind.phrase())).help(between_help(&a, &b));
+        cx.error(a.place.join(&b.place), format!("{} is no joint", kind.phrase())).help(between_help(&a, &b));
         return true;
     }
     if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
@@ -70,7 +70,7 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
         [a, b, ..] => between_help(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
-    cx.error(first.place.to(&last.place), "expected `name = value`").help(help);
+    cx.error(first.place.join(&last.place), "expected `name = value`").help(help);
     arguments.take_plain();
     true
 }

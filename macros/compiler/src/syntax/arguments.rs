@@ -402,7 +402,7 @@ impl Arguments {
             report_unnamed(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
-            let error = cx.error(left.place.to(&right.place), "expected `name = value`");
+            let error = cx.error(left.place.join(&right.place), "expected `name = value`");
             match left.name().filter(|name| known.contains(name)) {
                 Some(name) => error.help(format!("write `{name} = {}`", right.to_source())),
                 None if known.is_empty() => error.help(format!("write `{example}`")),
@@ -410,7 +410,7 @@ impl Arguments {
             };
         }
         if let Some((parent, child)) = self.relation.take() {
-            cx.error(parent.place.to(&child.place), format!("{whose} joins nothing"))
+            cx.error(parent.place.join(&child.place), format!("{whose} joins nothing"))
                 .help("`parent -> child` stands in a joint");
         }
     }

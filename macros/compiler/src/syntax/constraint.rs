@@ -29,7 +29,7 @@ pub fn read_constraint(
                 ("expected one equation".to_string(), help)
             }
         };
-        cx.error(value.place.to(&second.place), message).help(help);
+        cx.error(value.place.join(&second.place), message).help(help);
         return;
     }
     let is_empty = arguments.is_empty();

@@ -357,7 +357,7 @@ fn read_other(
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
             if let [body, place] = arguments.plain() {
                 let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
-                cx.error(body.place.to(&place.place), "expected `name = value`").help(help);
+                cx.error(body.place.join(&place.place), "expected `name = value`").help(help);
                 return;
             }
             if on.is_none() && at.is_none() && arguments.is_empty() {
@@ -445,7 +445,7 @@ fn read_expression(
     if !plain.is_empty() {
         let last = value.as_ref().map_or(&name.place, |e| &e.place);
         cx.error(
-            plain[0].place.to(last),
+            plain[0].place.join(last),
             format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
         )
         .help("declare a field for each");

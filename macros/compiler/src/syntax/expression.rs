@@ -124,7 +124,7 @@ fn parse_operand(
 
 fn binary(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
     let size = left.1.extended().max(right.1.nested());
-    let place = left.0.place.to(&right.0.place);
+    let place = left.0.place.join(&right.0.place);
     node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()), place, size)
 }
 
@@ -132,7 +132,7 @@ fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
         let inner = parse_operand(span, input, parse_unary)?;
-        let place = Place::from(span).to(&inner.0.place);
+        let place = Place::from(span).join(&inner.0.place);
         return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.nested());
     }
     parse_postfix(input)
@@ -150,14 +150,14 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let size = inner.1.extended();
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = parse_arguments(input)?;
-            let place = inner.0.place.to(&close.into());
+            let place = inner.0.place.join(&close.into());
             node(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
                 size.max(arguments_size.nested()),
             )?
         } else {
-            let place = inner.0.place.to(&member.place);
+            let place = inner.0.place.join(&member.place);
             node(ExprKind::Field(Box::new(inner.0), member), place, size)?
         };
     }
@@ -174,7 +174,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(token::Paren) {
         let content;
         let span = parenthesized!(content in input).span;
-        let place = Place::from(span.open()).to(&span.close().into());
+        let place = Place::from(span.open()).join(&span.close().into());
         let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
@@ -185,7 +185,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
-        let place = Place::from(span.open()).to(&span.close().into());
+        let place = Place::from(span.open()).join(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
         return node(ExprKind::Array(items), place, size.nested());
     }
@@ -200,7 +200,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
             let (arguments, size, close) = parse_arguments(input)?;
             return node(
                 ExprKind::Call(Callee::new(name), arguments),
-                place.to(&close.into()),
+                place.join(&close.into()),
                 size.nested(),
             );
         }
@@ -244,7 +244,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
         let name = Name { text: IF.to_string(), place: place.clone() };
-        last = node(ExprKind::Call(Callee::new(name), arguments), place.to(&end), size)?;
+        last = node(ExprKind::Call(Callee::new(name), arguments), place.join(&end), size)?;
     }
     Ok(last)
 }

@@ -67,7 +67,7 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
         [0.0, 0.0, -1.0] => "-z".to_string(),
         _ => format!("[{a}, {b}, {c}]"),
     };
-    let place = axes[0].place.to(&axes[2].place);
+    let place = axes[0].place.join(&axes[2].place);
     cx.error(place, "expected a direction, found three numbers").help(format!("write `{key} = {axis}`"));
     None
 }

@@ -39,7 +39,7 @@ pub fn span_of(ty: &Type) -> Place {
     let mut tokens = ty.to_token_stream().into_iter();
     let Some(first) = tokens.next() else { return ty.span().into() };
     let last = tokens.last().map_or(first.span(), |last| last.span());
-    Place::from(first.span()).to(&last.into())
+    Place::from(first.span()).join(&last.into())
 }
 
 /// Returns the last segment of a plain path without arguments.

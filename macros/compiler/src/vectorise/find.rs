@@ -26,7 +26,7 @@ struct Shapes {
 
 /// Finds the groups of isomorphic limbs. No link is in two groups.
 pub fn find(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
-    let shapes = Shapes::of(model, joints);
+    let shapes = Shapes::new(model, joints);
     let mut groups = Vec::new();
     let mut taken = vec![false; joints.len()];
     let roots: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].parent.is_none()).collect();
@@ -40,7 +40,7 @@ pub fn find(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
 }
 
 impl Shapes {
-    fn of(model: &Model<'_>, joints: &[Joint<'_>]) -> Shapes {
+    fn new(model: &Model<'_>, joints: &[Joint<'_>]) -> Shapes {
         let mut children = vec![Vec::new(); joints.len()];
         for (k, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent {

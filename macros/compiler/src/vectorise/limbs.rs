@@ -48,7 +48,7 @@ impl<'g> Limbs<'g> {
     /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces
     /// of the whole mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape
     /// cannot be merged.
-    pub fn of(
+    pub fn new(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         groups: &[Group],
@@ -216,8 +216,10 @@ impl<'g> Limbs<'g> {
     /// its signs. Returns `None` if the rows have different structures.
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let entry = |velocity: &Velocity| {
-            let of = |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
-            let lanes = rows.iter().enumerate().map(|of_lane| of(of_lane).unwrap_or(self.model.graph.zero()));
+            let lane_entry =
+                |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
+            let lanes =
+                rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
             merge.lanes(&lanes.collect::<Vec<_>>())
         };
         self.velocities.iter().map(entry).collect()
@@ -231,10 +233,10 @@ impl<'g> Limbs<'g> {
         merge: &mut Merge<'g>,
     ) -> Option<Vec<Vec<Expr<'g>>>> {
         let row = |velocity: &Velocity| {
-            let of = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
+            let lane_row = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
                 self.velocity_in(velocity, lane).map(|k| matrix[k].clone())
             };
-            let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(of).collect();
+            let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(lane_row).collect();
             match rows {
                 Some(rows) => self.merged_rows(&rows.iter().map(Vec::as_slice).collect::<Vec<_>>(), merge),
                 None => Some(vec![self.model.graph.zero(); self.velocities.len()]),
@@ -263,11 +265,11 @@ impl<'g> Limbs<'g> {
         let merge = &mut Merge::new(g);
         let entry = |velocity: &Velocity| {
             // Velocities outside the limbs are common to all rows; those of other groups are absent.
-            let of = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
+            let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
                 Some(k) => row[k],
                 None => g.zero(),
             };
-            let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(of).collect();
+            let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(lane_entry).collect();
             let all = merge.lanes(&lanes).unwrap_or_else(|| joined(&lanes));
             if velocity.lanes.len() == 1 { all } else { g.lane_constants(&velocity.signs) * all }
         };

@@ -112,7 +112,7 @@ impl<'g> Merge<'g> {
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
             return self.affine(&parts);
         }
-        let at = |id: Id| self.graph.expr(id);
+        let expr = |id: Id| self.graph.expr(id);
         match lanes.first()?.node() {
             Node::Symbol(_) => {
                 let symbol = |e: &Expr<'g>| match e.node() {
@@ -124,7 +124,7 @@ impl<'g> Merge<'g> {
             }
             Node::Call(f, _) => {
                 let argument = |e: &Expr<'g>| match e.node() {
-                    Node::Call(g, a) if g == f => Some(at(a)),
+                    Node::Call(g, a) if g == f => Some(expr(a)),
                     _ => None,
                 };
                 let arguments: Option<Vec<_>> = lanes.iter().map(argument).collect();
@@ -142,7 +142,7 @@ impl<'g> Merge<'g> {
             }
             Node::Div(..) => {
                 let parts = |e: &Expr<'g>| match e.node() {
-                    Node::Div(a, b) => Some((at(a), at(b))),
+                    Node::Div(a, b) => Some((expr(a), expr(b))),
                     _ => None,
                 };
                 let (a, b): (Vec<_>, Vec<_>) =
@@ -254,19 +254,19 @@ impl<'g> Merge<'g> {
 
 /// Returns the terms of a sum or difference.
 fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
-    let at = |id: Id| e.graph().expr(id);
+    let expr = |id: Id| e.graph().expr(id);
     match e.node() {
-        Node::Add(a, b) => Some((at(a), at(b))),
-        Node::Sub(a, b) => Some((at(a), -at(b))),
+        Node::Add(a, b) => Some((expr(a), expr(b))),
+        Node::Sub(a, b) => Some((expr(a), -expr(b))),
         _ => None,
     }
 }
 
 /// Returns the factors of a product.
 fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
-    let at = |id: Id| e.graph().expr(id);
+    let expr = |id: Id| e.graph().expr(id);
     match e.node() {
-        Node::Mul(a, b) => Some((at(a), at(b))),
+        Node::Mul(a, b) => Some((expr(a), expr(b))),
         _ => None,
     }
 }
@@ -287,22 +287,22 @@ fn absorbs(e: Expr<'_>, depth: u8) -> bool {
 
 /// Splits an expression into constants and a remainder, `offset + factor × remainder`.
 fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
-    let at = |id: Id| e.graph().expr(id);
+    let expr = |id: Id| e.graph().expr(id);
     let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
     loop {
-        let value = |id: Id| at(id).value();
+        let value = |id: Id| expr(id).value();
         match rest.node() {
             Node::Const(c) => return (offset + factor * c, 0.0, rest),
-            Node::Neg(a) => (factor, rest) = (-factor, at(a)),
+            Node::Neg(a) => (factor, rest) = (-factor, expr(a)),
             Node::Mul(a, b) => match value(a) {
-                Some(c) => (factor, rest) = (factor * c, at(b)),
+                Some(c) => (factor, rest) = (factor * c, expr(b)),
                 None => return (offset, factor, rest),
             },
             Node::Add(a, b) | Node::Sub(a, b) => {
                 let sign = if matches!(rest.node(), Node::Sub(..)) { -1.0 } else { 1.0 };
                 (offset, factor, rest) = match (value(a), value(b)) {
-                    (Some(c), _) => (offset + factor * c, factor * sign, at(b)),
-                    (_, Some(c)) => (offset + factor * sign * c, factor, at(a)),
+                    (Some(c), _) => (offset + factor * c, factor * sign, expr(b)),
+                    (_, Some(c)) => (offset + factor * sign * c, factor, expr(a)),
                     _ => return (offset, factor, rest),
                 };
             }

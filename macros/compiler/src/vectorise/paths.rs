@@ -50,7 +50,7 @@ pub struct Paths<'a, 'g> {
 impl<'a, 'g> Paths<'a, 'g> {
     /// Returns the paths of all degrees of freedom, joint by joint, in at most `max_lanes` lanes; one for no
     /// lanes.
-    pub fn of(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
+    pub fn new(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
         let mut widths: Vec<usize> = Vec::with_capacity(joints.len());
         for joint in joints {
             let above = joint.parent.map_or(1, |p| widths[p.0]);

@@ -31,8 +31,8 @@ pub fn pair_velocities(
     joints: &[Joint<'_>],
     rows: &[Vec<usize>],
 ) -> Option<(Vec<Velocity>, Vec<Location>)> {
-    let alone = |k| Some(Velocity { lanes: vec![k], signs: vec![1.0] });
-    let mut left: Vec<Option<Velocity>> = (0..model.nv()).map(alone).collect();
+    let single_lane = |k| Some(Velocity { lanes: vec![k], signs: vec![1.0] });
+    let mut left: Vec<Option<Velocity>> = (0..model.nv()).map(single_lane).collect();
     for row in rows.iter().filter(|row| row.len() > 1) {
         for (d, dof) in joints[row[0]].dofs.iter().enumerate() {
             let index = |k: &usize| joints[*k].dofs.get(d).map(|dof| dof.index);

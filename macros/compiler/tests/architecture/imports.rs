@@ -29,7 +29,7 @@ pub struct Imports {
 
 impl Imports {
     /// Reads all files below a folder.
-    pub fn of(source: &Path) -> Imports {
+    pub fn read(source: &Path) -> Imports {
         let mut files = Vec::new();
         let mut todo = vec![source.to_path_buf()];
         while let Some(folder) = todo.pop() {

@@ -130,7 +130,7 @@ const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]
 fn circles_of_imports_are_small() {
-    let imports = Imports::of(&Path::new(ROOT).join("src"));
+    let imports = Imports::read(&Path::new(ROOT).join("src"));
     let shown = |circle: &Vec<usize>| {
         let names: Vec<String> = circle.iter().map(|file| imports.name(*file)).collect();
         format!("{}: {}", circle.len(), names.join(" "))

@@ -127,7 +127,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    fn index_below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 }
@@ -143,8 +143,8 @@ fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> Toke
     let mut list: Vec<TokenTree> = tokens.into_iter().collect();
     let groups: Vec<usize> = (0..list.len()).filter(|k| matches!(list[*k], TokenTree::Group(_))).collect();
     // Most of the tokens are inside groups.
-    if !groups.is_empty() && random.below(5) > 0 {
-        let at = groups[random.below(groups.len())];
+    if !groups.is_empty() && random.index_below(5) > 0 {
+        let at = groups[random.index_below(groups.len())];
         if let TokenTree::Group(group) = &list[at] {
             let mut inside = Group::new(group.delimiter(), mutate(group.stream(), words, random));
             inside.set_span(group.span());
@@ -152,9 +152,9 @@ fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> Toke
         }
         return list.into_iter().collect();
     }
-    let (at, other) = (random.below(list.len()), random.below(list.len()));
-    let word = words[random.below(words.len())].clone();
-    match random.below(8) {
+    let (at, other) = (random.index_below(list.len()), random.index_below(list.len()));
+    let word = words[random.index_below(words.len())].clone();
+    match random.index_below(8) {
         _ if list.is_empty() => list.push(word),
         0 => drop(list.remove(at)),
         1 => list.insert(at, list[other].clone()),
@@ -166,10 +166,10 @@ fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> Toke
             let (first, last) = (at.min(other), at.max(other));
             let part: TokenStream = list.drain(first..=last).collect();
             let delimiter = [Delimiter::Parenthesis, Delimiter::Bracket, Delimiter::Brace, Delimiter::None];
-            list.insert(first, Group::new(delimiter[random.below(4)], part).into());
+            list.insert(first, Group::new(delimiter[random.index_below(4)], part).into());
         }
         _ => {
-            let end = (at + 1 + random.below(8)).min(list.len());
+            let end = (at + 1 + random.index_below(8)).min(list.len());
             let part: Vec<TokenTree> = list[at..end].to_vec();
             list.splice(at..at, part);
         }
@@ -209,8 +209,8 @@ fn mutations_neither_panic_nor_break_the_output() {
         let mut random = Random(1);
         for round in 0..600 {
             let (mut arguments, mut item) = split(MECHANISMS[round % MECHANISMS.len()]);
-            for _ in 0..=random.below(4) {
-                if random.below(8) == 0 {
+            for _ in 0..=random.index_below(4) {
+                if random.index_below(8) == 0 {
                     arguments = mutate(arguments, &words, &mut random);
                 } else {
                     item = mutate(item, &words, &mut random);
@@ -228,10 +228,10 @@ fn words_at_random_are_refused() {
         let words: Vec<&str> = WORDS.split(' ').collect();
         let mut random = Random(2);
         for _ in 0..3000 {
-            let count = random.below(24);
+            let count = random.index_below(24);
             let inside: String =
-                (0..count).map(|_| words[random.below(words.len())].to_string() + " ").collect();
-            let item = match random.below(4) {
+                (0..count).map(|_| words[random.index_below(words.len())].to_string() + " ").collect();
+            let item = match random.index_below(4) {
                 0 => inside.clone(),
                 1 => format!("struct S {{ {inside} }}"),
                 2 => format!(

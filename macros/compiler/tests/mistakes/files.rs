@@ -121,7 +121,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
 
 #[test]
 fn collision_geometry_is_read_when_it_is_named() {
-    let of = |inside: &str| {
+    let robot_with = |inside: &str| {
         let foot = format!("<link name=\"foot\"><collision><geometry>{inside}</geometry></collision></link>");
         let sole = r#"<joint name="sole" type="fixed"><origin xyz="0 0.5 0"/><parent link="hand"/><child link="foot"/></joint>"#;
         ROBOT.replacen("</robot>", &format!("{foot}\n{sole}\n</robot>"), 1)
@@ -140,7 +140,7 @@ fn collision_geometry_is_read_when_it_is_named() {
     ];
     for (k, (inside, link, message)) in cases.into_iter().enumerate() {
         let name = format!("shapes{k}.urdf");
-        fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), of(inside)).unwrap();
+        fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), robot_with(inside)).unwrap();
         let contact = match link {
             "" => "#[contact(ground.plane(z), collision())] floor: Contact".to_string(),
             link => format!("#[contact({link}.collision(), ground.plane(z))] floor: Contact"),

@@ -155,7 +155,7 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
 /// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
 fn forces_of_accelerations_leave_no_momenta() {
-    fn own(words: &str) -> (String, String) {
+    fn added_force(words: &str) -> (String, String) {
         setting(&format!(
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
@@ -173,7 +173,7 @@ fn forces_of_accelerations_leave_no_momenta() {
         ("second_derivatives", SECOND, HELP),
         ("momentum_derivatives", MOMENTA, HELP),
     ];
-    answers(own, ROWS);
+    answers(added_force, ROWS);
 }
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.

@@ -20,7 +20,7 @@ const PARTS: [&str; 12] = [
 ];
 
 /// Returns the fields, some of them replaced.
-fn with(changed: &[(usize, &str)]) -> String {
+fn fields_with(changed: &[(usize, &str)]) -> String {
     let part = |k: usize| changed.iter().find(|(at, _)| *at == k).map_or(PARTS[k], |(_, text)| text);
     (0..PARTS.len()).map(part).collect::<Vec<_>>().join(", ")
 }
@@ -30,7 +30,7 @@ fn both_are_told() {
     let rows: Vec<(String, usize)> = vec![
         // A syntax error in a force element; an unknown name in another element.
         (
-            with(&[
+            fields_with(&[
                 (7, "#[acts(on = wrist, stifness = k)] coil: Spring"),
                 (9, "#[acts(on = tip, value = kk * x)] push: Force"),
             ]),
@@ -38,14 +38,14 @@ fn both_are_told() {
         ),
         // A body with a syntax error is still known as a body.
         (
-            with(&[
+            fields_with(&[
                 (3, "#[body(mass = 0.5 com = x)] tool: Body"),
                 (5, "#[joint(arm.at(ll * x) -> tool, about = z)] wrist: Pin"),
             ]),
             2,
         ),
         (
-            with(&[
+            fields_with(&[
                 (2, "#[body(mas = 1)] arm: Body"),
                 (7, "#[acts(on = wrist, stiffness = stiff)] coil: Spring"),
             ]),
@@ -53,26 +53,29 @@ fn both_are_told() {
         ),
         // Without a joint the kinematic tree is unknown, but other errors are reported.
         (
-            with(&[
+            fields_with(&[
                 (4, "#[joint(ground, arm, about = z)] hinge: Pin"),
                 (3, "#[body(mass = -1, inertia = sphere(1, 1))] tool: Body"),
             ]),
             2,
         ),
         (
-            with(&[
+            fields_with(&[
                 (5, "#[joint(arm -> tool, abuot = z)] wrist: Pin"),
                 (4, "#[joint(ground -> arm, about = 2 * z)] hinge: Pin"),
             ]),
             2,
         ),
         // An output and a definition.
-        (with(&[(11, "#[output(s +)] seen: Vector"), (10, "#[define(sine(hinge))] s: Scalar")]), 2),
+        (fields_with(&[(11, "#[output(s +)] seen: Vector"), (10, "#[define(sine(hinge))] s: Scalar")]), 2),
         // A repeated name, and an axis.
-        (with(&[(0, "tip: f64, k: f64"), (4, "#[joint(ground -> arm, about = l * z)] hinge: Pin")]), 2),
+        (
+            fields_with(&[(0, "tip: f64, k: f64"), (4, "#[joint(ground -> arm, about = l * z)] hinge: Pin")]),
+            2,
+        ),
         // An unknown type, and one error in each of two independent elements.
         (
-            with(&[
+            fields_with(&[
                 (8, "#[acts(on = hinge)] motor: Engine"),
                 (7, "#[acts(on = elbow, stiffness = k)] coil: Spring"),
                 (10, "#[define(cosine(hinge))] s: Scalar"),
@@ -105,7 +108,7 @@ fn nothing_follows_from_a_mistake_of_grammar() {
             broken.push(part.replace("#[", "#[un"));
         }
         for text in broken {
-            let fields = with(&[(k, &text)]);
+            let fields = fields_with(&[(k, &text)]);
             let found = messages("gravity = -9.81 * y", &fields);
             assert!(found.len() == 1, "{text}\nexpected one error, found\n{}", found.join("\n"));
         }

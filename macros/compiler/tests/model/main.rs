@@ -78,20 +78,20 @@ fn render(model: &Model<'_>) -> String {
         text += &format!("u: {}\n", inputs.join(" "));
     }
     for (k, link) in model.links.iter().enumerate() {
-        text += &format!("link {k} on {}{}\n", on(link.parent), motion(link, model));
+        text += &format!("link {k} on {}{}\n", link_text(link.parent), motion(link, model));
     }
     for frame in &model.frames {
-        text += &format!("frame {} on {}{}\n", frame.name, on(frame.link), pose(&frame.pose));
+        text += &format!("frame {} on {}{}\n", frame.name, link_text(frame.link), pose(&frame.pose));
     }
     text
 }
 
-fn on(link: Option<LinkId>) -> String {
+fn link_text(link: Option<LinkId>) -> String {
     link.map_or("ground".to_string(), |link| link.0.to_string())
 }
 
 fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
-    let by = |c: &Coordinate| {
+    let coordinate_text = |c: &Coordinate| {
         let name = &model.configuration[c.q.0];
         match (c.ratio, c.offset) {
             (1.0, 0.0) => name.clone(),
@@ -99,13 +99,17 @@ fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
         }
     };
     let how = match &link.motion {
-        Motion::Turn { axis, coordinate } => format!("turns about {} by {}", vector(*axis), by(coordinate)),
-        Motion::Slide { axis, coordinate } => format!("slides along {} by {}", vector(*axis), by(coordinate)),
+        Motion::Turn { axis, coordinate } => {
+            format!("turns about {} by {}", vector(*axis), coordinate_text(coordinate))
+        }
+        Motion::Slide { axis, coordinate } => {
+            format!("slides along {} by {}", vector(*axis), coordinate_text(coordinate))
+        }
         Motion::Helix { axis, pitch, coordinate } => {
             format!(
                 "turns about {} by {} with pitch {}",
                 vector(*axis),
-                by(coordinate),
+                coordinate_text(coordinate),
                 number(value(*pitch))
             )
         }

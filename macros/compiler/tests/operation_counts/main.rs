@@ -177,16 +177,16 @@ fn curves_of_growth() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
-    let at = |n: usize| {
+    let operations = |n: usize| {
         let (programs, nodes) =
             programs_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
         let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total() as f64).collect();
         totals.push(nodes as f64);
         totals
     };
-    let [a, b, c] = [16, 20, 24].map(at);
+    let [a, b, c] = [16, 20, 24].map(operations);
     for n in [32, 48, 64] {
-        let (found, s) = (at(n), (n as f64 - 16.0) / 4.0);
+        let (found, s) = (operations(n), (n as f64 - 16.0) / 4.0);
         for (k, name) in all.iter().enumerate() {
             let bend = c[k] - 2.0 * b[k] + a[k];
             assert!(k >= lines.len() || bend == 0.0, "{name} is a line");
@@ -291,7 +291,7 @@ fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
         let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
         let plain: [usize; 4] = of_robot(name, options, false)[0];
         let all = prepared(&format!("{file}, prepare, parameters = {parameters}"));
-        let within = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
-        assert!(within(all), "{name}: {all:?}, of the file's figures {plain:?}");
+        let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
+        assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");
     }
 }

@@ -129,7 +129,7 @@ fn is_particle(row: &Row, name: &str) -> bool {
     row.item.contains(&format!("{name}: Particle"))
 }
 
-fn turned(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
+fn rotated(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
     let (p, w) = ([quaternion[0], quaternion[1], quaternion[2]], quaternion[3]);
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -155,8 +155,8 @@ fn turn(q: &mut [f64], phi: [f64; 3]) {
 /// Returns the first derivative `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`.
 fn first(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0].map(|k| f(k * H));
-    let at = |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
-    (0..a.len()).map(at).collect()
+    let derivative = |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
+    (0..a.len()).map(derivative).collect()
 }
 
 fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
@@ -167,7 +167,7 @@ fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 
 impl Case<'_> {
     /// Returns the state after `q ⊕ (v h + a h² / 2)`, with consistent velocities.
-    fn moved(&self, s: &State, h: f64) -> State {
+    fn displaced(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
         let step = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
@@ -180,7 +180,7 @@ impl Case<'_> {
                     let spin =
                         [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]];
                     let body = std::array::from_fn(|i| step(v0 + i) + spin[i] * h * h / 2.0);
-                    let d = turned(&s.q[q0 + 3..q0 + 7], body);
+                    let d = rotated(&s.q[q0 + 3..q0 + 7], body);
                     (0..3).for_each(|i| out.q[q0 + i] += d[i]);
                     turn(&mut out.q[q0 + 3..q0 + 7], [step(v0 + 3), step(v0 + 4), step(v0 + 5)]);
                 }
@@ -203,7 +203,7 @@ impl Case<'_> {
         unit.v.fill(0.0);
         unit.a.fill(0.0);
         unit.v[k] = 1.0;
-        let moved = self.moved(&unit, h);
+        let moved = self.displaced(&unit, h);
         State { q: moved.q, ..s.clone() }
     }
 
@@ -215,7 +215,7 @@ impl Case<'_> {
     fn run(&self, name: &str, s: &State) -> Vec<f64> {
         let f = self.output.functions.iter().find(|f| f.name == name);
         let f = f.unwrap_or_else(|| panic!("{}: no {name}", self.name));
-        let at = |symbol| match Quantity::of(symbol) {
+        let symbol_value = |symbol| match Quantity::of(symbol) {
             Quantity::Configuration(k) => s.q[k],
             Quantity::Velocity(k) => s.v[k],
             Quantity::Acceleration(k) => s.a[k],
@@ -223,9 +223,9 @@ impl Case<'_> {
             Quantity::Time => s.t,
             other => panic!("{}: {name} takes {other:?}", self.name),
         };
-        let plain = f.program.run(&at);
+        let plain = f.program.run(&symbol_value);
         if let Some(lanes) = f.program.simd.as_deref() {
-            self.close(&format!("lanes of {name}"), &lanes.run(&at), &plain, 1.0);
+            self.close(&format!("lanes of {name}"), &lanes.run(&symbol_value), &plain, 1.0);
         }
         plain
     }
@@ -252,16 +252,16 @@ impl Case<'_> {
                 continue;
             }
             let axes = ["x", "y", "z"].map(|axis| self.run(&format!("{axis}_{name}"), s));
-            let at = |p: [f64; 3]| {
+            let position = |p: [f64; 3]| {
                 let entry = |i: usize| o[i] + (0..3).map(|k| (axes[k][i] - o[i]) * p[k]).sum::<f64>();
                 [entry(0), entry(1), entry(2)]
             };
-            all.extend(at(*com));
+            all.extend(position(*com));
             for k in (0..3).filter(|_| *moments != [0.0; 3]) {
                 for side in [-1.0, 1.0] {
                     let mut p = *com;
                     p[k] += side;
-                    all.extend(at(p));
+                    all.extend(position(p));
                 }
             }
         }
@@ -290,9 +290,12 @@ impl Case<'_> {
         let lengths = |s: &State| -> Vec<f64> {
             (0..self.row.elements.len()).map(|k| self.run(&format!("s{k}"), s)[0]).collect()
         };
-        let accelerations = second(|h| self.places(&self.moved(s, h)));
-        let (now, rate, bend) =
-            (lengths(s), first(|h| lengths(&self.moved(s, h))), second(|h| lengths(&self.moved(s, h))));
+        let accelerations = second(|h| self.places(&self.displaced(s, h)));
+        let (now, rate, bend) = (
+            lengths(s),
+            first(|h| lengths(&self.displaced(s, h))),
+            second(|h| lengths(&self.displaced(s, h))),
+        );
         let weights = self.weights();
         let force = |k: usize| {
             let partial = first(|h| self.places(&self.stepped(s, k, h)));
@@ -330,21 +333,21 @@ impl Case<'_> {
         let nc = jacobian.len() / nv;
         // Constraint rates are linear in the velocities.
         for k in 0..nv {
-            let by = |h: f64| {
+            let displaced_rates = |h: f64| {
                 let mut s = s.clone();
                 s.v[k] += h;
                 self.run("constraint_rates", &s)
             };
-            self.close("Jacobian", &jacobian[k * nc..(k + 1) * nc], &first(by), 1.0);
+            self.close("Jacobian", &jacobian[k * nc..(k + 1) * nc], &first(displaced_rates), 1.0);
         }
         let rates = self.run("constraint_rates", s);
-        let residuals = first(|h| self.run("constraint_residuals", &self.moved(s, h)));
+        let residuals = first(|h| self.run("constraint_residuals", &self.displaced(s, h)));
         self.close("rates", &rates[..residuals.len()], &residuals, 1.0);
         let free = State { a: vec![0.0; nv], ..s.clone() };
-        let bend = second(|h| self.run("constraint_residuals", &self.moved(&free, h)));
+        let bend = second(|h| self.run("constraint_residuals", &self.displaced(&free, h)));
         self.close("bias", &self.run("constraint_bias", s)[..bend.len()], &bend, 1.0);
         if !self.row.charts.contains('b') && !self.row.charts.contains('f') {
-            let change = first(|h| self.run("constraint_rates", &self.moved(&free, h)));
+            let change = first(|h| self.run("constraint_rates", &self.displaced(&free, h)));
             self.close("bias of all", &self.run("constraint_bias", s), &change, 1.0);
         }
     }

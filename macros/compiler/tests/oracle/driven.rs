@@ -89,15 +89,19 @@ fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
         let (_, own) = body.kind.sizes();
         for i in 0..own {
             let plain = !body.kind.coordinates().is_empty();
-            let is_way = !plain || random.below(4) == 0;
+            let is_way = !plain || random.index_below(4) == 0;
             let measure = if is_way {
                 let mut at = [0.0; 3];
                 at.iter_mut().for_each(|x| *x = 1.2 * random.uniform(1.0));
-                let carrier = body.parent.filter(|_| random.below(2) == 0);
-                Measure::Way(End { body: Some(k), at }, End { body: carrier, at: [0.3; 3] }, random.below(3))
+                let carrier = body.parent.filter(|_| random.index_below(2) == 0);
+                Measure::Way(
+                    End { body: Some(k), at },
+                    End { body: carrier, at: [0.3; 3] },
+                    random.index_below(3),
+                )
             } else {
                 let mut list = vec![(1.0, k, i)];
-                if let Some(more) = before.len().checked_sub(1).map(|last| random.below(last + 1)) {
+                if let Some(more) = before.len().checked_sub(1).map(|last| random.index_below(last + 1)) {
                     let (body, coordinate) = before[more];
                     list.push((random.uniform(0.8), body, coordinate));
                 }
@@ -105,7 +109,7 @@ fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
                 Measure::Coordinates(list)
             };
             let path = [0.0; 3].map(|_| random.uniform(1.0));
-            let by_rate = !is_way && random.below(3) == 0;
+            let by_rate = !is_way && random.index_below(3) == 0;
             drives.push(Drive { measure, path, by_rate });
         }
     }

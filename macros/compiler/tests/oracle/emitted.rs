@@ -202,7 +202,7 @@ impl Machine {
             }
             Expr::Assign(assign) => {
                 let value = self.value(&assign.right)?;
-                self.put(&assign.left, &[], value)?;
+                self.assign(&assign.left, &[], value)?;
                 Ok(Value::List(Vec::new()))
             }
             Expr::Call(call) => self.call(call),
@@ -260,7 +260,7 @@ impl Machine {
     }
 
     /// Assigns a value to a variable, or a number to an entry of a matrix.
-    fn put(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
+    fn assign(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
         let (mut at, mut inner) = (more.to_vec(), place);
         let name = loop {
             match inner {
@@ -344,18 +344,18 @@ impl Machine {
         let count = |vector: usize| if let Value::Lanes(lanes) = &vectors[vector] { lanes.len() } else { 0 };
         match (name, constants.as_slice()) {
             ("store_two", [i, j, row]) => {
-                self.put(&call.args[0], &[*row], lane(0, *i)?)?;
-                self.put(&call.args[0], &[row + 1], lane(1, *j)?)?;
+                self.assign(&call.args[0], &[*row], lane(0, *i)?)?;
+                self.assign(&call.args[0], &[row + 1], lane(1, *j)?)?;
             }
             ("store_rows", [row]) => {
                 for k in 0..count(0) {
-                    self.put(&call.args[0], &[row + k], lane(0, k)?)?;
+                    self.assign(&call.args[0], &[row + k], lane(0, k)?)?;
                 }
             }
             ("store_columns", [row, column]) => {
                 for k in 0..count(0) {
-                    self.put(&call.args[0], &[column + k, *row], lane(0, k)?)?;
-                    self.put(&call.args[0], &[column + k, row + 1], lane(1, k)?)?;
+                    self.assign(&call.args[0], &[column + k, *row], lane(0, k)?)?;
+                    self.assign(&call.args[0], &[column + k, row + 1], lane(1, k)?)?;
                 }
             }
             _ => return foreign(),

@@ -148,7 +148,9 @@ fn long_passive_forces_agree() {
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);
     let text = expanded("gravity = -9.81 * y, derivatives", &item);
-    for row in ["| passive forces, which others call |", "| derivatives of these, which others call |"] {
+    for row in
+        ["| passive forces, called by other functions |", "| their derivatives, called by other functions |"]
+    {
         assert!(text.contains(row), "{row}");
     }
 }

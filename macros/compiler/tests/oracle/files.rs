@@ -126,12 +126,12 @@ fn random_sdf_files_move_as_their_version_says() {
 fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
     let (names, output) = functions(robot, format, text);
     assert_eq!(names, robot.coordinates(), "{text}");
-    let of = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
+    let function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
     for _ in 0..2 {
         let state = robot.state(random);
         let expected = truth(robot, &state);
         let check = |name: &str, expected: &[f64]| {
-            for found in values(of(name), &state, &[]) {
+            for found in values(function(name), &state, &[]) {
                 assert_near(name, seed, &found, expected, text);
             }
         };
@@ -141,7 +141,7 @@ fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: 
             check("potential_energy", &[expected.potential]);
             check("center_of_mass", &expected.center);
         }
-        for found in values(of("forward_dynamics"), &state, &expected.forces) {
+        for found in values(function("forward_dynamics"), &state, &expected.forces) {
             let size = state[2].iter().fold(1.0_f64, |size, a| size.max(a.abs()));
             let off = found.iter().zip(&state[2]).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
             assert!(off <= 1e-6 * size, "forward dynamics of {seed}: {off}\n{}", text);

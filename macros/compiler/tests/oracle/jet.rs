@@ -96,7 +96,7 @@ pub type Vector = [Jet; 3];
 pub type Matrix = [[Jet; 3]; 3];
 
 /// Returns a constant vector.
-pub fn still(v: [f64; 3]) -> Vector {
+pub fn constant_vector(v: [f64; 3]) -> Vector {
     v.map(Jet::constant)
 }
 
@@ -121,7 +121,7 @@ pub fn dot(a: Vector, b: Vector) -> Jet {
 }
 
 /// Returns `R v`.
-pub fn turned(r: &Matrix, v: Vector) -> Vector {
+pub fn rotated(r: &Matrix, v: Vector) -> Vector {
     r.map(|row| dot(row, v))
 }
 
@@ -145,7 +145,7 @@ pub fn identity() -> Matrix {
 pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
     let (s, c) = angle.sin_cos();
     let rest = Jet::constant(1.0) - c;
-    let k = still(axis);
+    let k = constant_vector(axis);
     let cross = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
     from_fn(|i| {
         from_fn(|j| {

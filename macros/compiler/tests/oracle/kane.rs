@@ -5,8 +5,8 @@
 //! 5). The oracle uses no code of the compiler.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
-    turned,
+    C, Jet, Matrix, Vector, constant_vector, cross, difference, dot, identity, product, real, rotated,
+    rotation, scaled, sum,
 };
 use crate::motion::{
     Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, spin, turning, velocity,
@@ -47,14 +47,14 @@ fn turns(list: &[(usize, f64)]) -> Matrix {
 }
 
 fn of_place(place: &Place) -> Pose {
-    Pose { r: turns(&place.turns), p: still(place.at) }
+    Pose { r: turns(&place.turns), p: constant_vector(place.at) }
 }
 
 /// Returns the pose of a joint, and its coordinates that elements can act on.
 fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let [one, two] = body.axes;
-    let fixed = |r: Matrix| Pose { r, p: still([0.0; 3]) };
-    let moved = |p: Vector| Pose { r: identity(), p };
+    let fixed = |r: Matrix| Pose { r, p: constant_vector([0.0; 3]) };
+    let translated = |p: Vector| Pose { r: identity(), p };
     let three = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
     if body.kind == Kind::Ball {
         return (fixed(turning(q, three(v, 0), three(a, 0))), Vec::new());
@@ -68,13 +68,13 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let pose = match body.kind {
         Kind::Pin => fixed(rotation(one, s[0])),
-        Kind::Sleeve => moved(scaled(s[0], one)),
+        Kind::Sleeve => translated(scaled(s[0], one)),
         Kind::Screw => Pose { r: rotation(one, s[0]), p: scaled(s[0] * Jet::constant(body.pitch), one) },
         Kind::Collar => Pose { r: rotation(one, s[1]), p: scaled(s[0], one) },
         Kind::Slot => Pose { r: rotation(two, s[1]), p: scaled(s[0], one) },
         Kind::Universal => fixed(product(&rotation(x, s[0]), &rotation(y, s[1]))),
         Kind::Planar => Pose { r: rotation(z, s[2]), p: sum(scaled(s[0], x), scaled(s[1], y)) },
-        Kind::Stage => moved([s[0], s[1], s[2]]),
+        Kind::Stage => translated([s[0], s[1], s[2]]),
         Kind::Ball | Kind::Free | Kind::Weld => fixed(identity()),
     };
     (pose, s)
@@ -104,19 +104,19 @@ fn world(spec: &Spec, state: &State) -> World {
             mass: body.mass,
             inertia: inertia(body),
             r: pose.r,
-            p: sum(pose.p, turned(&pose.r, still(body.com))),
+            p: sum(pose.p, rotated(&pose.r, constant_vector(body.com))),
         });
         let mut particle = |mass: f64, p: Vector| {
             world.pieces.push(Piece { mass, inertia: [[0.0; 3]; 3], r: identity(), p });
         };
         if let Some((mass, at)) = body.particle {
-            particle(mass, sum(pose.p, turned(&pose.r, still(at))));
+            particle(mass, sum(pose.p, rotated(&pose.r, constant_vector(at))));
         }
         if let Some(slider) = &body.slider {
             let s = Jet([state.q[q0], state.v[v0], state.a[v0] * 0.5]);
             (q0, v0) = (q0 + 1, v0 + 1);
             let [x, y, z] = slider.offset;
-            let mut p = sum(pose.p, turned(&pose.r, still([y, z, 0.0])));
+            let mut p = sum(pose.p, rotated(&pose.r, constant_vector([y, z, 0.0])));
             p[0] = p[0] + s;
             p[1] = p[1] + Jet::constant(x);
             particle(slider.mass, p);
@@ -135,8 +135,8 @@ fn inertia(body: &Body) -> [[f64; 3]; 3] {
 
 fn point(world: &World, end: &End) -> Vector {
     match end.body {
-        None => still(end.at),
-        Some(k) => sum(world.poses[k].p, turned(&world.poses[k].r, still(end.at))),
+        None => constant_vector(end.at),
+        Some(k) => sum(world.poses[k].p, rotated(&world.poses[k].r, constant_vector(end.at))),
     }
 }
 
@@ -163,7 +163,7 @@ fn across(
     let middle = point(world, around);
     let from = ends.each_ref().map(|end| difference(point(world, end), middle));
     let Some(axis) = axis else { return (from, Jet::constant(0.0), None) };
-    let n = around.body.map_or(still(axis), |k| turned(&world.poses[k].r, still(axis)));
+    let n = around.body.map_or(constant_vector(axis), |k| rotated(&world.poses[k].r, constant_vector(axis)));
     let heights = from.map(|p| dot(p, n));
     let level = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
     ([level(0), level(1)], heights[1] - heights[0], Some(n))
@@ -317,9 +317,9 @@ pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
 
 /// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
 /// these velocities.
-pub fn moved(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
-    let along = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
-    let mut q = rates.iter().enumerate().fold(q.to_vec(), along);
+pub fn displaced(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
+    let stepped = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
+    let mut q = rates.iter().enumerate().fold(q.to_vec(), stepped);
     let mut first = 0;
     for body in &spec.bodies {
         let (own, _) = body.kind.sizes();

@@ -1,7 +1,9 @@
 //! Rigid motions as Taylor series in time, and inertial forces of moving bodies. All vectors are in ground
 //! axes.
 
-use crate::jet::{C, Jet, Matrix, Vector, cross, identity, product, real, still, sum, transposed, turned};
+use crate::jet::{
+    C, Jet, Matrix, Vector, constant_vector, cross, identity, product, real, rotated, sum, transposed,
+};
 use std::array::from_fn;
 
 /// Rigid pose.
@@ -14,7 +16,7 @@ pub struct Pose {
 impl Pose {
     /// Returns the identity pose.
     pub fn identity() -> Pose {
-        Pose { r: identity(), p: still([0.0; 3]) }
+        Pose { r: identity(), p: constant_vector([0.0; 3]) }
     }
 }
 
@@ -56,13 +58,13 @@ impl Piece {
 
 /// Composes two poses; `b` is relative to `a`.
 pub fn compose(a: &Pose, b: &Pose) -> Pose {
-    Pose { r: product(&a.r, &b.r), p: sum(a.p, turned(&a.r, b.p)) }
+    Pose { r: product(&a.r, &b.r), p: sum(a.p, rotated(&a.r, b.p)) }
 }
 
 /// Returns the inverse pose.
 pub fn inverse(pose: &Pose) -> Pose {
     let r = transposed(&pose.r);
-    Pose { r, p: turned(&r, pose.p).map(|x| -x) }
+    Pose { r, p: rotated(&r, pose.p).map(|x| -x) }
 }
 
 /// Returns the rotation matrix of a quaternion (x, y, z, w).

@@ -123,13 +123,13 @@ impl Case<'_> {
             let function = self.output.functions.iter().find(|f| f.name == called.function());
             function.map_or_else(Vec::new, |f| f.program.run(&state))
         });
-        let at = |s| match Quantity::of(s) {
+        let symbol_value = |s| match Quantity::of(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
             _ => state(s),
         };
         let program = &function.program;
-        [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&at)).collect()
+        [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol_value)).collect()
     }
 
     fn close(&self, what: &str, expected: &[f64], scale: f64) {
@@ -254,14 +254,14 @@ impl Case<'_> {
             kane::power(self.spec, &stepped, lambda).im / STEP
         };
         let difference = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
-            let at = |h: f64| {
+            let value = |h: f64| {
                 let add = |list: &[C], rates: &[f64]| -> Vec<C> {
                     list.iter().zip(rates).map(|(x, rate)| x + real(h * rate)).collect()
                 };
-                let q = kane::moved(self.spec, &state.q, &outer[0], h);
+                let q = kane::displaced(self.spec, &state.q, &outer[0], h);
                 slope(&State { q, v: add(&state.v, &outer[1]), a: add(&state.a, &outer[2]) }, inner)
             };
-            let part = |h: f64| at(h) - at(-h);
+            let part = |h: f64| value(h) - value(-h);
             (part(size) * 45.0 - part(2.0 * size) * 9.0 + part(3.0 * size)) / (60.0 * size)
         };
         (difference(along, &unit) + difference(&unit, along)) * 0.5

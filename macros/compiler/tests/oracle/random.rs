@@ -21,13 +21,13 @@ impl Random {
     }
 
     /// Returns a random integer below `n`.
-    pub fn below(&mut self, n: usize) -> usize {
+    pub fn index_below(&mut self, n: usize) -> usize {
         ((self.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
     }
 
     /// Returns a number between −1 and 1 with four decimal digits, which text represents exactly.
     pub fn figure(&mut self) -> f64 {
-        self.below(20_001) as f64 / 1e4 - 1.0
+        self.index_below(20_001) as f64 / 1e4 - 1.0
     }
 
     /// Returns numbers between −1 and 1 with four decimal digits.

@@ -1,6 +1,6 @@
 //! Random robots: as files, as the order of their coordinates, and as poses of their links in a motion.
 
-use crate::jet::{C, Jet, Matrix, identity, product, rotation, scaled, still, sum};
+use crate::jet::{C, Jet, Matrix, constant_vector, identity, product, rotation, scaled, sum};
 use crate::kane::State;
 use crate::motion::{Piece, Pose, compose, drifting, turning};
 use crate::random::Random;
@@ -43,8 +43,9 @@ pub struct Robot {
 
 /// Returns `R_z(yaw) R_y(pitch) R_x(roll)`.
 pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
-    let about = |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
-    product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
+    let axis_rotation =
+        |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
+    product(&product(&axis_rotation(2, yaw), &axis_rotation(1, pitch)), &axis_rotation(0, roll))
 }
 
 impl Link {
@@ -63,8 +64,8 @@ impl Link {
             }
         }
         let (com, rpy) = (random.figures(), random.figures::<3>().map(|angle| 3.0 * angle));
-        let turned = fixed_axes(rpy);
-        let r: [[f64; 3]; 3] = turned.map(|row| row.map(|entry| entry.0[0].re));
+        let rotated = fixed_axes(rpy);
+        let r: [[f64; 3]; 3] = rotated.map(|row| row.map(|entry| entry.0[0].re));
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
         let inertial = format!(
             "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
@@ -84,8 +85,8 @@ pub fn spaced(numbers: [f64; 3]) -> String {
 
 impl Joint {
     fn random(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
-        let kind = kinds[random.below(kinds.len())];
-        let axis = match (KINDS[kind], random.below(3)) {
+        let kind = kinds[random.index_below(kinds.len())];
+        let axis = match (KINDS[kind], random.index_below(3)) {
             // The directions of x and y are a convention: for a coordinate axis, the other two axes in cyclic
             // order.
             ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
@@ -93,17 +94,22 @@ impl Joint {
             (_, k) => from_fn(|i| if i == k { random.figure() - 2.0 } else { 0.0 }),
         };
         let leaders: Vec<usize> = (1..child).filter(|k| links[*k].leads()).collect();
-        let follows = kind < 3 && !leaders.is_empty() && random.below(4) == 0;
+        let follows = kind < 3 && !leaders.is_empty() && random.index_below(4) == 0;
         Joint {
-            name: format!("{}{child}", ["j", "J", "a", "joint_"][random.below(4)]),
+            name: format!("{}{child}", ["j", "J", "a", "joint_"][random.index_below(4)]),
             kind,
-            parent: random.below(child),
+            parent: random.index_below(child),
             xyz: random.figures(),
-            rpy: if random.below(3) == 0 { [0.0; 3] } else { random.figures::<3>().map(|angle| 3.0 * angle) },
+            rpy: if random.index_below(3) == 0 {
+                [0.0; 3]
+            } else {
+                random.figures::<3>().map(|angle| 3.0 * angle)
+            },
             axis,
-            locked: !follows && random.below(8) == 0,
-            mimic: follows
-                .then(|| (leaders[random.below(leaders.len())], random.figure() * 2.0, random.figure())),
+            locked: !follows && random.index_below(8) == 0,
+            mimic: follows.then(|| {
+                (leaders[random.index_below(leaders.len())], random.figure() * 2.0, random.figure())
+            }),
         }
     }
 }
@@ -128,7 +134,7 @@ impl Link {
 impl Robot {
     /// Returns a random robot whose joints have these types.
     pub fn random(kinds: &[usize], random: &mut Random) -> Robot {
-        let n = 2 + random.below(6);
+        let n = 2 + random.index_below(6);
         let mut links = vec![Link::random(0, random)];
         for k in 1..n {
             let mut link = Link::random(k, random);
@@ -136,8 +142,8 @@ impl Robot {
             links.push(link);
         }
         let mut shuffle: Vec<usize> = (0..2 * n - 1).collect();
-        (1..shuffle.len()).for_each(|k| shuffle.swap(k, random.below(k + 1)));
-        Robot { free: random.below(2) == 0, links, shuffle }
+        (1..shuffle.len()).for_each(|k| shuffle.swap(k, random.index_below(k + 1)));
+        Robot { free: random.index_below(2) == 0, links, shuffle }
     }
 
     pub fn text(&self) -> String {
@@ -223,7 +229,7 @@ impl Robot {
 
     /// Returns the pose of a frame on a link; its orientation is `R_z R_y R_x` of the angles.
     pub fn frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
-        compose(&self.places(state)[link], &Pose { r: fixed_axes(rpy), p: still(xyz) })
+        compose(&self.places(state)[link], &Pose { r: fixed_axes(rpy), p: constant_vector(xyz) })
     }
 
     fn write_joint(&self, text: &mut String, child: usize) {
@@ -331,14 +337,14 @@ impl Robot {
                 places.push(if self.free { floating(state, entries[k]) } else { Pose::identity() });
                 continue;
             };
-            let start = Pose { r: fixed_axes(joint.rpy), p: still(joint.xyz) };
+            let start = Pose { r: fixed_axes(joint.rpy), p: constant_vector(joint.xyz) };
             let moved = match joint.mimic {
                 _ if joint.locked => Pose::identity(),
                 Some((leader, factor, offset)) => {
                     let angle = plain(state, entries[leader]);
-                    joint.moved(angle * Jet::constant(factor) + Jet::constant(offset))
+                    joint.joint_pose(angle * Jet::constant(factor) + Jet::constant(offset))
                 }
-                None if joint.kind < 3 => joint.moved(plain(state, entries[k])),
+                None if joint.kind < 3 => joint.joint_pose(plain(state, entries[k])),
                 None => joint.placed(state, entries[k]),
             };
             let there = compose(&places[joint.parent], &start);
@@ -353,7 +359,7 @@ impl Robot {
         let moving = (0..self.links.len()).filter(|k| self.moves(*k));
         let piece = |k: usize| {
             let Link { mass, com, inertia, .. } = self.links[k];
-            let center = Pose { r: identity(), p: still(com) };
+            let center = Pose { r: identity(), p: constant_vector(com) };
             Piece { mass, inertia, r: places[k].r, p: compose(&places[k], &center).p }
         };
         moving.map(piece).collect()
@@ -367,7 +373,7 @@ impl Joint {
     }
 
     /// Returns the pose of a joint that rotates about or slides along its axis.
-    fn moved(&self, coordinate: Jet) -> Pose {
+    fn joint_pose(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
             "prismatic" => Pose { p: scaled(coordinate, self.unit()), ..Pose::identity() },
             _ => Pose { r: rotation(self.unit(), coordinate), ..Pose::identity() },
@@ -380,8 +386,8 @@ impl Joint {
             "floating" => floating(state, [q, v]),
             "planar" => {
                 let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
-                let along = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
-                let shift = |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), along(k));
+                let axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
+                let shift = |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), axis(k));
                 let r = rotation(self.unit(), plain(state, [q + 2, v + 2]));
                 Pose { r, p: sum(shift(1), shift(2)) }
             }

@@ -70,7 +70,7 @@ struct Writer<'a> {
 
 /// Writes the robot in a random version. Its joint types must be in [`OF_SDF`].
 pub fn text(robot: &Robot, random: &mut Random) -> String {
-    let minor = VERSIONS[random.below(VERSIONS.len())];
+    let minor = VERSIONS[random.index_below(VERSIONS.len())];
     let mut placed = vec![Placed::ZERO];
     for link in &robot.links[1..] {
         let parent = link
@@ -84,7 +84,7 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
     let joints: Vec<String> = (1..robot.links.len()).map(|k| writer.joint(k, random)).collect();
     let model = format!("<model name=\"m\">\n{}{}</model>", parts.concat(), joints.concat());
     let version = format!("1.{minor}");
-    if robot.free || random.below(3) > 0 {
+    if robot.free || random.index_below(3) > 0 {
         return format!("<sdf version=\"{version}\">{model}</sdf>");
     }
     // In a world, gravity is an element of `<physics>` before version 1.6. Joints to the model are possible
@@ -105,10 +105,10 @@ impl Writer<'_> {
             5 | 6 => "frame",
             _ => "relative_to",
         };
-        if word.is_empty() || k == 0 || random.below(2) == 0 {
+        if word.is_empty() || k == 0 || random.index_below(2) == 0 {
             return (String::new(), usual);
         }
-        let other = random.below(k);
+        let other = random.index_below(k);
         (format!(" {word}=\"l{other}\""), self.placed[other])
     }
 
@@ -149,8 +149,8 @@ impl Writer<'_> {
     }
 
     fn axis(&self, text: &mut String, child: usize, axis: [f64; 3], random: &mut Random) {
-        let in_model = random.below(2) == 0;
-        let other = random.below(self.placed.len());
+        let in_model = random.index_below(2) == 0;
+        let other = random.index_below(self.placed.len());
         let own = self.placed[child];
         let (attribute, element, frame) = match self.minor {
             ..5 => (String::new(), "", Placed::ZERO),
@@ -158,7 +158,9 @@ impl Writer<'_> {
                 (String::new(), "<use_parent_model_frame>true</use_parent_model_frame>", Placed::ZERO)
             }
             7.. if in_model => (" expressed_in=\"__model__\"".to_string(), "", Placed::ZERO),
-            7.. if random.below(2) == 0 => (format!(" expressed_in=\"l{other}\""), "", self.placed[other]),
+            7.. if random.index_below(2) == 0 => {
+                (format!(" expressed_in=\"l{other}\""), "", self.placed[other])
+            }
             _ => (String::new(), "", own),
         };
         let axis = apply(&transposed(&frame.0), apply(&own.0, axis)).map(|x| format!("{x:?}")).join(" ");

@@ -1,6 +1,6 @@
 //! Random MJCF files with motors on sites: the power of forces and torques compared with partial velocities.
 
-use crate::jet::{C, cross, real, still};
+use crate::jet::{C, constant_vector, cross, real};
 use crate::kane::State;
 use crate::motion::{Pose, complex_dot, spin, velocity};
 use crate::random::Random;
@@ -76,7 +76,7 @@ impl Site {
     }
 
     fn pose(&self, robot: &Robot, state: &State) -> Pose {
-        let ground = Pose { r: fixed_axes(self.rpy), p: still(self.xyz) };
+        let ground = Pose { r: fixed_axes(self.rpy), p: constant_vector(self.xyz) };
         self.link.map_or(ground, |link| robot.frame(link, self.xyz, self.rpy, state))
     }
 }
@@ -94,7 +94,8 @@ impl Motor {
     fn power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
         let [on, against] = self.sites.map(|k| sites[k].pose(robot, state));
         let axes = if self.against { &against } else { &on };
-        let along = |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
+        let in_ground =
+            |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
         let [x, y, z, a, b, c] = self.gear;
         let (mut v, mut w) = (velocity(on.p), spin(&on.r).0);
         if self.against {
@@ -104,7 +105,7 @@ impl Motor {
             v = from_fn(|i| v[i] - other[i] - carried[i]);
             w = from_fn(|i| w[i] - turn[i]);
         }
-        complex_dot(along([x, y, z]), v) + complex_dot(along([a, b, c]), w)
+        complex_dot(in_ground([x, y, z]), v) + complex_dot(in_ground([a, b, c]), w)
     }
 }
 
@@ -117,19 +118,20 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
         let links = robot.links.len();
         let mut sites = vec![Site::random(None, &mut random)];
         sites.extend((0..links).map(|link| Site::random(Some(link), &mut random)));
-        let motors: Vec<Motor> = (0..1 + random.below(4))
+        let motors: Vec<Motor> = (0..1 + random.index_below(4))
             .map(|_| {
-                let link = random.below(links);
+                let link = random.index_below(links);
                 let carriers: Vec<usize> =
                     (0..links).filter(|k| *k != link && robot.carries(*k, link)).collect();
-                let other = random.below(carriers.len() + 1).checked_sub(1).map_or(0, |k| carriers[k] + 1);
+                let other =
+                    random.index_below(carriers.len() + 1).checked_sub(1).map_or(0, |k| carriers[k] + 1);
                 let mut gear: [f64; 6] = random.figures();
-                match random.below(3) {
+                match random.index_below(3) {
                     0 => gear[..3].fill(0.0),
                     1 => gear[3..].fill(0.0),
                     _ => {}
                 }
-                Motor { sites: [link + 1, other], against: random.below(2) == 0, gear }
+                Motor { sites: [link + 1, other], against: random.index_below(2) == 0, gear }
             })
             .collect();
         let inside = |link: usize| sites[link + 1].write(&format!("s{}", link + 1));

@@ -180,12 +180,12 @@ pub struct Style {
 struct Source(Random);
 
 impl Source {
-    fn below(&mut self, n: usize) -> usize {
-        self.0.below(n)
+    fn index_below(&mut self, n: usize) -> usize {
+        self.0.index_below(n)
     }
 
     fn chance(&mut self, one_in: usize) -> bool {
-        self.below(one_in) == 0
+        self.index_below(one_in) == 0
     }
 
     fn vector(&mut self, bound: f64) -> [f64; 3] {
@@ -196,10 +196,10 @@ impl Source {
     fn axis(&mut self, style: &Style) -> [f64; 3] {
         let mut axis = [0.0; 3];
         if style.noise.is_some() || !self.chance(3) {
-            axis[self.below(3)] = if self.chance(2) { 1.0 } else { -1.0 };
+            axis[self.index_below(3)] = if self.chance(2) { 1.0 } else { -1.0 };
         } else {
             axis = self.vector(1.0);
-            axis[self.below(3)] += 1.5;
+            axis[self.index_below(3)] += 1.5;
         }
         if let Some(noise) = style.noise {
             axis = axis.map(|x| x + self.0.uniform(noise));
@@ -208,19 +208,21 @@ impl Source {
     }
 
     fn turns(&mut self, style: &Style) -> Vec<(usize, f64)> {
-        (0..self.below(3))
+        (0..self.index_below(3))
             .map(|_| {
                 let angle = match style.noise {
-                    Some(noise) => std::f64::consts::FRAC_PI_2 * self.below(4) as f64 + self.0.uniform(noise),
+                    Some(noise) => {
+                        std::f64::consts::FRAC_PI_2 * self.index_below(4) as f64 + self.0.uniform(noise)
+                    }
                     None => self.0.uniform(3.0),
                 };
-                (self.below(3), angle)
+                (self.index_below(3), angle)
             })
             .collect()
     }
 
     fn place(&mut self, style: &Style) -> Place {
-        match self.below(4) {
+        match self.index_below(4) {
             0 => Place::default(),
             1 => Place { at: self.vector(0.5), turns: Vec::new() },
             _ => Place { at: self.vector(0.5), turns: self.turns(style) },
@@ -258,7 +260,7 @@ impl Source {
 
     fn law(&mut self) -> Law {
         let size = 1.5 + self.0.uniform(1.0);
-        match self.below(3) {
+        match self.index_below(3) {
             0 => Law::Spring(4.0 * size, self.0.uniform(0.3).abs()),
             1 => Law::Dashpot(size),
             _ => Law::Inerter(0.5 * size),
@@ -298,7 +300,7 @@ impl Source {
             radius: 0.2 + self.0.uniform(0.15),
             axis: self.chance(2).then(|| {
                 let mut axis = self.vector(1.0);
-                axis[self.below(3)] += 1.5;
+                axis[self.index_below(3)] += 1.5;
                 unit(axis)
             }),
         })
@@ -306,16 +308,16 @@ impl Source {
 
     /// Returns a random body or the ground.
     fn any(&mut self, bodies: &[Body]) -> Option<usize> {
-        self.below(bodies.len() + 1).checked_sub(1)
+        self.index_below(bodies.len() + 1).checked_sub(1)
     }
 
     fn element(&mut self, bodies: &[Body]) -> Option<Element> {
-        let one = self.below(bodies.len());
+        let one = self.index_below(bodies.len());
         // Forces cannot move a body that is welded to the ground.
         if is_fixed(bodies, one) {
             return None;
         }
-        Some(match self.below(9) {
+        Some(match self.index_below(9) {
             0 => Element::Push(self.end(Some(one)), self.vector(3.0)),
             1 => Element::Follow(self.end(Some(one)), self.vector(3.0)),
             2 => {
@@ -324,13 +326,13 @@ impl Source {
                     return None;
                 }
                 let law = if self.chance(3) { self.friction() } else { self.law() };
-                Element::On(law, one, self.below(coordinates.len()))
+                Element::On(law, one, self.index_below(coordinates.len()))
             }
             3 => Element::Between(self.law_between(), self.end(None), self.end(Some(one))),
             4 => Element::Along(self.law(), self.path(bodies, one)?),
             5 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
             _ => {
-                let other = self.below(bodies.len());
+                let other = self.index_below(bodies.len());
                 // Bodies that are welded together have a constant distance.
                 if rigid(bodies, other) == rigid(bodies, one) {
                     return None;
@@ -388,13 +390,13 @@ pub fn spec(seed: u64, style: Style) -> Spec {
     let mut bodies: Vec<Body> = Vec::new();
     let rigged = if style.limbs > 0 { limbs(&mut source, &style, &mut bodies) } else { 0 };
     if style.limbs == 0 {
-        let count = 1 + source.below(style.bodies);
+        let count = 1 + source.index_below(style.bodies);
         for k in 0..count {
-            let parent = (k > 0 && !source.chance(8)).then(|| source.below(k));
+            let parent = (k > 0 && !source.chance(8)).then(|| source.index_below(k));
             // Floating bases are most frequent in applications.
             let kind = match parent {
                 None if source.chance(3) => Kind::Free,
-                _ => KINDS[source.below(KINDS.len())],
+                _ => KINDS[source.index_below(KINDS.len())],
             };
             let body = source.body(kind, parent, &style);
             bodies.push(body);
@@ -403,25 +405,25 @@ pub fn spec(seed: u64, style: Style) -> Spec {
             bodies[0].kind = Kind::Ball;
         }
     }
-    let tries = source.below(4) + rigged;
+    let tries = source.index_below(4) + rigged;
     let elements = (0..tries).filter_map(|_| source.element(&bodies)).collect();
     Spec { gravity: source.vector(10.0), bodies, elements, symbolic: source.chance(2) }
 }
 
 /// Adds identical limbs to a trunk. Returns the number of further elements to generate.
 fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
-    let trunk = match source.below(4) {
+    let trunk = match source.index_below(4) {
         0 => None,
         1 => Some(Kind::Free),
         2 => Some(Kind::Pin),
-        _ => Some(KINDS[source.below(KINDS.len())]),
+        _ => Some(KINDS[source.index_below(KINDS.len())]),
     };
     if let Some(kind) = trunk {
         bodies.push(source.body(kind, None, style));
     }
     let root = bodies.len().checked_sub(1);
     let joints: Vec<Kind> =
-        (0..1 + source.below(2)).map(|_| LIMB_KINDS[source.below(LIMB_KINDS.len())]).collect();
+        (0..1 + source.index_below(2)).map(|_| LIMB_KINDS[source.index_below(LIMB_KINDS.len())]).collect();
     let plain: Vec<Body> = joints.iter().map(|kind| source.body(*kind, None, style)).collect();
     let same = source.chance(2);
     for _ in 0..style.limbs {
@@ -434,5 +436,5 @@ fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
             bodies.push(body);
         }
     }
-    1 + source.below(3)
+    1 + source.index_below(3)
 }

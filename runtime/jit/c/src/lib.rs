@@ -495,7 +495,10 @@ pub unsafe extern "C" fn lw_simulate(
         };
         let run = robot.simulate().start_at(settings.start).from(q, v).inputs(inputs).method(method);
         let run = run.duration(settings.duration);
-        let run = positive(settings.every).map_or(run, |every| run.sample_every(every));
+        let run = match positive(settings.every) {
+            Some(every) => run.sample_every(every),
+            None => run,
+        };
         let run = if settings.without_contacts != 0 { run.without_contacts() } else { run };
         let mut places = samples.chunks_exact_mut(width);
         let ended = run.each(&mut |sample| {

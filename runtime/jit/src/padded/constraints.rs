@@ -42,11 +42,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     fn structure(&self) -> Structure<'_, NV> {
         let constraints = &self.robot().shared.constraints;
-        Structure {
-            groups: self.groups(),
-            determining: &constraints.determining,
-            rank: constraints.rank,
-        }
+        Structure { groups: self.groups(), determining: &constraints.determining, rank: constraints.rank }
     }
 
     pub(super) fn constraints_nearly_singular(

@@ -178,7 +178,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let parts = self.motion_derivatives(t, q, v, &a, &lambda);
         let constraints = &self.robot().shared.constraints;
         if constraints.slipping.is_empty() {
-            return constrained_derivatives(&parts, |force, bias| self.constraint_solution(t, q, force, bias));
+            return constrained_derivatives(&parts, |force, bias| {
+                self.constraint_solution(t, q, force, bias)
+            });
         }
         let (slipping, groups) = (self.slipping(), self.groups());
         let (n, rows, sliding) = (self.robot().nv(), constraints.names.len(), constraints.slipping.len());

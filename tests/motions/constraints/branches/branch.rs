@@ -132,11 +132,11 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
         // Accelerations that each force alone would cause, through the motion of its body, which is known
         // only to 1e-11 m or rad.
-        let moved = |k: usize| {
+        let acceleration = |k: usize| {
             let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
             (self.by * solve(by * bias[k])).amax()
         };
-        let most = (0..NV).map(moved).fold(0.0, f64::max);
+        let most = (0..NV).map(acceleration).fold(0.0, f64::max);
         // Light bodies with stiff springs would have large accelerations without constraints. The constraint
         // forces have the rounding errors of these accelerations.
         let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());

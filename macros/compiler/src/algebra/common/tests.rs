@@ -20,11 +20,11 @@ fn ring() -> Ring {
 
 fn value(items: &[Item], atoms: &[f64]) -> f64 {
     let power = |(k, n): (usize, u8)| atoms[k].powi(n.into());
-    let of = |item: &Item| {
+    let item_value = |item: &Item| {
         let sums = item.sums.iter().map(|sum| value(&sum.items, atoms).powi(sum.power.into()));
         item.coefficient * item.factor.factors().map(power).product::<f64>() * sums.product::<f64>()
     };
-    items.iter().map(of).sum()
+    items.iter().map(item_value).sum()
 }
 
 fn times(ring: &mut Ring, all: &[&Polynomial]) -> Polynomial {
@@ -34,10 +34,10 @@ fn times(ring: &mut Ring, all: &[&Polynomial]) -> Polynomial {
 
 /// Returns a random polynomial with at most `most` terms and small integer coefficients.
 fn random(r: &mut Random, most: u64) -> Polynomial {
-    let terms = (0..1 + r.below(most)).map(|_| {
-        let atoms = (0..1 + r.below(3)).map(|_| Monomial::atom(r.below(9) as usize));
+    let terms = (0..1 + r.number_below(most)).map(|_| {
+        let atoms = (0..1 + r.number_below(3)).map(|_| Monomial::atom(r.number_below(9) as usize));
         let monomial = atoms.fold(Monomial::ONE, |m, atom| m.times(atom).unwrap());
-        Term { monomial, coefficient: [1.0, -1.0, 2.0, 0.5, -3.0][r.below(5) as usize] }
+        Term { monomial, coefficient: [1.0, -1.0, 2.0, 0.5, -3.0][r.number_below(5) as usize] }
     });
     Polynomial::sum(terms.collect())
 }
@@ -52,11 +52,11 @@ fn factored_sums_are_what_they_were() {
         let product = times(&mut ring, &[&a, &b]);
         let p = ring.plus(&product, &c).unwrap();
         let expected = ring.evaluate(&p, &|s| atoms[s.0 as usize]);
-        let order = Order::of(&ring);
+        let order = Order::new(&ring);
         let plain: usize =
             p.terms.iter().map(|t| order.size(&[Item::single(t.coefficient, t.monomial)])).sum();
-        for among in [Among::All, Among::Kinds, Among::None] {
-            let found = items(&ring, &order, &p, among);
+        for scope in [FactorScope::All, FactorScope::Kinds, FactorScope::None] {
+            let found = items(&ring, &order, &p, scope);
             let size = p.terms.iter().map(|t| t.coefficient.abs()).sum::<f64>().max(1.0);
             assert!((value(&found, &atoms) - expected).abs() < 1e-10 * size, "{found:?}");
             assert!(order.size(&found) <= plain, "{found:?}");
@@ -73,7 +73,7 @@ fn products_of_sums_are_found() {
     let mut ring = ring();
     let sum = |i, j, sign| Polynomial::sum(vec![term(i, 1.0), term(j, sign)]);
     let p = times(&mut ring, &[&sum(0, 1, 1.0), &sum(2, 3, -1.0)]);
-    let found = items(&ring, &Order::of(&ring), &p, Among::All);
+    let found = items(&ring, &Order::new(&ring), &p, FactorScope::All);
     assert!(found.len() == 1 && found[0].sums.len() == 2, "{found:?}");
 }
 
@@ -89,8 +89,8 @@ fn what_is_apart_stays_apart() {
     let kinetic = times(&mut ring, &[&m, &v, &v]);
     let potential = times(&mut ring, &[&m, &g, &x]);
     let energy = kinetic.plus(&potential);
-    let order = Order::of(&ring);
-    assert_eq!(items(&ring, &order, &energy, Among::Kinds).len(), 2);
-    assert_eq!(items(&ring, &order, &energy, Among::None).len(), 2);
-    assert_eq!(items(&ring, &order, &energy, Among::All).len(), 1);
+    let order = Order::new(&ring);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::Kinds).len(), 2);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::None).len(), 2);
+    assert_eq!(items(&ring, &order, &energy, FactorScope::All).len(), 1);
 }

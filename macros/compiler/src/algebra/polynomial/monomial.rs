@@ -61,7 +61,7 @@ impl Monomial {
                 (low, _) => low.trailing_zeros() as usize / 4,
             };
             let power = rest.power(atom);
-            rest = rest.without(Monomial::all_of(atom));
+            rest = rest.cleared(Monomial::all_of(atom));
             Some((atom, power))
         })
     }
@@ -75,7 +75,7 @@ impl Monomial {
     }
 
     /// Divides by a monomial that is a divisor of this one.
-    pub fn over(self, divisor: Monomial) -> Monomial {
+    pub fn quotient(self, divisor: Monomial) -> Monomial {
         Monomial { high: self.high.wrapping_sub(divisor.high), low: self.low.wrapping_sub(divisor.low) }
     }
 
@@ -108,7 +108,7 @@ impl Monomial {
     }
 
     /// Returns the bits that are not in a mask.
-    pub fn without(self, mask: Monomial) -> Monomial {
+    pub fn cleared(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & !mask.high, low: self.low & !mask.low }
     }
 

@@ -19,7 +19,7 @@ fn value_of(symbol: Symbol) -> f64 {
 pub struct Random(pub u64);
 
 impl Random {
-    pub fn below(&mut self, n: u64) -> u64 {
+    pub fn number_below(&mut self, n: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -28,18 +28,18 @@ impl Random {
 }
 
 fn random<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
-    let pick = if depth == 0 { 0 } else { r.below(if functions { 12 } else { 9 }) };
+    let pick = if depth == 0 { 0 } else { r.number_below(if functions { 12 } else { 9 }) };
     let next = |r: &mut Random| random(graph, r, depth - 1, functions);
     match pick {
-        0 if r.below(4) == 0 => graph.num(r.below(9) as f64 - 4.0),
-        0 => graph.symbol(Symbol(r.below(6) as u32)),
+        0 if r.number_below(4) == 0 => graph.num(r.number_below(9) as f64 - 4.0),
+        0 => graph.symbol(Symbol(r.number_below(6) as u32)),
         1 | 2 => next(r) + next(r),
         3 | 4 => next(r) - next(r),
         5 | 6 => next(r) * next(r),
         7 | 8 => {
-            let angle = graph.symbol(Symbol(3 + r.below(2) as u32));
-            let angle = if r.below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
-            if r.below(2) == 0 { angle.sin() } else { angle.cos() }
+            let angle = graph.symbol(Symbol(3 + r.number_below(2) as u32));
+            let angle = if r.number_below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
+            if r.number_below(2) == 0 { angle.sin() } else { angle.cos() }
         }
         9 => next(r) / (next(r).square() + graph.one()),
         10 => (next(r).square() + graph.one()).sqrt(),
@@ -60,7 +60,7 @@ fn random_expressions_keep_their_values() {
         let e = random(&graph, &mut r, 5, true);
         let expected = eval_one(e, &value_of);
         let mut normal = Normal::new(&graph, rank);
-        let Some(p) = normal.of(e) else { continue };
+        let Some(p) = normal.normal_form(e) else { continue };
         assert_near(normal.ring.evaluate(&p, &value_of), expected, &format!("{e:?}"));
         let Some(short) = simplified(&mut normal.ring, &p) else { continue };
         assert!(short.terms.len() <= p.terms.len());
@@ -78,9 +78,9 @@ fn normal_forms_of_normal_forms_are_the_same() {
         let graph = Graph::new();
         let e = random(&graph, &mut r, 5, false);
         let mut normal = Normal::new(&graph, rank);
-        let Some(p) = normal.of(e) else { continue };
+        let Some(p) = normal.normal_form(e) else { continue };
         let Some(short) = simplified(&mut normal.ring, &p) else { continue };
-        let again = normal.of(expression(&graph, &normal.ring, &short)).unwrap();
+        let again = normal.normal_form(expression(&graph, &normal.ring, &short)).unwrap();
         same(&p, &again);
         let shorter = simplified(&mut normal.ring, &again).unwrap();
         same(&short, &shorter);
@@ -117,7 +117,7 @@ fn identities_are_zero() {
             graph.num(0.1) * x + graph.num(0.2) * x - graph.num(0.3) * x,
         ];
         let mut normal = Normal::new(graph, rank);
-        zeros.iter().map(|e| normal.of(*e).unwrap().terms.len()).collect()
+        zeros.iter().map(|e| normal.normal_form(*e).unwrap().terms.len()).collect()
     });
 }
 
@@ -126,7 +126,7 @@ fn monomials_multiply_and_divide() {
     let (x, y) = (Monomial::atom(2), Monomial::atom(40));
     let product = x.times(x).and_then(|m| m.times(y)).unwrap();
     assert_eq!(product.factors().collect::<Vec<_>>(), [(2, 2), (40, 1)]);
-    assert_eq!(product.over(x), x.times(y).unwrap());
+    assert_eq!(product.quotient(x), x.times(y).unwrap());
     assert!(x.divides(product) && !product.divides(x) && !Monomial::atom(3).divides(product));
     assert_eq!(product.common(x.times(Monomial::atom(3)).unwrap()), x);
     assert_eq!(product.degree(), 3);
@@ -138,11 +138,11 @@ fn what_grows_too_large_is_given_up() {
     let graph = Graph::new();
     let sum = (0..6).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
     let mut normal = Normal::new(&graph, rank);
-    assert_eq!(normal.of(sum).unwrap().terms.len(), 7);
-    assert!(normal.of(sum.pow(graph.num(7.0))).is_none());
+    assert_eq!(normal.normal_form(sum).unwrap().terms.len(), 7);
+    assert!(normal.normal_form(sum.pow(graph.num(7.0))).is_none());
     let atoms = (0..70).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
-    assert!(Normal::new(&graph, rank).of(atoms).is_none());
+    assert!(Normal::new(&graph, rank).normal_form(atoms).is_none());
     let angles = (0..9).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)).sin());
-    assert!(Normal::new(&graph, rank).of(angles).is_none());
-    assert!(Normal::new(&graph, rank).of(graph.one() / graph.zero()).is_none());
+    assert!(Normal::new(&graph, rank).normal_form(angles).is_none());
+    assert!(Normal::new(&graph, rank).normal_form(graph.one() / graph.zero()).is_none());
 }

@@ -12,9 +12,9 @@ fn short(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 3], Expr<'g>) -> Expr<'g>)
     let angles = [3, 4, 5].map(|k| graph.symbol(Symbol(k)));
     let mut normal = Normal::new(&graph, rank);
     for angle in angles {
-        normal.of(angle.sin()).unwrap();
+        normal.normal_form(angle.sin()).unwrap();
     }
-    let p = normal.of(build(&graph, angles, graph.symbol(Symbol(0)))).unwrap();
+    let p = normal.normal_form(build(&graph, angles, graph.symbol(Symbol(0)))).unwrap();
     let p = simplified(&mut normal.ring, &p).unwrap();
     Writer::new(&normal.ring, &|s| ["m", "k", "l", "a", "b", "c"][s.0 as usize].to_string()).polynomial(&p)
 }

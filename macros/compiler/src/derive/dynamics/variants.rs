@@ -57,7 +57,7 @@ impl<'g> Variants<'g> {
         };
         let in_lanes = |variant: &Variant<'g>| {
             let forces = || passive_forces(&variant.model, true);
-            Some((Limbs::of(&variant.model, &joints, &groups, forces)?, variant.for_inverse_dynamics))
+            Some((Limbs::new(&variant.model, &joints, &groups, forces)?, variant.for_inverse_dynamics))
         };
         let limbs = all.iter().filter_map(in_lanes).collect();
         Variants { all, joints, specialisation, speeds, limbs, bias: Bias::default() }
@@ -166,7 +166,7 @@ impl<'g> Variants<'g> {
             let mass = crba::mass_matrix(model, &self.joints);
             match model.acceleration_forces.is_empty() {
                 true => ldl::solve(mass, r.clone(), &self.joints),
-                false => Factor::of(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
+                false => Factor::new(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
             }
         };
         self.candidates(Role::Accelerations(0), solve).collect()
@@ -208,14 +208,14 @@ impl<'g> Variants<'g> {
     /// Returns the response of constraints to forces and biases that are arguments.
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
-        let (force, bias) = constraints::given(&variant.model);
+        let (force, bias) = constraints::argument_symbols(&variant.model);
         self.multipliers(Role::Answers(answers(&variant.model)), &force, &bias)
     }
 
     /// Returns the response of sliding contacts with friction to forces and biases that are arguments.
     pub fn slipping_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
-        let (force, bias) = constraints::given(&variant.model);
+        let (force, bias) = constraints::argument_symbols(&variant.model);
         self.slipping(Role::Answers(0), &force, &bias)
     }
 

@@ -37,7 +37,7 @@ type OfRoot = Vec<Polynomial>;
 
 /// Returns the characteristic polynomial. `None` if the mechanism has too many velocities, or the polynomial
 /// is too long or its degree too high.
-pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
+pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = all.inputs.len();
     if nv > VELOCITIES || rows > ROWS {
@@ -49,11 +49,11 @@ pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristi
     for k in 0..rows {
         let deviations = 0..rows - nc;
         let entry = |normal: &mut Normal<'g>, c: usize| -> Option<OfRoot> {
-            all.orders.iter().map(|order| normal.of(order[k][c])).collect()
+            all.orders.iter().map(|order| normal.normal_form(order[k][c])).collect()
         };
         let mut row: Vec<OfRoot> = deviations.map(|c| entry(&mut normal, c)).collect::<Option<_>>()?;
         for multiplier in &all.multipliers[k] {
-            row.push(vec![normal.of(-*multiplier)?]);
+            row.push(vec![normal.normal_form(-*multiplier)?]);
         }
         matrix.push(row);
     }
@@ -102,7 +102,7 @@ fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut N
         return Some(false);
     }
     let mut zero = |e: Expr<'g>| -> Option<bool> {
-        let p = normal.of(e)?;
+        let p = normal.normal_form(e)?;
         Some(vanishes(&normal.ring, &p))
     };
     for i in 0..nv {

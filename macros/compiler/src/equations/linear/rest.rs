@@ -45,7 +45,7 @@ impl<'g> Rest<'g> {
     }
 
     /// Evaluates expressions at rest.
-    pub fn of(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn evaluate(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
         let moved = replace_exactly(e, &|s| match Quantity::of(s) {
@@ -76,7 +76,7 @@ impl<'g> Rest<'g> {
         let all: Vec<(Quantity, Expr<'g>)> =
             configuration.chain(inputs).chain(states).chain(multipliers).collect();
         let (what, values): (Vec<Quantity>, Vec<Expr<'g>>) = all.into_iter().unzip();
-        what.into_iter().zip(self.of(&values)).collect()
+        what.into_iter().zip(self.evaluate(&values)).collect()
     }
 }
 
@@ -126,7 +126,7 @@ fn checked<'g>(
         ));
     }
     check_kept(model, at, &rest, &kept, normal)?;
-    let mut left = rest.of(balance);
+    let mut left = rest.evaluate(balance);
     if !model.constraints.is_empty() {
         (rest.multipliers, left) = solved(model, &rest, balance).ok_or_else(|| {
             (
@@ -156,7 +156,7 @@ fn check_kept<'g>(
     normal: &mut Normal<'g>,
 ) -> Result<(), Refusal> {
     let name = &at.name;
-    for (c, row) in model.constraints.iter().zip(rest.of(kept)) {
+    for (c, row) in model.constraints.iter().zip(rest.evaluate(kept)) {
         is_zero(row, normal, model).map_err(|left| {
             (
                 format!("`{name}` does not fulfil the constraint `{}`: {left} is left of it", c.name),
@@ -165,14 +165,14 @@ fn check_kept<'g>(
         })?;
     }
     let rates: Vec<Expr<'g>> = model.constraints.iter().flat_map(|c| [c.rate, c.bias]).collect();
-    if rest.of(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
+    if rest.evaluate(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
         return Err((
             format!("constraints that are driven in time leave `{name}` no rest"),
             "linear equations with constant coefficients need constraints that stay the same",
         ));
     }
     let states: Vec<Expr<'g>> = at.states.iter().map(|state| state.rate).collect();
-    for (state, rate) in at.states.iter().zip(rest.of(&states)) {
+    for (state, rate) in at.states.iter().zip(rest.evaluate(&states)) {
         is_zero(rate, normal, model).map_err(|left| {
             let state = &model.parameters[state.parameter];
             (
@@ -200,9 +200,9 @@ fn quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
 
 /// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
 fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
-    let p = normal.of(e).map(|p| without_noise(&normal.ring, &p));
+    let p = normal.normal_form(e).map(|p| without_noise(&normal.ring, &p));
     let Some(p) = p.and_then(|p| simplified(&mut normal.ring, &p)) else {
-        let tape = Tape::of(&[e]);
+        let tape = Tape::new(&[e]);
         let zero = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
         let zero = zero.len() >= ENOUGH && zero.iter().all(|value| value.abs() < ROUNDING);
         return if zero { Ok(()) } else { Err("that".to_string()) };
@@ -250,14 +250,14 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
     for id in needed(graph, e) {
-        let at = |id| graph.expr(id);
+        let expr = |id| graph.expr(id);
         match graph.node(id) {
             Node::Call(f @ (Function::Abs | Function::Signum | Function::Sqrt), a) => {
-                suspects.push((f.name(), at(a)));
+                suspects.push((f.name(), expr(a)));
             }
             Node::Extreme(f, a, b) => {
                 let name = if f == Extreme::Max { "max" } else { "min" };
-                suspects.push((name, at(a) - at(b)));
+                suspects.push((name, expr(a) - expr(b)));
             }
             _ => {}
         }
@@ -270,9 +270,9 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     };
     suspects.retain(|(_, argument)| moves(argument));
     let arguments: Vec<Expr<'g>> = suspects.iter().map(|(_, argument)| *argument).collect();
-    let values = rest.of(&arguments);
+    let values = rest.evaluate(&arguments);
     let touches = |value: &Expr<'g>| {
-        let tape = Tape::of(&[*value]);
+        let tape = Tape::new(&[*value]);
         let found = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
         found.len() >= ENOUGH && found.iter().all(|value| value.abs() < ROUNDING)
     };
@@ -294,9 +294,9 @@ fn solved<'g>(
         inputs: rest.inputs.clone(),
         states: rest.states.clone(),
     };
-    let right = without.of(balance);
+    let right = without.evaluate(balance);
     let jacobian: Vec<Vec<Expr<'g>>> =
-        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.of(row)).collect();
+        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.evaluate(row)).collect();
     // Each row is an equation of Jᵀ λ = force to be balanced.
     let mut rows: Vec<Vec<Expr<'g>>> =
         (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
@@ -326,7 +326,7 @@ fn solved<'g>(
 
 /// Returns the minimum magnitude of an expression over several random values of the parameters.
 fn size(e: Expr<'_>) -> f64 {
-    let tape = Tape::of(&[e]);
+    let tape = Tape::new(&[e]);
     trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]))
         .into_iter()
         .map(f64::abs)
@@ -339,7 +339,7 @@ pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
     const HUGE: f64 = 1e-6 / TINY;
     let entries: Vec<Expr<'_>> =
         all.orders.iter().chain([&all.inputs, &all.multipliers]).flatten().flatten().copied().collect();
-    let tape = Tape::of(&entries);
+    let tape = Tape::new(&entries);
     let largest = |seed: u64| {
         let values = tape.values(&|s| parameter(s, seed));
         let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);

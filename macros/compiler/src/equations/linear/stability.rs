@@ -49,7 +49,7 @@ pub enum Verdict {
 const TERMS: usize = 120;
 
 /// Analyses the stability. `None` if the sign of the leading coefficient depends on the parameters.
-pub fn of(c: Characteristic) -> Option<Stability> {
+pub fn analyse(c: Characteristic) -> Option<Stability> {
     let Characteristic { mut ring, mut coefficients, conservative, positive: known } = c;
     let mut positive = known.clone();
     coefficients = without_even_divisors(&coefficients, &mut ring)?;
@@ -98,7 +98,7 @@ fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol
         divisor = (0..power).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
     }
     for p in coefficients {
-        *p = scaled_to_whole(&over(p, divisor), sign);
+        *p = scaled_to_whole(&quotient(p, divisor), sign);
     }
     odd
 }
@@ -130,7 +130,7 @@ fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verd
             None => return Verdict::Long,
         }
     }
-    settled(conditions, Verdict::Asymptotic, ring, positive)
+    simplify_conditions(conditions, Verdict::Asymptotic, ring, positive)
 }
 
 /// Returns the Hurwitz determinant of an order. `None` beyond the limits of the ring.
@@ -151,11 +151,11 @@ fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     let Some((first, others)) = rows.split_first() else { return Some(Polynomial::number(1.0)) };
     let mut sum = Polynomial::default();
     for (c, entry) in first.iter().enumerate().filter(|(_, p)| !p.terms.is_empty()) {
-        let without = |row: &Vec<Polynomial>| {
+        let remaining_row = |row: &Vec<Polynomial>| {
             let kept = row.iter().enumerate().filter(|(k, _)| *k != c);
             kept.map(|(_, p)| p.clone()).collect()
         };
-        let own = minor(&others.iter().map(without).collect::<Vec<_>>(), ring)?;
+        let own = minor(&others.iter().map(remaining_row).collect::<Vec<_>>(), ring)?;
         let product = ring.times(entry, &own)?.scaled(if c % 2 == 0 { 1.0 } else { -1.0 });
         sum = ring.plus(&sum, &product)?;
     }
@@ -172,7 +172,7 @@ fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positiv
             None => return Verdict::Long,
         }
     }
-    settled(conditions, Verdict::Oscillation, ring, positive)
+    simplify_conditions(conditions, Verdict::Oscillation, ring, positive)
 }
 
 /// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
@@ -200,7 +200,7 @@ fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
 }
 
 /// Removes conditions that always hold. Returns another verdict if a condition never holds.
-fn settled(
+fn simplify_conditions(
     conditions: Vec<Polynomial>,
     verdict: fn(Vec<Polynomial>) -> Verdict,
     ring: &mut Ring,
@@ -253,13 +253,13 @@ fn reduced(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polyn
         let times = if is_positive_atom(ring, atom, positive) { power } else { power - power % 2 };
         divisor = (0..times).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
     }
-    let factor = common.over(divisor);
-    let left = over(&p, common);
+    let factor = common.quotient(divisor);
+    let left = quotient(&p, common);
     let sign = [1.0, -1.0].into_iter().find(|sign| is_positive(&left.scaled(*sign), ring, positive));
     if let (Some(sign), true) = (sign, factor != Monomial::ONE) {
         return Some(Polynomial::single(factor, sign));
     }
-    Some(scaled_to_whole(&over(&p, divisor), 1.0 / whole([&p])))
+    Some(scaled_to_whole(&quotient(&p, divisor), 1.0 / whole([&p])))
 }
 
 /// Returns the common monomial of all terms, `None` for zero.
@@ -269,8 +269,8 @@ fn common(p: &Polynomial) -> Option<Monomial> {
 }
 
 /// Divides a polynomial by a monomial.
-fn over(p: &Polynomial, divisor: Monomial) -> Polynomial {
-    let divided = |t: &Term| Term { monomial: t.monomial.over(divisor), ..*t };
+fn quotient(p: &Polynomial, divisor: Monomial) -> Polynomial {
+    let divided = |t: &Term| Term { monomial: t.monomial.quotient(divisor), ..*t };
     Polynomial::sum(p.terms.iter().map(divided).collect())
 }
 

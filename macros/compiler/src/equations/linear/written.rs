@@ -33,14 +33,14 @@ struct Words<'a, 'g> {
 impl<'a, 'g> Words<'a, 'g> {
     fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> Words<'a, 'g> {
         let free = |choices: &[&str]| {
-            let taken = |word: &str| {
+            let is_used = |word: &str| {
                 let velocities = model.velocities.iter().map(|(name, _)| name);
                 let inputs = model.inputs.iter().map(|(name, _)| name);
                 let mut all =
                     model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
                 all.any(|name| name == word)
             };
-            let found = choices.iter().find(|word| !taken(word));
+            let found = choices.iter().find(|word| !is_used(word));
             found.or(choices.last()).map_or_else(String::new, ToString::to_string)
         };
         Words { model, at, deviations: deviations(model), root: free(&ROOTS), frequency: free(&FREQUENCIES) }
@@ -54,11 +54,11 @@ impl<'a, 'g> Words<'a, 'g> {
                 self.at.states.get(k - nv).and_then(|state| self.model.parameters.get(state.parameter));
             state.cloned().unwrap_or_default()
         };
-        let of = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
+        let deviation_name = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
         match Quantity::of(symbol) {
-            Quantity::Deviation(k) => (of(k), 0),
-            Quantity::Velocity(k) => (of(k), 1),
-            Quantity::Acceleration(k) => (of(k), 2),
+            Quantity::Deviation(k) => (deviation_name(k), 0),
+            Quantity::Velocity(k) => (deviation_name(k), 1),
+            Quantity::Acceleration(k) => (deviation_name(k), 2),
             Quantity::Force(k) => (format!("lambda{}", k + 1), 0),
             Quantity::Laplace => (self.root.clone(), 0),
             _ => name_of(self.model, &[], symbol),
@@ -100,7 +100,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn of<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
+    fn new<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
         let writer = Writer::styled(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
@@ -149,7 +149,7 @@ fn in_one(stability: &Stability) -> Option<Polynomial> {
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
     let marked = |symbol| primed(words.name(symbol));
-    let plain = plain(&words, linear, &Lines::of(linear, Plain { name: &marked }));
+    let plain = plain(&words, linear, &Lines::new(linear, Plain { name: &marked }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
     let names = names_with(model, &others);
@@ -157,11 +157,11 @@ pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) 
         let (name, dots) = words.name(symbol);
         (names.get(&name), dots)
     };
-    let lines = Lines::of(linear, Latex { name: &dotted });
+    let lines = Lines::new(linear, Latex { name: &dotted });
     let spelled = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
     let latex = aligned(&equations(&lines, &spelled(&words.frequency)));
     let frequency = crate::equations::print::mathml::spelled(&names.get(&words.frequency), 0, 1);
-    let mathml = page(&equations(&Lines::of(linear, MathMl { name: &dotted }), &frequency));
+    let mathml = page(&equations(&Lines::new(linear, MathMl { name: &dotted }), &frequency));
     Written { plain, latex, mathml }
 }
 

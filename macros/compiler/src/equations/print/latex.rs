@@ -89,14 +89,14 @@ impl Style for Latex<'_> {
             || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
         let (before, above) = if small { (number, None) } else { (None, number) };
-        let above = over(above.into_iter(), factors);
-        let fraction = format!("\\frac{{{above}}}{{{}}}", over(std::iter::empty(), divisors));
+        let above = fraction_side(above.into_iter(), factors);
+        let fraction = format!("\\frac{{{above}}}{{{}}}", fraction_side(std::iter::empty(), divisors));
         before.map_or(fraction.clone(), |number| format!("{number}{SPACE}{fraction}"))
     }
 }
 
 /// Formats the numerator or denominator of a fraction.
-fn over(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+fn fraction_side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
         ([], []) => "1".to_string(),

@@ -100,20 +100,20 @@ impl Style for MathMl<'_> {
     fn number(&self, number: &Number) -> String {
         let digits = |n: &dyn std::fmt::Display| format!("<mn>{n}</mn>");
         let times = |k: &u32, of: String| if *k == 1 { of } else { format!("<mrow><mn>{k}</mn>{of}</mrow>") };
-        let over = |above: String, q: &u32| match q {
+        let fraction = |above: String, q: &u32| match q {
             1 => above,
             q => format!("<mfrac>{above}<mn>{q}</mn></mfrac>"),
         };
         match number {
-            Number::Fraction(p, q) => over(digits(p), q),
+            Number::Fraction(p, q) => fraction(digits(p), q),
             Number::Pi(p, q, power) => {
                 let pi = to_power("<mi>π</mi>", power.unsigned_abs());
                 match *power > 0 {
-                    true => over(times(p, pi), q),
+                    true => fraction(times(p, pi), q),
                     false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", times(q, pi)),
                 }
             }
-            Number::Root(p, q, root) => over(times(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q),
+            Number::Root(p, q, root) => fraction(times(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q),
             Number::Decimal(text) => digits(text),
             Number::Scientific(text, power) => {
                 let sign = if power.starts_with('-') { "<mo>−</mo>" } else { "" };
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn long_sums_are_broken_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
-        let style = MathMl { name: &|_| (Name::of("x"), 0) };
+        let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));
         let parts = |text: &str| pieces(text, &BREAKS);
         assert_eq!(parts(&sum).len(), 8);

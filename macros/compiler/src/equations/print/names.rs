@@ -60,7 +60,7 @@ const GREEK: [(&str, char); 34] = [
 ];
 
 impl Glyph {
-    fn of(word: &str) -> Glyph {
+    fn from_word(word: &str) -> Glyph {
         let mut letters = word.chars();
         let single = letters.next().filter(|_| letters.next().is_none());
         let greek = GREEK.iter().find(|(name, letter)| *name == word || Some(*letter) == single);
@@ -80,7 +80,7 @@ impl Name {
     }
 
     /// Splits a name into base and subscripts.
-    pub fn of(text: &str) -> Name {
+    pub fn parse(text: &str) -> Name {
         if let Some((joint, member)) = text.split_once('.') {
             return Name::of_member(joint, member);
         }
@@ -89,10 +89,10 @@ impl Name {
         }
         let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
         let (stem, digits) = numbered(head);
-        let base = Glyph::of(stem);
+        let base = Glyph::from_word(stem);
         let index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
         if let Glyph::Letter(_) | Glyph::Greek(..) = base {
-            let indices = index(digits).into_iter().chain(tail.map(Glyph::of)).collect();
+            let indices = index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
             return Name { base, indices };
         }
         let (stem, digits) = numbered(text);
@@ -103,7 +103,7 @@ impl Name {
     /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities
     /// and quaternions have an axis as second subscript.
     fn of_member(joint: &str, member: &str) -> Name {
-        let joint = Glyph::of(joint);
+        let joint = Glyph::from_word(joint);
         let mut letters = member.chars();
         if let (Some(kind @ ('w' | 'v' | 'q' | 'r' | 'd')), Some(axis @ 'w'..='z'), None) =
             (letters.next(), letters.next(), letters.next())
@@ -111,7 +111,7 @@ impl Name {
             let base = if kind == 'w' { Glyph::Greek("omega", 'ω') } else { Glyph::Letter(kind) };
             return Name { base, indices: vec![joint, Glyph::Letter(axis)] };
         }
-        Name { base: Glyph::of(member), indices: vec![joint] }
+        Name { base: Glyph::from_word(member), indices: vec![joint] }
     }
 }
 
@@ -134,12 +134,12 @@ impl Names {
         let mut names: Vec<(String, Name)> = Vec::new();
         for text in texts {
             if names.iter().all(|(known, _)| known != text) {
-                names.push((text.to_string(), Name::of(text)));
+                names.push((text.to_string(), Name::parse(text)));
             }
         }
-        let alike = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
-        let alike: Vec<bool> = names.iter().map(|(_, name)| alike(name)).collect();
-        for ((text, name), _) in names.iter_mut().zip(alike).filter(|(_, alike)| *alike) {
+        let is_ambiguous = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
+        let ambiguous: Vec<bool> = names.iter().map(|(_, name)| is_ambiguous(name)).collect();
+        for ((text, name), _) in names.iter_mut().zip(ambiguous).filter(|(_, ambiguous)| *ambiguous) {
             *name = Name::verbatim(text);
         }
         Names(names)
@@ -150,6 +150,6 @@ impl Names {
         self.0
             .iter()
             .find(|(known, _)| known == text)
-            .map_or_else(|| Name::of(text), |(_, name)| name.clone())
+            .map_or_else(|| Name::parse(text), |(_, name)| name.clone())
     }
 }

@@ -88,7 +88,7 @@ impl Number {
 
     /// Classifies a positive number: a fraction, multiple of π or multiple of a root if the integers involved
     /// are small, otherwise up to six significant digits.
-    pub fn of(value: f64) -> Number {
+    pub fn classify(value: f64) -> Number {
         if let Some((p, q)) = fraction(value) {
             return Number::Fraction(p, q);
         }

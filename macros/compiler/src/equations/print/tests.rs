@@ -21,7 +21,7 @@ fn text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String 
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
     let mut normal = Normal::new(&graph, rank);
-    let p = normal.of(build(&graph, symbols)).unwrap();
+    let p = normal.normal_form(build(&graph, symbols)).unwrap();
     Writer::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).polynomial(&p)
 }
 
@@ -40,7 +40,7 @@ fn numbers() {
         (1.5e-6, "1.5e-6"),
         (2.5e12, "2.5e12"),
     ] {
-        assert_eq!(Number::of(value).to_string(), expected);
+        assert_eq!(Number::classify(value).to_string(), expected);
     }
 }
 
@@ -58,7 +58,7 @@ fn multiples_of_roots() {
         (0.7072, "0.7072"),
         (1.7322, "1.7322"),
     ] {
-        assert_eq!(Number::of(value).to_string(), expected);
+        assert_eq!(Number::classify(value).to_string(), expected);
     }
     assert_eq!(latex(|g, [m, ..]| m * g.num(0.5 * two)), r"\tfrac{\sqrt{2}}{2}\,m");
     assert_eq!(latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
@@ -85,7 +85,7 @@ fn multiples_of_pi() {
         (PI / 2.0 - 1e-5, "1.57079"),
         (1.0001 * PI, "3.14191"),
     ] {
-        assert_eq!(Number::of(value).to_string(), expected);
+        assert_eq!(Number::classify(value).to_string(), expected);
     }
     assert_eq!(text(|g, [_, k, _, x, ..]| k * (x - g.num(PI / 2.0))), "k (x - pi/2)");
     assert_eq!(text(|g, [m, k, ..]| m * k * g.num(0.5 / PI)), "1/(2 pi) m k");
@@ -135,10 +135,10 @@ fn latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
     let mut normal = Normal::new(&graph, rank);
-    let p = normal.of(build(&graph, symbols)).unwrap();
+    let p = normal.normal_form(build(&graph, symbols)).unwrap();
     let name = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
-        (Name::of(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
+        (Name::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
     Writer::styled(&normal.ring, Latex { name: &name }).polynomial(&p)
 }
@@ -196,10 +196,10 @@ fn latex_names() {
         ("table.x", r"x_{\mathrm{table}}"),
         ("hip1.second", r"\mathrm{second}_{\mathrm{hip1}}"),
     ] {
-        assert_eq!(super::latex::spelled(&Name::of(text), 0), expected);
+        assert_eq!(super::latex::spelled(&Name::parse(text), 0), expected);
     }
-    assert_eq!(super::latex::spelled(&Name::of("theta2"), 1), r"\dot{\theta}_{2}");
-    assert_eq!(super::latex::spelled(&Name::of("x"), 2), r"\ddot{x}");
+    assert_eq!(super::latex::spelled(&Name::parse("theta2"), 1), r"\dot{\theta}_{2}");
+    assert_eq!(super::latex::spelled(&Name::parse("x"), 2), r"\ddot{x}");
 }
 
 /// Names that would be indistinguishable in print are not split.

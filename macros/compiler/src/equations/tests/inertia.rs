@@ -61,11 +61,13 @@ fn constant(arguments: &str, item: &str) -> String {
 }
 
 #[test]
-fn what_is_left_out_is_said() {
+fn omitted_terms_are_reported() {
     let text = constant("gravity = -9.81 * z", SKEW);
-    for part in ["M(q) v' + h(q, v) = tau", "too many to be read", "`equations = lagrange`", "`kane`"] {
+    for part in
+        ["M(q) v' + h(q, v) = tau", "too many terms to be readable", "`equations = lagrange`", "`kane`"]
+    {
         assert!(text.contains(part), "{text}");
     }
     let text = constant("gravity = -9.81 * z, equations = structure", CART_POLE);
-    assert!(text.contains("`equations = structure` leaves the terms out"), "{text}");
+    assert!(text.contains("`equations = structure` omits the terms"), "{text}");
 }

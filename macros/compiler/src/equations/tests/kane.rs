@@ -74,7 +74,7 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 /// with multipliers. Returns the text.
 pub(super) fn check_printed(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints(model);
-    let speeds = InSpeeds::of(model);
+    let speeds = InSpeeds::new(model);
     let native = speeds.as_ref().map_or(model, |s| &s.native);
     let named = speeds.as_ref().map_or(model, |s| &s.model);
     let found = kane(native, &joints, speeds.as_ref()).unwrap_or_else(|_| panic!("{} is short", model.name));

@@ -54,13 +54,13 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
         let ((a, b), (c, d)) = ((f(h), f(-h)), (f(2.0 * h), f(-2.0 * h)));
         (0..a.len()).map(|k| (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h)).collect()
     };
-    let moved = |list: &[f64], k: usize, by: f64| {
+    let displaced = |list: &[f64], k: usize, by: f64| {
         let mut list = list.to_vec();
         list[k] += by;
         list
     };
     let still = vec![0.0; nv];
-    let of = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
+    let coefficients = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
         let one = |s: Symbol| match Quantity::of(s) {
             Quantity::Parameter(_) => parameter(s),
             _ => f64::from(u8::from(s == what.symbol())),
@@ -69,19 +69,19 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     };
     for k in 0..nv {
         // All coordinates are plain here.
-        let by_q = slope(&|d| value(&moved(&q, k, d), &still, &u, 0.0));
-        assert_small(&of(linear::deviation(k), &found.motion), &by_q, "stiffness");
-        let by_v = slope(&|d| value(&q, &moved(&still, k, d), &u, 0.0));
-        assert_small(&of(Quantity::Velocity(k), &found.motion), &by_v, "damping");
+        let by_q = slope(&|d| value(&displaced(&q, k, d), &still, &u, 0.0));
+        assert_small(&coefficients(linear::deviation(k), &found.motion), &by_q, "stiffness");
+        let by_v = slope(&|d| value(&q, &displaced(&still, k, d), &u, 0.0));
+        assert_small(&coefficients(Quantity::Velocity(k), &found.motion), &by_v, "damping");
     }
     for k in 0..nu {
         let by_u: Vec<f64> =
-            slope(&|d| value(&q, &still, &moved(&u, k, d), 0.0)).iter().map(|x| -x).collect();
-        assert_small(&of(Quantity::Input(k), &found.forces), &by_u, "inputs");
+            slope(&|d| value(&q, &still, &displaced(&u, k, d), 0.0)).iter().map(|x| -x).collect();
+        assert_small(&coefficients(Quantity::Input(k), &found.forces), &by_u, "inputs");
     }
     if states > 0 {
         let by_x = slope(&|d| value(&q, &still, &u, d));
-        assert_small(&of(linear::deviation(nv), &found.motion), &by_x, "states");
+        assert_small(&coefficients(linear::deviation(nv), &found.motion), &by_x, "states");
     }
 }
 
@@ -108,9 +108,9 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
 
 #[test]
 fn a_pendulum() {
-    let at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
+    let pendulum_at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let contains = |equilibrium: &str, lines: &'static [&'static str]| {
-        with_linear("-g * y", &at(equilibrium), |model, found, plain, _| {
+        with_linear("-g * y", &pendulum_at(equilibrium), |model, found, plain, _| {
             check_rows(model, found);
             for line in lines {
                 assert!(plain.contains(line), "{line} in {plain}");

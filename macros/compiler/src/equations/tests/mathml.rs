@@ -7,13 +7,13 @@ use roxmltree::{Document, Node};
 /// Converts an element to plain text, with simplified names of symbols.
 fn text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
-    let own = || node.text().unwrap_or("").to_string();
-    let at = |k: usize| text(children[k]);
+    let own_text = || node.text().unwrap_or("").to_string();
+    let child_text = |k: usize| text(children[k]);
     let sub = |index: String| index.replace(',', ".");
     match node.tag_name().name() {
         "math" | "mrow" => row(&children),
-        "mn" | "mi" => own(),
-        "mo" => match own().as_str() {
+        "mn" | "mi" => own_text(),
+        "mo" => match own_text().as_str() {
             "+" => " + ".to_string(),
             "−" => if node.attribute("form") == Some("prefix") { "-" } else { " - " }.to_string(),
             "\u{2062}" => " ".to_string(),
@@ -23,12 +23,12 @@ fn text(node: Node<'_, '_>) -> String {
             "=" => " = ".to_string(),
             other => other.to_string(),
         },
-        "mover" => at(0) + &at(1),
-        "msub" => format!("{}_{}", at(0), sub(at(1))),
-        "msubsup" => format!("{}_{}{}", at(0), sub(at(1)), power(&at(2))),
-        "msup" => at(0) + &power(&at(1)),
-        "mfrac" => format!("({})/({})", at(0), at(1)),
-        "msqrt" => format!("sqrt({})", at(0)),
+        "mover" => child_text(0) + &child_text(1),
+        "msub" => format!("{}_{}", child_text(0), sub(child_text(1))),
+        "msubsup" => format!("{}_{}{}", child_text(0), sub(child_text(1)), power(&child_text(2))),
+        "msup" => child_text(0) + &power(&child_text(1)),
+        "mfrac" => format!("({})/({})", child_text(0), child_text(1)),
+        "msqrt" => format!("sqrt({})", child_text(0)),
         other => panic!("<{other}>"),
     }
 }

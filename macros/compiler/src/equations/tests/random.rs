@@ -12,7 +12,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// that rotates at a prescribed speed, its first two joints are constrained, or it can rotate freely about
 /// the vertical.
 fn chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String {
-    let mut pick = |n: u64| r.below(n) as usize;
+    let mut pick = |n: u64| r.number_below(n) as usize;
     let length = 2 + pick(2);
     let mut item = "struct Chain { g: f64, l: f64, k: f64, c: f64,".to_string();
     let base = if driven { "table" } else { "ground" };
@@ -62,7 +62,7 @@ fn chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String 
 #[test]
 fn all_forms_agree() {
     let mut random = Random(4321);
-    (0..20).for_each(|_| _ = random.below(2));
+    (0..20).for_each(|_| _ = random.number_below(2));
     // Number of comparisons: Lagrange's and recursive equations, Hamilton's, Kane's, Routh's.
     let mut compared = [0; 4];
     for k in 0..48 {

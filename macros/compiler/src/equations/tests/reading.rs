@@ -43,15 +43,15 @@ fn read<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Numbers<'g>, Vec<Te
             let mut cx = Diagnostics::new();
             let found = super::super::linear::linear(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
-            Text::of(&super::super::linear::written_linear(&model, at, &found).plain)
+            Text::parse(&super::super::linear::written_linear(&model, at, &found).plain)
         };
         let texts = model.equilibria.iter().map(text).collect();
-        f(Numbers::of(&model), texts)
+        f(Numbers::new(&model), texts)
     })
 }
 
 /// Returns a function from parameter names to values.
-fn named<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a {
+fn values_by_name<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a {
     move |word| {
         let k = names.iter().position(|name| *name == word);
         values[k.unwrap_or_else(|| panic!("the name {word}"))]
@@ -62,8 +62,8 @@ fn named<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a 
 fn random(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
     let mut random = Random(2 * seed + 1);
     // The first numbers of a small seed are small.
-    (0..20).for_each(|_| _ = random.below(2));
-    move || low + (high - low) * random.below(100_000) as f64 / 100_000.0
+    (0..20).for_each(|_| _ = random.number_below(2));
+    move || low + (high - low) * random.number_below(100_000) as f64 / 100_000.0
 }
 
 fn largest(roots: &[Complex<f64>]) -> f64 {
@@ -105,7 +105,7 @@ fn rows_are_those_of_lagranges_equations() {
     read("-9.81 * y", BALANCE, |numbers, texts| {
         for _ in 0..20 {
             let values: Vec<f64> = (0..5).map(|_| next()).collect();
-            let parameters = named(&names, &values);
+            let parameters = values_by_name(&names, &values);
             for (text, angle) in texts.iter().zip([0.0, PI / 3.0]) {
                 let torque = values[3] * angle - 9.81 * values[1] * values[2] / 2.0 * angle.sin();
                 let a = numbers.linear(&[0.0, angle], &[0.0, torque], &values);
@@ -145,7 +145,7 @@ fn small_rotations_are_those_of_lagranges_equations() {
     let joints = ["pose.dx", "pose.dy", "pose.dz", "pose.rx", "pose.ry", "pose.rz"];
     read("-9.81 * z", CRAFT, |numbers, texts| {
         let a = numbers.linear(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[9.81 * 1.3, 0.0], &values);
-        check_rows_of(&texts[0], &joints, &a, &named(&names, &values));
+        check_rows_of(&texts[0], &joints, &a, &values_by_name(&names, &values));
     });
 }
 
@@ -190,7 +190,11 @@ fn conditions_of_three_masses_are_those_of_eigenvalues() {
             let values: Vec<f64> = (0..4).map(|_| next()).collect();
             let largest = largest(&eigenvalues(&numbers.linear(&[0.0; 3], &[], &values)));
             if largest.abs() > 1e-5 {
-                assert_eq!(text.holds(&named(&names, &values)), largest < 0.0, "{values:?} {largest}");
+                assert_eq!(
+                    text.holds(&values_by_name(&names, &values)),
+                    largest < 0.0,
+                    "{values:?} {largest}"
+                );
                 *(if largest < 0.0 { &mut stable } else { &mut unstable }) += 1;
             }
         }
@@ -239,7 +243,7 @@ fn a_follower_force_makes_a_column_flutter() {
             let [m, l, k] = [next(), next(), next()];
             for (part, stable) in [(0.2, true), (0.999, true), (1.001, false), (1.4, false)] {
                 let values = [m, l, k, part * (3.5 - 2.0_f64.sqrt()) * k / l];
-                let parameters = named(&names, &values);
+                let parameters = values_by_name(&names, &values);
                 assert_eq!(text.holds(&parameters), stable, "{part} {values:?}");
                 let exact = eigenvalues(&numbers.linear(&[0.0; 2], &[], &values));
                 assert_same_roots(&text.roots(&parameters), &exact, 1e-3);
@@ -275,7 +279,7 @@ fn a_bead_oscillates_about_both_equilibria() {
             [[9.81, 0.7, 0.5, 6.0], [1.6, 0.7, 0.8, 2.1], [9.81, 0.7, 0.5, 4.0], [2.0, 0.3, 1.0, 1.0]]
         {
             let [g, _, radius, spin] = values;
-            let parameters = named(&names, &values);
+            let parameters = values_by_name(&names, &values);
             let above = spin * spin * radius > g;
             assert_eq!([texts[0].holds(&parameters), texts[1].holds(&parameters)], [!above, above]);
             let [below, side] = [g / radius - spin * spin, spin * spin - (g / (radius * spin)).powi(2)];
@@ -323,7 +327,7 @@ fn a_lag_makes_control_unstable() {
         for _ in 0..200 {
             let values = [next(), 0.3 * next(), next(), next(), next()];
             let [m, c, k, lag, gain] = values;
-            let parameters = named(&names, &values);
+            let parameters = values_by_name(&names, &values);
             let cubic = [k + gain, c + lag * k, m + lag * c, lag * m];
             let expected = cubic[2] * cubic[1] > cubic[3] * cubic[0];
             assert_eq!(texts[0].holds(&parameters), expected, "{values:?}");
@@ -356,7 +360,7 @@ const LADDER: &str = "struct Ladder {
 fn a_constrained_ladder_is_a_pendulum() {
     read("-9.81 * y", LADDER, |_, texts| {
         for values in [[1.0, 2.0], [0.4, 0.7]] {
-            let parameters = named(&["m", "l"], &values);
+            let parameters = values_by_name(&["m", "l"], &values);
             let square = value(&texts[0].frequency, &parameters).powi(2);
             assert!((square - 1.5 * 9.81 / values[1]).abs() < 1e-12 * square, "{square}");
             let roots = texts[0].roots(&parameters);

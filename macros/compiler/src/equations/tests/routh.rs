@@ -43,7 +43,12 @@ const SPINNING: &str = "struct Spinning { m: f64, k: f64,
     #[energy(k / 2 * (place.x * place.x + place.y * place.y))] coil: Potential }";
 
 /// Returns the values of symbols in a state, with the given momenta and forces.
-fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn(Symbol) -> f64 + use<'a> {
+fn state_values<'a>(
+    model: &Model<'_>,
+    seed: u64,
+    p: &'a [f64],
+    tau: &'a [f64],
+) -> impl Fn(Symbol) -> f64 + use<'a> {
     let symbol = state(model, seed);
     move |s| match Quantity::of(s) {
         Quantity::Momentum(k) => p[k],
@@ -68,18 +73,18 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
     let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
     for seed in 1..12 {
         let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
-        let p: Vec<f64> = eval(&momenta, &at(model, seed, &[], &tau));
+        let p: Vec<f64> = eval(&momenta, &state_values(model, seed, &[], &tau));
         let p: Vec<f64> = cyclic.iter().map(|k| p[*k]).collect();
-        let at = at(model, seed, &p, &tau);
-        let expected = eval(&whole, &at);
+        let value = state_values(model, seed, &p, &tau);
+        let expected = eval(&whole, &value);
         let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
-        assert_near(&eval(&reduced.acceleration, &at), &expected, "accelerations");
-        let v = eval(&velocities(model), &at);
+        assert_near(&eval(&reduced.acceleration, &value), &expected, "accelerations");
+        let v = eval(&velocities(model), &value);
         let v: Vec<f64> = cyclic.iter().map(|k| v[*k]).collect();
-        assert_near(&eval(&reduced.velocity, &at), &v, "velocities");
+        assert_near(&eval(&reduced.velocity, &value), &v, "velocities");
         let power: f64 = p.iter().zip(&v).map(|(p, v)| p * v).sum();
         let lagrangian = lagrange.kinetic - lagrange.potential;
-        assert_near(&eval(&[reduced.routhian], &at), &[eval(&[lagrangian], &at)[0] - power], "R");
+        assert_near(&eval(&[reduced.routhian], &value), &[eval(&[lagrangian], &value)[0] - power], "R");
     }
     cyclic.iter().map(|k| model.velocities[*k].0.clone()).collect()
 }
@@ -95,9 +100,9 @@ fn reduced_motion_is_that_of_the_whole() {
 #[test]
 fn reduced_motion_of_random_chains_is_that_of_the_whole() {
     let mut random = Random(77);
-    (0..20).for_each(|_| _ = random.below(2));
+    (0..20).for_each(|_| _ = random.number_below(2));
     for length in [2, 3, 4, 2, 3, 4] {
-        let mut number = || random.below(1000) as f64 / 500.0 - 1.0;
+        let mut number = || random.number_below(1000) as f64 / 500.0 - 1.0;
         let mut vector =
             || format!("({:.3} * x + {:.3} * y + {:.3} * z)", number(), number(), number() + 0.1);
         let mut item = "struct Chain { m: f64,
@@ -131,7 +136,8 @@ fn lagranges_equations_hold_for_the_routhian() {
             let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
             let g = model.graph;
             let derivative = |quantity: Quantity| {
-                crate::expr::diff::Derivative::with_respect_to(quantity.symbol(), g).of(reduced.routhian)
+                crate::expr::diff::Derivative::with_respect_to(quantity.symbol(), g)
+                    .differentiate(reduced.routhian)
             };
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
             let momenta: Vec<Expr<'_>> = others.iter().map(|k| derivative(Quantity::Velocity(*k))).collect();
@@ -140,40 +146,43 @@ fn lagranges_equations_hold_for_the_routhian() {
             let all = crate::mechanics::passive::passive_forces(&model, true);
             let of_potentials = crate::mechanics::passive::passive_forces(&model, false);
             let lost: Vec<Expr<'_>> = others.iter().map(|k| all[*k] - of_potentials[*k]).collect();
-            let (momenta, slopes, lost) = (Tape::of(&momenta), Tape::of(&slopes), Tape::of(&lost));
-            let (acceleration, velocity) = (Tape::of(&reduced.acceleration), Tape::of(&reduced.velocity));
+            let (momenta, slopes, lost) = (Tape::new(&momenta), Tape::new(&slopes), Tape::new(&lost));
+            let (acceleration, velocity) = (Tape::new(&reduced.acceleration), Tape::new(&reduced.velocity));
             for seed in 1..8 {
                 let tau = vec![0.0; model.nv()];
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
-                let at = at(&model, seed, &p, &tau);
-                let (a, w) = (acceleration.values(&at), velocity.values(&at));
-                let moved = |h: f64| {
+                let value = state_values(&model, seed, &p, &tau);
+                let (a, w) = (acceleration.values(&value), velocity.values(&value));
+                let displaced_value = |h: f64| {
                     let value = |s: Symbol| match Quantity::of(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
                                 .iter()
                                 .position(|c| *c == k)
-                                .map_or_else(|| at(Quantity::Velocity(k).symbol()), |c| w[c]);
-                            at(s) + h * rate
+                                .map_or_else(|| value(Quantity::Velocity(k).symbol()), |c| w[c]);
+                            value(s) + h * rate
                         }
                         Quantity::Velocity(k) => {
-                            at(s) + others.iter().position(|o| *o == k).map_or(0.0, |o| h * a[o])
+                            value(s) + others.iter().position(|o| *o == k).map_or(0.0, |o| h * a[o])
                         }
-                        _ => at(s),
+                        _ => value(s),
                     };
                     momenta.values(&value)
                 };
                 let h = 1e-3;
-                let ((b, c), (d, e)) = ((moved(h), moved(-h)), (moved(2.0 * h), moved(-2.0 * h)));
+                let ((b, c), (d, e)) = (
+                    (displaced_value(h), displaced_value(-h)),
+                    (displaced_value(2.0 * h), displaced_value(-2.0 * h)),
+                );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
                 let full = |s: Symbol| match Quantity::of(s) {
                     Quantity::Velocity(k) => {
-                        cyclic.iter().position(|c| *c == k).map_or_else(|| at(s), |c| w[c])
+                        cyclic.iter().position(|c| *c == k).map_or_else(|| value(s), |c| w[c])
                     }
-                    _ => at(s),
+                    _ => value(s),
                 };
-                for ((rate, slope), lost) in rate.iter().zip(slopes.values(&at)).zip(lost.values(&full)) {
+                for ((rate, slope), lost) in rate.iter().zip(slopes.values(&value)).zip(lost.values(&full)) {
                     let size = 1.0 + rate.abs() + slope.abs();
                     assert!(
                         (rate - slope + lost).abs() < 1e-8 * size,
@@ -201,9 +210,9 @@ fn printed_reduction_is_that_of_the_functions() {
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
             for seed in 1..8 {
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
-                let symbol = at(&model, seed, &p, &[]);
+                let symbol = state_values(&model, seed, &p, &[]);
                 let tau = eval(&inputs, &symbol);
-                let symbol = at(&model, seed, &p, &tau);
+                let symbol = state_values(&model, seed, &p, &tau);
                 let a = eval(&functions.acceleration, &symbol);
                 let one = |s: Symbol| match Quantity::of(s) {
                     Quantity::Prepared(_) => 1.0,
@@ -219,14 +228,14 @@ fn printed_reduction_is_that_of_the_functions() {
                     Quantity::Velocity(k) if cyclic.contains(&k) => f64::NAN,
                     _ => symbol(s),
                 };
-                let of = |list: &[Polynomial]| -> Vec<f64> {
+                let values = |list: &[Polynomial]| -> Vec<f64> {
                     list.iter().map(|p| printed.ring.evaluate(p, &value)).collect()
                 };
                 // The ring also evaluates atoms that no polynomial contains.
-                assert_near(&of(&printed.motion), &of(&printed.forces), &model.name);
-                assert_near(&of(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
+                assert_near(&values(&printed.motion), &values(&printed.forces), &model.name);
+                assert_near(&values(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
                 assert_near(
-                    &of(std::slice::from_ref(&printed.routhian)),
+                    &values(std::slice::from_ref(&printed.routhian)),
                     &eval(&[functions.routhian], &symbol),
                     "R",
                 );

@@ -59,7 +59,7 @@ pub fn write_program(
 /// Writes local constants for the arguments and parameters that the program uses.
 fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
     for quantity in program.symbols().into_iter().map(Quantity::of) {
-        match (quantity, named(quantity, scope)) {
+        match (quantity, local_name(quantity, scope)) {
             (Quantity::Time, _) => {}
             (Quantity::Parameter(k), Some(name)) => {
                 let _ = writeln!(out, "    const double {name} = self->{};", scope.parameters[k]);
@@ -76,7 +76,7 @@ fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
 }
 
 /// Returns the name of the local constant of a quantity; `None` for a quantity that the scope does not have.
-fn named(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
+fn local_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
         Quantity::Parameter(k) => scope.parameters.get(k).map(|name| format!("p_{name}")),
@@ -147,7 +147,7 @@ impl Writer<'_> {
         match o {
             Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
             Operand::Const(c) => Piece::plain(constant(c)),
-            Operand::Symbol(s) => match named(Quantity::of(s), self.scope) {
+            Operand::Symbol(s) => match local_name(Quantity::of(s), self.scope) {
                 Some(name) => Piece::plain(name),
                 None => self.missing(),
             },

@@ -11,14 +11,14 @@ use std::fmt::Write;
 pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>, support: &mut Support) {
     match f.shape {
         Shape::Inverse(n) => {
-            let parts = Parts::of(f, n, 0);
+            let parts = Parts::new(f, n, 0);
             parts.declare(body);
             write_program(body, &f.program, scope, &|k| parts.place(k, "result", &[]), support);
             parts.finish(body, "result", support);
         }
         Shape::Accelerated(n) => accelerated(body, f, n, scope, support),
         Shape::Forward(n) => {
-            let parts = Parts::of(f, n, 2 * n * n);
+            let parts = Parts::new(f, n, 2 * n * n);
             parts.declare(body);
             let forces = [("by_q", n, n), ("by_v", n, n)];
             // The accelerations, which are the last outputs, are not returned.
@@ -32,7 +32,7 @@ pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>
         Shape::CalledForward(n) => called_forward(body, f, n, scope, o, support),
         Shape::Linear(n, m) => {
             let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", at_least_one(n * n));
-            let parts = Parts::of(f, n, 2 * n * n);
+            let parts = Parts::new(f, n, 2 * n * n);
             parts.declare(body);
             let rest = 3 * n * n + parts.count();
             let forces = [("by_q", n, n), ("by_v", n, n)];
@@ -63,7 +63,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn of(f: &'a Function, n: usize, first: usize) -> Parts<'a> {
+    fn new(f: &'a Function, n: usize, first: usize) -> Parts<'a> {
         Parts { form: &f.structure.inverse, n, first }
     }
 
@@ -129,7 +129,7 @@ impl<'a> Parts<'a> {
 }
 
 fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, support: &mut Support) {
-    let parts = Parts::of(f, n, n);
+    let parts = Parts::new(f, n, n);
     parts.declare(body);
     let before = [("result", n, 1)];
     write_program(body, &f.program, scope, &|k| parts.place(k, "inverse", &before), support);

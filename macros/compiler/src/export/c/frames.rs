@@ -24,26 +24,26 @@ const ACCESSES: [Access; 4] = [
     Access {
         name: "frame_placement",
         arguments: &[Argument::Q],
-        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in those of the ground), then the position of its origin, m",
+        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in ground axes), then the position of its origin, m",
         docs: "Placement of a frame in the ground.",
     },
     Access {
         name: "frame_velocity",
         arguments: &[Argument::Q, Argument::V],
         result: "out: 6 numbers, m/s, then rad/s",
-        docs: "Velocity of a frame relative to the ground, in ground axes: of its origin, then angular.",
+        docs: "Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.",
     },
     Access {
         name: "frame_acceleration",
         arguments: &[Argument::Q, Argument::V, Argument::A],
         result: "out: 6 numbers, m/s^2, then rad/s^2",
-        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: of its origin, then angular.",
+        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: acceleration of its origin, then angular acceleration.",
     },
     Access {
         name: "frame_jacobian",
         arguments: &[Argument::Q],
         result: "out: 6 by NV, column by column",
-        docs: "Jacobian of a frame: its velocity is this times `v`.",
+        docs: "Jacobian of a frame: the velocity of the frame is this matrix times `v`.",
     },
 ];
 
@@ -160,28 +160,29 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
 
 fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support: &mut Support) {
     use Argument::{A, Q, V};
-    let given = |n| Argument::Given("p", 0, n);
-    let of = |program: fn(&LinkSteps) -> &Program| links.iter().map(|link| (program(link), false)).collect();
+    let argument = |n| Argument::Given("p", 0, n);
+    let programs =
+        |program: fn(&LinkSteps) -> &Program| links.iter().map(|link| (program(link), false)).collect();
     let steps = [
         Step {
             name: "link_placement",
             arguments: [o.timed(&[Q]), vec![PLACED]].concat(),
-            programs: of(|l| &l.placement),
+            programs: programs(|l| &l.placement),
         },
         Step {
             name: "link_twist",
-            arguments: [o.timed(&[Q, V]), vec![given(6)]].concat(),
-            programs: of(|l| &l.twist),
+            arguments: [o.timed(&[Q, V]), vec![argument(6)]].concat(),
+            programs: programs(|l| &l.twist),
         },
         Step {
             name: "link_acceleration",
-            arguments: [o.timed(&[Q, V, A]), vec![given(12)]].concat(),
-            programs: of(|l| &l.acceleration),
+            arguments: [o.timed(&[Q, V, A]), vec![argument(12)]].concat(),
+            programs: programs(|l| &l.acceleration),
         },
         Step {
             name: "link_columns",
             arguments: [o.timed(&[Q]), vec![PLACED, Argument::Given("o", 12, 3)]].concat(),
-            programs: of(|l| &l.columns),
+            programs: programs(|l| &l.columns),
         },
     ];
     steps.iter().for_each(|step| write_step(text, step, o, support));
@@ -204,15 +205,19 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
 }
 
 fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, support: &mut Support) {
-    let given = |n| vec![Argument::Given("p", 0, n)];
-    let of =
+    let argument = |n| vec![Argument::Given("p", 0, n)];
+    let programs =
         |program: fn(&FrameSteps) -> &Program| frames.iter().map(|frame| (program(frame), false)).collect();
     let placements =
         frames.iter().map(|frame| (&frame.placement, frame.is_link && frame.link.is_some())).collect();
     let steps = [
-        Step { name: "placement_on_link", arguments: given(12), programs: placements },
-        Step { name: "twist_on_link", arguments: given(18), programs: of(|f| &f.twist) },
-        Step { name: "acceleration_on_link", arguments: given(24), programs: of(|f| &f.acceleration) },
+        Step { name: "placement_on_link", arguments: argument(12), programs: placements },
+        Step { name: "twist_on_link", arguments: argument(18), programs: programs(|f| &f.twist) },
+        Step {
+            name: "acceleration_on_link",
+            arguments: argument(24),
+            programs: programs(|f| &f.acceleration),
+        },
     ];
     steps.iter().for_each(|step| write_step(text, step, o, support));
 }

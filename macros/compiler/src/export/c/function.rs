@@ -134,7 +134,7 @@ pub fn plain(name: &str) -> String {
 const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
 
 /// Returns the public name of a function.
-pub fn spoken(f: &Function) -> String {
+pub fn public_name(f: &Function) -> String {
     if f.id == Id::InputDerivatives { "generalized_forces_derivatives".to_string() } else { plain(&f.name) }
 }
 
@@ -176,7 +176,7 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     let given: Vec<&str> = results(f.shape).iter().map(|(name, ..)| *name).collect();
     let unused = o.unused(&body, &f.arguments, &given);
     let hidden = if f.is_hidden() && f.id != Id::InputDerivatives { "static " } else { "" };
-    let signature = o.signature(&spoken(f), &f.arguments, f.shape);
+    let signature = o.signature(&public_name(f), &f.arguments, f.shape);
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
 
@@ -186,7 +186,7 @@ pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     let own = [INPUT_DERIVATIVES.to_string()];
     let about = if f.id == Id::InputDerivatives { &own } else { f.docs.as_slice() };
     let docs = docs::function(about, &f.arguments, &results, o);
-    format!("{docs}{};\n", o.signature(&spoken(f), &f.arguments, f.shape))
+    format!("{docs}{};\n", o.signature(&public_name(f), &f.arguments, f.shape))
 }
 
 /// Returns the array element for an output; the arrays `results` follow one another.

@@ -3,7 +3,7 @@
 
 use super::docs;
 use super::function::Outline;
-use super::manifold::{self, own};
+use super::manifold::{self, self_parameter};
 use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
@@ -21,13 +21,13 @@ const SPACE: [Space; 3] = [
         name: "integrate",
         arguments: &["q", "dv"],
         results: &["result"],
-        docs: "The configuration that is reached from `q` in one unit of time with the constant velocities of the joints that the speeds `dv` stand for at `q`; quaternions are normalised. The result may be `q` itself.",
+        docs: "The configuration that is reached from `q` in one unit of time with the constant joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised quaternions. The result may be stored in `q`.",
     },
     Space {
         name: "difference",
         arguments: &["from", "to"],
         results: &["result"],
-        docs: "The speeds, at `from`, that lead from one configuration to another in one unit of time.",
+        docs: "The generalized speeds, at `from`, that lead from one configuration to another in one unit of time.",
     },
     Space {
         name: "displacement_rate",
@@ -42,7 +42,7 @@ const TO_FIRST_ORDER: [Space; 2] = [
         name: "integrate_derivatives",
         arguments: &["q", "dv"],
         results: &["by_q", "by_dv"],
-        docs: "How the result of `integrate` moves with `q` and with `dv`, in speeds there: NV by NV each, column by column.",
+        docs: "Derivatives of the result of `integrate` by `q` and `dv`, in generalized speeds at the result: NV by NV each, column by column.",
     },
     Space {
         name: "displacement_rate_derivatives",
@@ -61,7 +61,7 @@ fn signature(o: &Outline<'_>, of: &Space) -> String {
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
-    format!("void {}_{}({}{})", o.prefix, of.name, own(o), list.join(", "))
+    format!("void {}_{}({}{})", o.prefix, of.name, self_parameter(o), list.join(", "))
 }
 
 /// Returns the declarations.

@@ -12,7 +12,7 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     (
         "integrate",
         ["q", "dv"],
-        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time; quaternions are normalised. The result may be `q` itself.",
+        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time, with normalised quaternions. The result may be stored in `q`.",
     ),
     (
         "difference",
@@ -22,12 +22,12 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     ("tangent_rate", ["dv", "v"], "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`."),
 ];
 
-pub fn own(o: &Outline<'_>) -> String {
+pub fn self_parameter(o: &Outline<'_>) -> String {
     if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() }
 }
 
 fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
-    let own = own(o);
+    let own = self_parameter(o);
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
@@ -94,7 +94,7 @@ const TO_FIRST_ORDER: [ToFirstOrder; 2] = [
         arguments: &["dv"],
         results: ["by_q", "by_dv"],
         plain: "1.0",
-        docs: "How the result of `integrate` moves with `q` and with `dv`, at any `q`, for ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
+        docs: "Derivatives of the result of `integrate` by `q` and `dv`, which are the same for all `q`, with displacements of ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
     },
     ToFirstOrder {
         name: "tangent_rate",
@@ -110,7 +110,7 @@ fn derivatives_signature(o: &Outline<'_>, of: &ToFirstOrder) -> String {
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
-    format!("void {}_{name}_derivatives({}{})", o.prefix, own(o), list.join(", "))
+    format!("void {}_{name}_derivatives({}{})", o.prefix, self_parameter(o), list.join(", "))
 }
 
 fn define_derivatives(

@@ -19,7 +19,7 @@ use std::fmt::Write;
 const METHODS: [(&str, &str); 2] = [
     (
         "semi_implicit_euler",
-        "the semi-implicit method of Euler: the velocity at the end by the accelerations at the start, then the configuration by the velocity at the end",
+        "the semi-implicit Euler method, which updates the velocity with the accelerations at the start, then the configuration with the new velocity",
     ),
     ("rk4", "the classical method of Runge and Kutta"),
 ];
@@ -45,7 +45,7 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// Determines the available steps of a mechanism.
-    pub fn of(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
+    pub fn new(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
         let find = |id: Id| output.functions.iter().find(|f| f.id == id);
         let taken = output.functions.iter().any(|f| {
             METHODS.iter().any(|(method, _)| {
@@ -79,14 +79,14 @@ impl<'a> Steps<'a> {
         let mut text = String::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
             let says = format!(
-                "One step of {about}; `h` seconds long, under inputs `u` that are held: configuration and velocity after it. They may go where `q` and `v` came from."
+                "One step of {about}, of `h` seconds, with constant inputs `u`: configuration and velocity after it. The results may be stored in `q` and `v`."
             );
             text.push_str(&docs::function(&[says], &o.timed(&STATE), &next(o), o));
             let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_step"), &NEXT));
             if !self.has_transitions {
                 continue;
             }
-            let by_h = if o.time { "" } else { ", and `by_h` how it changes with the length of the step" };
+            let by_h = if o.time { "" } else { ", and `by_h` is its derivative by the length of the step" };
             let says = format!(
                 "The step of `{method}_step` with its Jacobians, exact to rounding: with `x` the displacement of the configuration (as `integrate` takes it), then the change of the velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the change of the inputs{by_h}."
             );
@@ -117,7 +117,7 @@ impl<'a> Steps<'a> {
         let own = if o.has_own() { "self, " } else { "" };
         let own_declared = if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() };
         let [t, t_declared] = if o.time { ["t, ", "double t, "] } else { ["", ""] };
-        let later = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
+        let time_after = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
         let mut text = template.to_string();
         let mut put = |word: &str, by: &str| text = text.replace(word, by);
         put("@FORCES@", &self.forces(o));
@@ -158,7 +158,7 @@ impl<'a> Steps<'a> {
         put("@OWN_DECLARED@", &own_declared);
         put("@T@", t);
         put("@T_DECLARED@", t_declared);
-        put("@LATER@", &later("s"));
+        put("@LATER@", &time_after("s"));
         put("@PREFIX@", &o.prefix);
         put("@NQ@", &o.nq.max(1).to_string());
         put("@NV@", &o.nv.max(1).to_string());

@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
             return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
         }
         if let Some(tendon) = element.name("tendon", cx) {
-            return Some((Tendon::on(&tendon, tendons, OTHER_INPUTS, cx)?.scaled(gear), false));
+            return Some((Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled(gear), false));
         }
         let message = "an actuator on no joint, tendon or site is not supported";
         cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));

@@ -9,7 +9,7 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, name, number, place, tag};
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, about, add, apply, product, scale};
+use crate::import::pose::{Pose, add, apply, axis_rotation, product, scale};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
         let world = Name { text: GROUND.to_string(), place: place(root, cx) };
         self.robot.links.push(bare_link(world.clone()));
         // Generated names must differ from the names in the file.
-        let named = |kind: fn(Node<'_>) -> bool| {
+        let names_of = |kind: fn(Node<'_>) -> bool| {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
         };
@@ -58,8 +58,8 @@ impl<'a> Reader<'a> {
             let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
             is_joint(node) && ["body", "frame"].contains(&parent)
         };
-        self.joint_names = named(of_body).collect();
-        self.link_names = named(|node| node.tag_name().name() == "body").collect();
+        self.joint_names = names_of(of_body).collect();
+        self.link_names = names_of(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =
             elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
@@ -287,7 +287,7 @@ impl<'a> Reader<'a> {
         }
         let mut carrier = parent.clone();
         for (k, joint) in joints.into_iter().enumerate() {
-            let child = if k + 1 == number { body.clone() } else { self.between(body, &joint) };
+            let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
             let outer = match (k, joint.kind) {
                 // The coordinates of a free joint are the pose of the body in the world.
                 (_, JointKind::Free) => Pose::ZERO,
@@ -304,7 +304,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a massless link between two joints of a body and returns its name.
-    fn between(&mut self, body: &Name, joint: &BodyJoint) -> Name {
+    fn add_massless_link(&mut self, body: &Name, joint: &BodyJoint) -> Name {
         let text =
             unused(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
         self.link_names.insert(text.clone());
@@ -318,16 +318,16 @@ impl<'a> Reader<'a> {
     /// ω·ω)`.
     fn spread(&mut self, joint: &BodyJoint, damping: &Placed<f64>, carrier: &Name, child: &Name) {
         let at = &damping.place;
-        let named = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
+        let name_expr = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
         let half_square = |e: Expr| {
             let square = Expr::call("dot", vec![e.clone(), e], at);
             Expr::binary(BinaryOp::Mul, Expr::number(damping.value / 2.0, at), square)
         };
         let slash = |a, b| Expr::binary(BinaryOp::Div, a, b);
-        let turning = Expr::call("omega", vec![slash(named(&child.text), named(&carrier.text))], at);
+        let turning = Expr::call("omega", vec![slash(name_expr(&child.text), name_expr(&carrier.text))], at);
         let mut sum = half_square(turning);
         if joint.kind == JointKind::Free {
-            let path = slash(slash(named(&child.text), named(GROUND)), named(GROUND));
+            let path = slash(slash(name_expr(&child.text), name_expr(GROUND)), name_expr(GROUND));
             sum = Expr::binary(BinaryOp::Add, sum, half_square(Expr::call("v", vec![path], at)));
         }
         let text = format!("{}_damping", joint.name.text);
@@ -338,13 +338,13 @@ impl<'a> Reader<'a> {
         let text = unused(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
-        let at = |value| Placed { value, place: place.clone() };
+        let placed = |value| Placed { value, place: place.clone() };
         Some(BodyJoint {
             name: Name { text, place: place.clone() },
             kind: JointKind::Free,
             word: "free",
-            anchor: at([0.0; 3]),
-            axis: at([0.0, 0.0, 1.0]),
+            anchor: placed([0.0; 3]),
+            axis: placed([0.0, 0.0, 1.0]),
             reference: 0.0,
             limits: FileLimits::default(),
             damping: None,
@@ -421,7 +421,7 @@ fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJ
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
     match joint.kind {
-        JointKind::Pin if joint.reference != 0.0 => inner.axes = about(axis, -joint.reference),
+        JointKind::Pin if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
         JointKind::Sleeve => inner.at = add(inner.at, scale(axis, -joint.reference)),
         _ => {}
     }

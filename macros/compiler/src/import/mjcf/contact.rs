@@ -3,7 +3,7 @@
 use super::body::Shaped;
 use super::defaults::Element;
 use super::reader::{Reader, origin};
-use super::touch::{Law, Plane, Touching};
+use super::touch::{CollisionShape, Law, Plane};
 use crate::import::context::Cx;
 use crate::import::element::place;
 use crate::import::pose::Pose;
@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
         let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
         let (law, place) = (Law::read(shape, cx), place(shape.node, cx));
         let name = shape.node.attribute("name").map(str::to_string);
-        self.touching.push(Touching { link, number, name, law, place });
+        self.touching.push(CollisionShape { link, number, name, law, place });
     }
 
     /// Adds the planes of the world for contacts. Other shapes of the world are only counted.
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         cx: &mut Cx<'_>,
     ) -> Option<(Shape, Pose)> {
         let kind = shape.text("type").unwrap_or("sphere");
-        if kind == "mesh" || shape.with("mesh").is_some() {
+        if kind == "mesh" || shape.node_with("mesh").is_some() {
             return Some((Shape::Mesh, Pose::ZERO));
         }
         let (pose, [x, y, z]) = super::geometry::dimensions(kind, shape, &self.settings, cx)?;

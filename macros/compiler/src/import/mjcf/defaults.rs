@@ -132,7 +132,7 @@ impl<'a> Defaults<'a> {
 
 impl<'a> Element<'a> {
     /// Returns the node with the effective value of `attribute`: the element itself or a default.
-    pub(super) fn with(&self, attribute: &str) -> Option<Node<'a>> {
+    pub(super) fn node_with(&self, attribute: &str) -> Option<Node<'a>> {
         self.with_any(&[attribute])
     }
 
@@ -143,17 +143,17 @@ impl<'a> Element<'a> {
 
     /// Returns the trimmed text of an attribute.
     pub(super) fn text(&self, attribute: &str) -> Option<&'a str> {
-        self.with(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
+        self.node_with(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
     }
 
     /// Returns the text of an attribute with its source position.
     pub(super) fn name(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
-        name(self.with(attribute)?, attribute, cx)
+        name(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns a finite number.
     pub(super) fn number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        number(self.with(attribute)?, attribute, cx)
+        number(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns a finite number, or `None` if it is zero.
@@ -178,7 +178,7 @@ impl<'a> Element<'a> {
         attribute: &str,
         cx: &mut Cx<'_>,
     ) -> Option<Placed<[f64; N]>> {
-        numbers(self.with(attribute)?, attribute, cx)
+        numbers(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns up to `N` finite numbers. Entries that the element does not specify come from its defaults,
@@ -200,12 +200,12 @@ impl<'a> Element<'a> {
 
     /// Returns the value of a `true`/`false` attribute; `None` for `auto`.
     pub(super) fn choice(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
-        choice(self.with(attribute)?, attribute, cx)
+        choice(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns the source position of an attribute's value, or of the element if the attribute is missing.
     pub(super) fn place(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
-        let found = self.with(attribute).and_then(|node| node.attribute_node(attribute));
+        let found = self.node_with(attribute).and_then(|node| node.attribute_node(attribute));
         found.map_or_else(|| place(self.node, cx), |found| cx.place(found.range_value().start))
     }
 }

@@ -57,8 +57,8 @@ impl<'a> Reader<'a> {
         }
         let polynomial = coefficients(element, cx);
         let [a0, a1, ..] = polynomial;
-        let at = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
-        let offset = at(&first) + a0 - second.as_ref().map_or(0.0, |joint| a1 * at(joint));
+        let reference = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+        let offset = reference(&first) + a0 - second.as_ref().map_or(0.0, |joint| a1 * reference(joint));
         let is_linear = second.is_none() || polynomial[2..] == [0.0; 3];
         let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == first.text);
         let free = joint.filter(|joint| is_linear && joint.mimic.is_none() && joint.held.is_none());
@@ -85,9 +85,9 @@ impl<'a> Reader<'a> {
         }
         let polynomial = coefficients(element, cx);
         if let ([(leader, weight), (follower, own)], None) = (first.as_slice(), &second) {
-            let at = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+            let reference = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
             let multiplier = -weight / own;
-            let offset = at(follower) + polynomial[0] / own - multiplier * at(leader);
+            let offset = reference(follower) + polynomial[0] / own - multiplier * reference(leader);
             let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == follower.text);
             if let Some(joint) = joint.filter(|joint| joint.mimic.is_none() && joint.held.is_none()) {
                 joint.mimic = Some(Mimic { joint: leader.clone(), multiplier, offset });
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         self.joint_names.insert(named.text.clone());
         let [parent, child] = [first, second].map(|(body, pose)| {
             let origin = origin(&pose, &body.place);
-            Endpoint { at: origin.at(), rotated: origin.rotated(), body }
+            Endpoint { at: origin.position(), rotated: origin.rotated(), body }
         });
         self.robot.closing.push(bare_joint(named, kind, parent, child));
     }

@@ -7,7 +7,7 @@ use crate::import::context::Cx;
 use crate::import::element::check_radians;
 use crate::import::imported::Placed;
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
+    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, of_quaternion, of_z, product, scale,
 };
 
 /// Attributes that specify an orientation. An element may have at most one of them.
@@ -45,7 +45,7 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let size = length([x, y, z]);
             check_length(size, "an axis", &found, cx)?;
             check_turns(&[angle], &found.place, settings, cx);
-            Some(about(scale([x, y, z], 1.0 / size), settings.angle(angle)))
+            Some(axis_rotation(scale([x, y, z], 1.0 / size), settings.angle(angle)))
         }
         "euler" => {
             let found = element.numbers::<3>("euler", cx)?;
@@ -56,8 +56,8 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
                     'y' => [0.0, 1.0, 0.0],
                     _ => [0.0, 0.0, 1.0],
                 };
-                let turn = about(unit, settings.angle(angle));
-                // Rotations about moving axes are multiplied from the right, those about fixed axes from the
+                let turn = axis_rotation(unit, settings.angle(angle));
+                // Rotations axis_rotation moving axes are multiplied from the right, those axis_rotation fixed axes from the
                 // left.
                 if axis.is_ascii_lowercase() { product(&whole, &turn) } else { product(&turn, &whole) }
             }))

@@ -6,7 +6,9 @@ use super::mesh::Meshes;
 use super::settings::{Settings, Source};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, numbers, place, tag};
-use crate::import::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
+use crate::import::pose::{
+    IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, rotated_tensor, scale,
+};
 use std::f64::consts::PI;
 
 /// Mass properties of a body.
@@ -34,7 +36,7 @@ impl Mass {
     pub(super) fn placed(&self, pose: &Pose) -> Mass {
         Mass {
             com: add(pose.at, crate::import::pose::apply(&pose.axes, self.com)),
-            inertia: turned(&pose.axes, &self.inertia),
+            inertia: rotated_tensor(&pose.axes, &self.inertia),
             ..*self
         }
     }
@@ -109,7 +111,7 @@ fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass
     let bounded = Mass { mass: found.mass.max(settings.least_mass), ..found };
     Some(match moments == [a, b, c] && moments == principal(&found.inertia).0 {
         true => bounded,
-        false => Mass { inertia: turned(&axes, &diagonal(moments)), ..bounded },
+        false => Mass { inertia: rotated_tensor(&axes, &diagonal(moments)), ..bounded },
     })
 }
 
@@ -144,7 +146,7 @@ fn read_inertial(
         return Some(Mass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
     }
     let moments = numbers(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
-    Some(Mass { mass, com, inertia: turned(&axes, &diagonal(moments)) })
+    Some(Mass { mass, com, inertia: rotated_tensor(&axes, &diagonal(moments)) })
 }
 
 /// Returns the mass properties of a shape in body axes; `None` for a shape without mass.
@@ -172,7 +174,7 @@ fn of_shape<'a>(
         let found = found.of_mass(said.unwrap_or(density * found.mass));
         return Some(found.placed(&read_pose(shape, settings, cx)));
     }
-    if shape.with("mesh").is_some() || kind == "sdf" {
+    if shape.node_with("mesh").is_some() || kind == "sdf" {
         return refuse(shape, "a shape that is fitted to a mesh", cx);
     }
     let (pose, size) = dimensions(kind, shape, settings, cx)?;
@@ -231,7 +233,7 @@ pub(super) fn extent(
     let Some(ends) = shape.numbers::<6>("fromto", cx) else {
         return Some((read_pose(shape, settings, cx), None));
     };
-    if let Some(node) = shape.with("pos") {
+    if let Some(node) = shape.node_with("pos") {
         let message = format!("`fromto` and `pos` of one {}", tag(shape.node));
         let at = node.attribute_node("pos").map_or(node.range().start, |pos| pos.range_value().start);
         cx.error(&cx.place(at), message, |d| d.help("remove one of the two"));

@@ -121,13 +121,13 @@ fn is_include(node: Node<'_>) -> bool {
 /// Finds and reads an included file: in the folder of the user's file, or else in the folder of the including
 /// file.
 fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Read> {
-    let beside = |file: usize| {
+    let sibling = |file: usize| {
         let read = files.get(file)?;
         let shown = Path::new(&read.shown).with_file_name(&at.text);
         Some((read.path.with_file_name(&at.text), shown.to_string_lossy().into_owned()))
     };
-    let first = beside(0)?;
-    let (path, shown) = match beside(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
+    let first = sibling(0)?;
+    let (path, shown) = match sibling(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
         Some(other) => other,
         None => first,
     };

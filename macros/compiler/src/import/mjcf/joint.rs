@@ -67,7 +67,7 @@ impl<'a> Reader<'a> {
         let mut anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
         anchor.value = add(outer.at, apply(&outer.axes, anchor.value));
         let mut axis = element.numbers("axis", cx).unwrap_or(zero("axis", cx));
-        if element.with("axis").is_none() {
+        if element.node_with("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
         }
         let size = length(axis.value);
@@ -149,9 +149,9 @@ impl<'a> Reader<'a> {
         if self.options.limits == LimitOption::Ignore {
             return None;
         }
-        let said = element.with(limited).is_some().then(|| element.choice(limited, cx)).flatten();
+        let said = element.node_with(limited).is_some().then(|| element.choice(limited, cx)).flatten();
         let found = element.numbers::<2>(range, cx);
-        if found.is_none() && element.with(range).is_some() {
+        if found.is_none() && element.node_with(range).is_some() {
             return None;
         }
         // A range of two zeros means no range.

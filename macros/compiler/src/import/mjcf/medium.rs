@@ -92,7 +92,7 @@ fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -
         for (k, axis) in transpose(&axes).into_iter().enumerate() {
             let [a, b, c] = [edges[k], edges[(k + 1) % 3], edges[(k + 2) % 3]];
             for (factor, of) in [(b * c / 6.0, &v), (a * (b.powi(4) + c.powi(4)) / 192.0, &omega)] {
-                let x = Expr::call("dot", vec![of.clone(), spot.along(axis, at)], at);
+                let x = Expr::call("dot", vec![of.clone(), spot.vector_expression(axis, at)], at);
                 let square = Expr::binary(BinaryOp::Mul, x.clone(), x.clone());
                 let cube = Expr::binary(BinaryOp::Mul, Expr::call("abs", vec![x], at), square);
                 terms.push(times(factor * density, cube));

@@ -4,7 +4,7 @@ use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
 use super::mesh::Meshes;
 use super::settings::Settings;
-use super::touch::{Plane, Touching};
+use super::touch::{CollisionShape, Plane};
 use crate::diag::Place;
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, roll_pitch_yaw, scale};
@@ -55,7 +55,7 @@ pub(super) struct Reader<'a> {
     /// Planes of the world.
     pub(super) planes: Vec<Plane>,
     /// Collision shapes of bodies.
-    pub(super) touching: Vec<Touching>,
+    pub(super) touching: Vec<CollisionShape>,
 }
 
 impl<'a> Reader<'a> {
@@ -138,6 +138,6 @@ pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
 
 /// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
-    let at = |value| Placed { value, place: place.clone() };
-    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
+    let placed = |value| Placed { value, place: place.clone() };
+    Origin { xyz: placed(pose.at.map(|x| x + 0.0)), rpy: placed(roll_pitch_yaw(&pose.axes)) }
 }

@@ -3,7 +3,7 @@
 
 use super::reader::Reader;
 use super::spatial::Poses;
-use crate::import::pose::{Pose, about, product, scale};
+use crate::import::pose::{Pose, axis_rotation, product, scale};
 use crate::import::robot::Origin;
 use crate::syntax::{GROUND, JointKind};
 
@@ -17,7 +17,7 @@ impl Reader<'_> {
             let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
             let axis = joint.axis.value;
             let motion = match joint.kind {
-                JointKind::Pin => Pose { axes: about(axis, rest), ..Pose::ZERO },
+                JointKind::Pin => Pose { axes: axis_rotation(axis, rest), ..Pose::ZERO },
                 JointKind::Sleeve => Pose { at: scale(axis, rest), ..Pose::ZERO },
                 _ => Pose::ZERO,
             };
@@ -35,7 +35,7 @@ impl Reader<'_> {
 
 fn pose_of(origin: &Origin) -> Pose {
     let [roll, pitch, yaw] = origin.rpy.value;
-    let turn = |axis, angle| about(axis, angle);
+    let turn = |axis, angle| axis_rotation(axis, angle);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let axes = product(&product(&turn(z, yaw), &turn(y, pitch)), &turn(x, roll));
     Pose { at: origin.xyz.value, axes }

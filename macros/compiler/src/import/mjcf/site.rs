@@ -49,7 +49,7 @@ impl<'a> Reader<'a> {
             let path = Expr::binary(BinaryOp::Div, spot.expression(at), against.expression(at));
             let path = Expr::call("r", vec![path], at);
             return Some((
-                DriveOn::Length(Expr::call("dot", vec![path, against.along(force, at)], at)),
+                DriveOn::Length(Expr::call("dot", vec![path, against.vector_expression(force, at)], at)),
                 turns,
             ));
         }
@@ -72,7 +72,7 @@ impl<'a> Reader<'a> {
 
 impl Spot {
     /// Returns the expression of a vector whose components are given in the axes of the body.
-    pub(super) fn along(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
+    pub(super) fn vector_expression(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
         let axis = |k: usize| {
             let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
             let name = Name { text: ["x", "y", "z"][k].to_string(), place: at.clone() };

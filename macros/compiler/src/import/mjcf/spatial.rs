@@ -25,7 +25,7 @@ pub(super) struct Spot {
 
 /// Path of a cable around a surface.
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum CablePath {
     /// Shortest path around a sphere.
     Ball,
     /// Shortest path around a cylinder.
@@ -39,7 +39,7 @@ enum Way {
 struct Around {
     frame: Spot,
     radius: f64,
-    way: Way,
+    way: CablePath,
 }
 
 /// Segment of a path between two sites.
@@ -155,7 +155,7 @@ impl<'a> Reader<'a> {
         let (pose, [radius, ..]) = dimensions(kind, shape, &self.settings, cx)?;
         let frame = Spot { body: body.clone(), pose: outer.then(&pose) };
         let Some(side) = node.has_attribute("sidesite").then(|| name(node, "sidesite", cx)).flatten() else {
-            let way = if kind == "sphere" { Way::Ball } else { Way::Shorter };
+            let way = if kind == "sphere" { CablePath::Ball } else { CablePath::Shorter };
             return Some(Ok(Around { frame, radius, way }));
         };
         let spot = self.find_site(&side, cx)?;
@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
             return refusal(format!("a tendon that runs inside of the cylinder {}", quote(&said.text)));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(Around { frame, radius, way: Way::Turning(y.atan2(x)) }))
+        Some(Ok(Around { frame, radius, way: CablePath::Turning(y.atan2(x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
@@ -179,7 +179,9 @@ impl<'a> Reader<'a> {
     /// Determines the direction in which a segment passes a cylinder with a `sidesite`: the direction of
     /// rotation of the path through that site.
     fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
-        let Some(Around { frame, radius, way: Way::Turning(side) }) = &mut piece.around else { return None };
+        let Some(Around { frame, radius, way: CablePath::Turning(side) }) = &mut piece.around else {
+            return None;
+        };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
         let [far_a, far_b] = [a, b].map(|[x, y, _]| x.hypot(y));
         if far_a < *radius || far_b < *radius {
@@ -275,9 +277,9 @@ impl Piece {
         };
         let axis = |sign: f64| Expr::vector(apply(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
         match around.way {
-            Way::Ball => cable("sphere", Vec::new()),
-            Way::Turning(sign) => cable("cylinder", vec![axis(sign)]),
-            Way::Shorter => {
+            CablePath::Ball => cable("sphere", Vec::new()),
+            CablePath::Turning(sign) => cable("cylinder", vec![axis(sign)]),
+            CablePath::Shorter => {
                 Expr::call("min", [1.0, -1.0].map(|sign| cable("cylinder", vec![axis(sign)])).into(), at)
             }
         }
@@ -300,9 +302,9 @@ impl Around {
             round(flat(a), flat(b), angle).hypot(a[2] - b[2])
         };
         match self.way {
-            Way::Ball => round(a, b, length(cross(a, b)).atan2(dot(a, b))),
-            Way::Turning(sign) => turning(sign),
-            Way::Shorter => turning(1.0).min(turning(-1.0)),
+            CablePath::Ball => round(a, b, length(cross(a, b)).atan2(dot(a, b))),
+            CablePath::Turning(sign) => turning(sign),
+            CablePath::Shorter => turning(1.0).min(turning(-1.0)),
         }
     }
 }

@@ -47,7 +47,7 @@ impl Tendon {
     }
 
     /// Returns the coordinate or length that forces on a tendon act on.
-    pub(super) fn on(
+    pub(super) fn drive_target(
         name: &Name,
         tendons: &[Tendon],
         help: &'static str,
@@ -92,8 +92,8 @@ impl<'a> Reader<'a> {
         let named = said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: place(node, cx) });
         let (path, rest) = if fixed {
             let terms = self.terms(node, cx);
-            let at = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
-            let rest = terms.iter().map(|(joint, weight)| weight * at(joint)).sum();
+            let rest_position = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
+            let rest = terms.iter().map(|(joint, weight)| weight * rest_position(joint)).sum();
             (Ok(DriveOn::Sum(terms)), rest)
         } else {
             let path = self.read_path(node, cx)?;
@@ -185,7 +185,8 @@ impl<'a> Reader<'a> {
 fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
     // A single length is the range of two equal ones, even if the defaults have two different ones.
-    let found = element.with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
+    let found =
+        element.node_with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
     let [low, high] = found.as_ref().map_or([NONE; 2], |found| found.value);
     let high = if high.is_nan() { low } else { high };
     if let Some(found) = found.filter(|_| high < low) {

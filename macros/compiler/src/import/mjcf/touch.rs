@@ -27,7 +27,7 @@ pub(super) struct Plane {
 }
 
 /// Collision shape of a body.
-pub(super) struct Touching {
+pub(super) struct CollisionShape {
     pub(super) link: usize,
     /// Index among the shapes of the body.
     pub(super) number: usize,
@@ -87,11 +87,11 @@ impl Law {
     }
 }
 
-impl Touching {
+impl CollisionShape {
     /// Returns the contact of the shape with a plane.
     pub(super) fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
         let at = &self.place;
-        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let as_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
         let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
         let method = |of: Expr, word: &str, argument: Expr| Expr::method(of, word, vec![argument]);
         let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
@@ -99,7 +99,7 @@ impl Touching {
         let coefficient = |number: f64| (number != 0.0).then(|| Expr::number(number, at));
         let [friction, torsional, rolling] = self.law.friction_with(&plane.law).map(coefficient);
         Contact {
-            name: named(&name),
+            name: as_name(&name),
             first: method(body(link), "collision", Expr::number(self.number as f64, at)),
             second: method(point, "plane", normal),
             friction,

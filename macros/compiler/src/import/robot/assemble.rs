@@ -24,11 +24,13 @@ pub(in crate::import) fn assemble(
     cx: &mut Cx<'_>,
 ) -> Imported {
     let is_ground = robot.links[order.root].name.text == GROUND;
-    let collisions =
-        robot.collisions.iter().filter_map(|(link, part)| Some(part.on(&robot.links.get(*link)?.name)));
+    let collisions = robot
+        .collisions
+        .iter()
+        .filter_map(|(link, part)| Some(part.attached_to(&robot.links.get(*link)?.name)));
     let collisions = collisions.collect();
     let visuals =
-        robot.visuals.iter().filter_map(|(link, part)| Some(part.on(&robot.links.get(*link)?.name)));
+        robot.visuals.iter().filter_map(|(link, part)| Some(part.attached_to(&robot.links.get(*link)?.name)));
     let visuals = visuals.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
@@ -89,7 +91,7 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     };
     let mut ground = end_at(name(GROUND));
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
-        (ground.at, ground.rotated) = (origin.at(), origin.rotated());
+        (ground.at, ground.rotated) = (origin.position(), origin.rotated());
     }
     bare_joint(name(&text), kind, ground, end_at(link.clone()))
 }
@@ -126,7 +128,7 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
 
 /// Returns the parent's endpoint of a joint.
 fn parent_of(given: &FileJoint) -> Endpoint {
-    Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() }
+    Endpoint { body: given.parent.clone(), at: given.origin.position(), rotated: given.origin.rotated() }
 }
 
 fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {

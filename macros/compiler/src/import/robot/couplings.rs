@@ -17,10 +17,14 @@ pub(in crate::import) fn resolve(
     cx: &mut Cx<'_>,
 ) -> Vec<Constraint> {
     let frozen = frozen(joints);
-    constraints.into_iter().filter_map(|constraint| without(constraint, &frozen, cx)).collect()
+    constraints.into_iter().filter_map(|constraint| without_locked(constraint, &frozen, cx)).collect()
 }
 
-fn without(mut constraint: Constraint, frozen: &BTreeMap<&str, f64>, cx: &mut Cx<'_>) -> Option<Constraint> {
+fn without_locked(
+    mut constraint: Constraint,
+    frozen: &BTreeMap<&str, f64>,
+    cx: &mut Cx<'_>,
+) -> Option<Constraint> {
     let sides = std::iter::once(&mut constraint.value).chain(&mut constraint.other);
     sides.for_each(|side| *side = replaced(side, frozen));
     let other = constraint.other.as_ref().map_or(Some(0.0), number);

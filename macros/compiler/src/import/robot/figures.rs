@@ -5,7 +5,7 @@ use super::names::unused;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
-use crate::import::pose::{IDENTITY, Matrix, Vector, about, product, roll_pitch_yaw, transpose};
+use crate::import::pose::{IDENTITY, Matrix, Vector, axis_rotation, product, roll_pitch_yaw, transpose};
 use crate::syntax::file_parameters::{
     DAMPING, FRICTION, FileField, FileFieldKind, FileParameters, INERTIAL, PLACEMENT,
 };
@@ -106,15 +106,16 @@ fn of_joints(
             continue;
         }
         let of = &joint.name.text;
-        let about = |what: &str| format!("{what} of the joint `{of}`.");
+        let description = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
             let Some(values) = placement(joint) else {
                 cx.report_lost(&joint.name);
                 continue;
             };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
-            let about = about(&format!("Place, on the parent {link},"));
-            let e = add(FileFieldKind::Placement, of, word, about, (values, units), &name.place, fields);
+            let description = description(&format!("Place, on the parent {link},"));
+            let e =
+                add(FileFieldKind::Placement, of, word, description, (values, units), &name.place, fields);
             let place = |e| Expr { kind: e, place: name.place.clone() };
             joint.parent.at = Some(place(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
@@ -134,8 +135,15 @@ fn of_joints(
             cx.report_lost(&joint.name);
             continue;
         };
-        let e =
-            add(FileFieldKind::Number, of, word, about(what), (vec![value], vec![unit]), &name.place, fields);
+        let e = add(
+            FileFieldKind::Number,
+            of,
+            word,
+            description(what),
+            (vec![value], vec![unit]),
+            &name.place,
+            fields,
+        );
         *slot = e.into_iter().next();
     }
 }
@@ -237,7 +245,7 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
     let Some((axis, angle)) = turn(e) else {
         let ExprKind::Call(_, arguments) = &e.kind else { return None };
         let [axis, angle] = arguments.as_slice() else { return None };
-        return Some(about(numbers(axis)?, angle.literal()?));
+        return Some(axis_rotation(numbers(axis)?, angle.literal()?));
     };
     let (s, c) = angle.sin_cos();
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -13,7 +13,7 @@ pub(in crate::import) struct Origin {
 
 impl Origin {
     /// Returns the position, or `None` if it is zero.
-    pub(in crate::import) fn at(&self) -> Option<Expr> {
+    pub(in crate::import) fn position(&self) -> Option<Expr> {
         (self.xyz.value != [0.0; 3]).then(|| Expr::vector(self.xyz.value, &self.xyz.place))
     }
 

@@ -15,8 +15,8 @@ pub(in crate::import) struct FileVisual {
 
 impl FileVisual {
     /// Attaches the shape to the link with this name.
-    pub(in crate::import) fn on(&self, link: &Name) -> Visual {
-        let on = Endpoint { body: link.clone(), at: self.origin.at(), rotated: self.origin.rotated() };
+    pub(in crate::import) fn attached_to(&self, link: &Name) -> Visual {
+        let on = Endpoint { body: link.clone(), at: self.origin.position(), rotated: self.origin.rotated() };
         Visual { on, shape: self.shape, mesh: self.mesh.clone() }
     }
 }

@@ -8,7 +8,7 @@ use crate::import::element::{
     Attribute, Node, check_plain, check_radians, content, contents, elements, place, report_second,
 };
 use crate::import::imported::Placed;
-use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
+use crate::import::pose::{IDENTITY, Pose, axis_rotation, of_quaternion, product, roll_pitch_yaw};
 use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -41,10 +41,10 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 /// Reads `<pose relative_to="…">` of an element, or `<pose frame="…">` in old versions. Without either
 /// attribute, the pose is relative to `base`.
 pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
-    let own = |at: Place| Name { text: base.to_string(), place: at };
+    let base_name = |at: Place| Name { text: base.to_string(), place: at };
     let mut poses = elements(node).filter(|child| child.tag_name().name() == "pose");
     let Some(found) = poses.next() else {
-        return Frame { base: own(place(node, cx)), pose: Pose::ZERO, attached: None };
+        return Frame { base: base_name(place(node, cx)), pose: Pose::ZERO, attached: None };
     };
     if let Some(second) = poses.next() {
         report_second(second, Some(found), cx);
@@ -56,7 +56,7 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
             let text = own_frame(found, name, scope).unwrap_or_else(|| scope.whole_name(name));
             Name { text, place: cx.place(said.range_value().start) }
         }
-        None => own(place(found, cx)),
+        None => base_name(place(found, cx)),
     };
     let is_empty = contents(found).next().is_none();
     let pose = if is_empty { Pose::ZERO } else { read_pose(found, cx).unwrap_or(Pose::ZERO) };
@@ -140,8 +140,9 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     }
     let angle = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
-    let axes =
-        turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| product(&whole, &about(axis, angle(turn))));
+    let axes = turns
+        .into_iter()
+        .fold(IDENTITY, |whole, (axis, turn)| product(&whole, &axis_rotation(axis, angle(turn))));
     Some(Pose { at: [x, y, z], axes })
 }
 
@@ -197,6 +198,6 @@ impl Frames {
 
 /// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
-    let at = |value| Placed { value, place: place.clone() };
-    Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }
+    let placed = |value| Placed { value, place: place.clone() };
+    Origin { xyz: placed(pose.at.map(|x| x + 0.0)), rpy: placed(roll_pitch_yaw(&pose.axes)) }
 }

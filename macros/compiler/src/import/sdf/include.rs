@@ -53,7 +53,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     while let Some(step) = steps.pop() {
         match step {
             Step::Copy(file, range) => whole.copy(file, range.start, range.end, name, cx)?,
-            Step::Put(text, file, at) => whole.put(&text, (file, at), name, cx)?,
+            Step::Put(text, file, at) => whole.append(&text, (file, at), name, cx)?,
             Step::Leave => {
                 open.pop();
             }
@@ -178,26 +178,26 @@ fn in_world(node: Node<'_>) -> bool {
 /// own.
 fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
-    let put = |text: &str| Step::Put(text.to_string(), file, start);
+    let text_step = |text: &str| Step::Put(text.to_string(), file, start);
     steps.push(Step::Put("<model name=\"".to_string(), include.by, include.from));
     match &include.name {
         Some(range) => steps.push(Step::Copy(include.by, range.clone())),
         None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
     }
-    steps.push(put("\""));
+    steps.push(text_step("\""));
     // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
-        steps.push(put(&format!(" {}=\"", version::OF_INCLUDED)));
+        steps.push(text_step(&format!(" {}=\"", version::OF_INCLUDED)));
         steps.push(Step::Copy(file, version.range_value()));
-        steps.push(put("\""));
+        steps.push(text_step("\""));
     }
     let is_own = |name: &str| name != "name" && name != version::OF_INCLUDED;
     for attribute in model.attributes().filter(|attribute| is_own(attribute.name())) {
-        steps.push(put(&format!(" {}=\"", attribute.name())));
+        steps.push(text_step(&format!(" {}=\"", attribute.name())));
         steps.push(Step::Copy(file, attribute.range_value()));
-        steps.push(put("\""));
+        steps.push(text_step("\""));
     }
-    steps.push(put(">"));
+    steps.push(text_step(">"));
     let parts = include.pose.iter().chain(&include.plugins);
     steps.extend(parts.map(|part| Step::Copy(include.by, part.clone())));
 }
@@ -287,8 +287,8 @@ fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     for file in [by, 0] {
         let Some(read) = files.get(file) else { continue };
         for above in ["", ".."] {
-            let beside = |base: &Path| base.with_file_name(above).join(named);
-            let (path, shown) = (beside(&read.path), beside(Path::new(&read.shown)));
+            let sibling = |base: &Path| base.with_file_name(above).join(named);
+            let (path, shown) = (sibling(&read.path), sibling(Path::new(&read.shown)));
             let inside = if path.is_dir() { Some(model_of(&path)) } else { None };
             let whole = |base: PathBuf| match &inside {
                 Some(inside) => base.join(inside),

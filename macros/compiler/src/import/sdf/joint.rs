@@ -344,7 +344,11 @@ fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     let found = children(node, ["multiplier", "offset", "reference"], cx);
     misplaced::check(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
     let [multiplier, offset, reference] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
-    let of = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
-    let multiplier = of(multiplier, 1.0);
-    Some(Mimic { joint: leader, multiplier, offset: of(offset, 0.0) - multiplier * of(reference, 0.0) })
+    let value_or = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
+    let multiplier = value_or(multiplier, 1.0);
+    Some(Mimic {
+        joint: leader,
+        multiplier,
+        offset: value_or(offset, 0.0) - multiplier * value_or(reference, 0.0),
+    })
 }

@@ -9,7 +9,7 @@ use crate::import::element::{
     Node, check_attributes, check_element_name, check_plain, children, content, elements, place, word,
 };
 use crate::import::misplaced;
-use crate::import::pose::{Matrix, Pose, turned};
+use crate::import::pose::{Matrix, Pose, rotated_tensor};
 use crate::import::robot::bare_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
@@ -78,7 +78,7 @@ pub(super) fn read_link(
         }
         _ => Pose::ZERO,
     };
-    give(&mut body, mass, &pose, &turned(&pose.axes, &read_inertia(inertia, cx)), &at);
+    give(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
     if !body.inertia.iter().flat_map(Expr::parts).filter_map(Expr::literal).all(f64::is_finite) {
         cx.error(&at, "an inertia that is too large for numbers", |d| d);
     }

@@ -199,11 +199,11 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
         });
         return None;
     }
-    let named = |node: Node<'a>, what: &str| -> Vec<Node<'a>> {
+    let children = |node: Node<'a>, what: &str| -> Vec<Node<'a>> {
         elements(node).filter(|child| child.tag_name().name() == what).collect()
     };
-    let mut found = named(root, "model");
-    found.extend(named(root, "world").into_iter().flat_map(|world| named(world, "model")));
+    let mut found = children(root, "model");
+    found.extend(children(root, "world").into_iter().flat_map(|world| children(world, "model")));
     // If another model moves, static models of a world are not part of the mechanism.
     let mut fixed = Vec::new();
     if found.len() > 1 {
@@ -212,7 +212,7 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     let world_of =
         |model: &Node<'a>| model.parent_element().filter(|above| above.tag_name().name() == "world");
     let world = found.first().and_then(world_of);
-    let has = |kind: &str| world.is_some_and(|world| !named(world, kind).is_empty());
+    let has = |kind: &str| world.is_some_and(|world| !children(world, kind).is_empty());
     let is_joined = has("joint") && found.iter().all(|model| world_of(model) == world);
     let prefixed = |models: Vec<Node<'a>>, before: &str| -> Vec<(Node<'a>, String)> {
         let prefix = |model: Node<'a>| format!("{before}{}::", model.attribute("name").unwrap_or_default());
@@ -371,14 +371,14 @@ impl<'a> Reader<'a> {
         };
         let mut frame = read_frame(node, scope, &base, cx);
         let at = place(node, cx);
-        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let as_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
         frame.attached = match kind {
-            "link" => is_fixed.then(|| named(WORLD)),
-            _ => Some(named(&base)),
+            "link" => is_fixed.then(|| as_name(WORLD)),
+            _ => Some(as_name(&base)),
         };
         for own in own_frames(node) {
             let mut frame = read_frame(own, scope, &part.text, cx);
-            frame.attached = Some(named(&part.text));
+            frame.attached = Some(as_name(&part.text));
             self.frames
                 .known
                 .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
@@ -429,11 +429,11 @@ fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
         let text = scope.whole_name(said.value());
         return Some(Name { text, place: cx.place(said.range_value().start) });
     }
-    let named = |what: &str| {
+    let child_name = |what: &str| {
         let found = first(node, what)?;
         Some(Name { text: scope.whole_name(found.attribute("name")?), place: place(found, cx) })
     };
-    named("link").or_else(|| named("model"))
+    child_name("link").or_else(|| child_name("model"))
 }
 
 /// Returns the names of the links that are fixed to the ground.

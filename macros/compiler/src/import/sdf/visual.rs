@@ -22,8 +22,8 @@ pub(super) fn read(
 
 fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileVisual> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry")?;
-    let known = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
-    let form = elements(geometry).find(known)?;
+    let is_shape = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
+    let form = elements(geometry).find(is_shape)?;
     let origin = origin_in(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = if shape == Shape::Mesh { Some(read_mesh(form, cx)?) } else { None };

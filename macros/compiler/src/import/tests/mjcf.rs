@@ -571,19 +571,19 @@ fn parts_of_a_path_without_length_are_errors() {
     }
 }
 
-/// Contacts that were asked for and are none.
+/// Requested contacts that the file does not contain.
 #[test]
 fn planes_that_nothing_touches() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
-    let with = |bits: &str| {
+    let contacts_with = |bits: &str| {
         let text = format!(
             "<mujoco><worldbody><geom type='plane' size='1 1 1' {bits}/>\
              <body name='b'><freejoint/>{BALL}</body></worldbody></mujoco>"
         );
         run(&options, &text)
     };
-    assert!(with("").starts_with("the root is the ground\n"));
-    let found = with("contype='2' conaffinity='2'");
+    assert!(contacts_with("").starts_with("the root is the ground\n"));
+    let found = contacts_with("contype='2' conaffinity='2'");
     assert!(
         found.starts_with("no body of the file has a shape that may touch a plane of its world\n"),
         "{found}"

@@ -17,8 +17,8 @@ fn model(tendon: &str, actuator: &str) -> String {
 /// Returns the lines of the result that describe forces, or the errors.
 fn drives(tendon: &str, actuator: &str) -> Vec<String> {
     let text = run(&mjcf(), &model(tendon, actuator));
-    let kept = |line: &&str| line.contains(" on ") || line.contains("r.xml") || line.contains("help");
-    text.lines().filter(kept).map(|line| line.trim().to_string()).collect()
+    let is_relevant = |line: &&str| line.contains(" on ") || line.contains("r.xml") || line.contains("help");
+    text.lines().filter(is_relevant).map(|line| line.trim().to_string()).collect()
 }
 
 /// Returns the forces of a motor that pulls a cable from the wall to the site `s`.

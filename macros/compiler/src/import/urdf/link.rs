@@ -69,7 +69,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     if let Some(inertia) = inertia {
         body.inertia = read_inertia(inertia, &origin, cx);
     }
-    body.com = origin.at();
+    body.com = origin.position();
     if is_zero(body.mass.as_ref()) && body.inertia.is_none() {
         (body.mass, body.com) = (None, None);
     }

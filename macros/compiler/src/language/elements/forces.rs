@@ -15,9 +15,9 @@ use Key::{
 pub struct KeyRow {
     /// The name.
     pub name: &'static str,
-    /// Words of other tools; they stand with the elements.
+    /// Names in other tools; the elements list them.
     pub synonyms: &'static str,
-    /// The quantity that the argument gives.
+    /// Quantity of the argument.
     pub quantity: ForceQuantity,
 }
 
@@ -106,7 +106,8 @@ pub struct ForceRow {
     pub between: bool,
     /// All other arguments, in the order in which messages list them.
     pub arguments: &'static [Key],
-    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last one.
+    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last
+    /// one.
     pub laws: &'static [Key],
     /// Arguments that must be given, with an example each.
     pub required: &'static [(Key, &'static str)],
@@ -116,9 +117,9 @@ pub struct ForceRow {
     pub locals: Locals,
     /// Whether the element can act on a body, not only on a coordinate or a length.
     pub on_bodies: bool,
-    /// Whether the element loads a body by a torque instead of a force.
+    /// Whether the element applies a torque to a body instead of a force.
     pub torque: bool,
-    /// Whether the element loads a body by a force at a single point.
+    /// Whether the element applies a force at a single point of a body.
     pub at_point: bool,
     /// Pieces of the drawing: for a length, and for an angle.
     pub pieces: Option<[PieceKind; 2]>,
@@ -126,14 +127,14 @@ pub struct ForceRow {
     pub drawn_between: bool,
     /// Names of the arguments in other tools.
     pub words: Words,
-    /// How it is declared.
+    /// Example of a declaration.
     pub example: &'static str,
 }
 
-/// The names that a law may use.
+/// Variables that the expression of a law may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locals {
-    /// None.
+    /// No variables.
     None,
     /// `stretch` and `length`.
     Stretch,
@@ -141,7 +142,7 @@ pub enum Locals {
     Speed,
 }
 
-/// A row with the fields that most elements leave as they are.
+/// A row with default values.
 const PLAIN: ForceRow = ForceRow {
     name: "",
     synonyms: "",

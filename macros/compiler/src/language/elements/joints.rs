@@ -12,22 +12,22 @@ pub struct JointRow {
     pub name: &'static str,
     /// Words of other tools, without the word `joint`.
     pub synonyms: &'static str,
-    /// The arguments beside the two ends.
+    /// Arguments in addition to the two ends.
     pub arguments: &'static [&'static str],
     /// The coordinates.
     pub coordinates: CoordinateNames,
-    /// How it is drawn, and the argument whose first axis is shown.
+    /// Piece of the drawing, and the argument whose first axis it shows.
     pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
-    /// How it is declared.
+    /// Example of a declaration.
     pub example: &'static str,
 }
 
 /// The coordinates of a joint.
 #[derive(Clone, Copy, Debug)]
 pub enum CoordinateNames {
-    /// Plain coordinates by their names, empty for that of the joint; true for an angle.
+    /// Plain coordinates by name (empty for the name of the joint), with true for an angle.
     Plain(&'static [(&'static str, bool)]),
-    /// Plain coordinates along two or three axes, as many as are given.
+    /// Plain coordinates along the given axes, two or three.
     PerAxis(&'static [(&'static str, bool)]),
     /// A unit quaternion.
     Ball,
@@ -87,7 +87,7 @@ table! {
         /// Translation along one axis, then rotation about another.
         Slot = row("Slot", "",
             &["about", "along"], SLIDE_AND_TURN, SLIDE, ABOUT);
-        /// Rotations about two axes in turn.
+        /// Successive rotations about two axes.
         Universal = row("Universal", "cardan hooke gimbal cv",
             &["about"], Plain(&[("first", true), ("second", true)]), BALL, ABOUT);
         /// All rotations (spherical).
@@ -111,8 +111,8 @@ table! {
 }
 
 impl JointKind {
-    /// Returns the plain coordinates of a joint with so many translation axes: names, empty for that of the
-    /// joint, and true for an angle.
+    /// Returns the plain coordinates of a joint with `along` translation axes: names (empty for the name of
+    /// the joint), and true for an angle.
     fn plain(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
         match self.row().coordinates {
             Plain(all) => Some(all),
@@ -121,7 +121,7 @@ impl JointKind {
         }
     }
 
-    /// Returns the names of the entries of `q` and `v`; empty for the joint's own name.
+    /// Returns the names of the entries of `q` and `v`; an empty name is that of the joint.
     pub fn coordinate_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
         if let Some(plain) = self.plain(along) {
             let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();

@@ -1,4 +1,4 @@
-//! Elements that have no mass, join nothing and do not act.
+//! Elements other than bodies, joints and force elements.
 
 use super::super::Words;
 use super::words::ON;
@@ -14,7 +14,7 @@ pub struct OtherRow {
     pub attributes: &'static [&'static str],
     /// Words of other tools for its arguments.
     pub words: Words,
-    /// How it is declared.
+    /// Example of a declaration.
     pub example: &'static str,
 }
 
@@ -29,7 +29,7 @@ const fn row(
 }
 
 table! {
-    /// An element that has no mass, joins nothing and does not act.
+    /// An element other than a body, a joint or a force element.
     OtherKind: OtherRow {
         /// A generalized coordinate of its own.
         Coordinate = row("Coordinate",
@@ -64,7 +64,7 @@ table! {
         Slipping = row("Slipping",
             "",
             &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]");
-        /// A contact that opens and closes.
+        /// A unilateral contact.
         Contact = row("Contact",
             "",
             &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]");

@@ -1,4 +1,4 @@
-//! What each pass makes of a small program, for people to read.
+//! Readable examples of the effect of each pass on a small program.
 
 use super::{CHAIN, FACTOR, FUSE, NEGATIONS, Pass, REASSOCIATE, SCHEDULE, SHARE_SUBSUMS};
 use crate::expr::{Expr, Graph, Symbol};
@@ -10,17 +10,17 @@ fn name(symbol: Symbol) -> String {
     NAMES[symbol.0 as usize].to_string()
 }
 
-/// A program without passes: expressions that are built one operation at a time.
+/// Returns a program to which no pass has been applied, built from expressions one operation at a time.
 fn selected(outputs: impl for<'g> Fn([Expr<'g>; 8]) -> Vec<Expr<'g>>) -> Program {
     let g = Graph::new();
     let symbols = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
     crate::lower::select(&outputs(symbols), &|_| false)
 }
 
-/// The texts before and after a pass; both programs give the same numbers.
+/// Returns the texts before and after a pass, and checks that both programs return the same values.
 fn around(pass: &Pass, mut program: Program) -> [Vec<String>; 2] {
     program.counts = program.count();
-    let after = program.clone().through(&[*pass]);
+    let after = program.clone().run_passes(&[*pass]);
     let value = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
     for (a, b) in program.run(&value).iter().zip(after.run(&value)) {
         assert!((a - b).abs() <= 1e-13 * a.abs().max(1.0), "{}: {a} and {b}", pass.name);
@@ -87,13 +87,13 @@ fn schedule() {
     assert_eq!(after, ["t0 = a / b", "t1 = c + d", "t2 = t0 / c", "t3 = t2 / d", "-> t1, t3"]);
 }
 
-/// All passes, in the order of the pipeline, on what a pendulum's equations look like.
+/// Applies all passes, in the order of the pipeline, to an equation of motion like a pendulum's.
 #[test]
 fn the_whole_pipeline() {
     let g = Graph::new();
     let [m, l, gravity, q, v, tau] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
     let acceleration = (tau - m * gravity * l * q.sin() - v) / (m * l * l);
-    let program = lower(&[acceleration]).through(super::FINISH);
+    let program = lower(&[acceleration]).run_passes(super::FINISH);
     let text = program.text(&name);
     let expected = [
         "t0 = a * c",

@@ -1,26 +1,27 @@
-//! Pairs of terms that several sums have.
+//! Pairs of terms that several sums have in common.
 
 use super::{Key, Terms};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Which sums have which pairs of terms, for pairs that some sums share.
+/// Index of the pairs of terms that several sums have in common.
 #[derive(Default)]
 pub(super) struct Pairs {
+    /// Sums that contain each pair.
     lists: BTreeMap<Pair, Vec<usize>>,
-    /// The same by how many.
+    /// Pairs by the number of sums that contain them.
     shared: BTreeSet<(usize, Reverse<Pair>)>,
 }
 
 impl Pairs {
-    /// Those of some sums of so many values and each other.
-    pub(super) fn of(sums: &[Terms], atoms: usize) -> Pairs {
+    /// Returns the pairs of the sums, given the number of atoms.
+    pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> Pairs {
         let place = |key: Key| match key {
             Key::One => 0,
             Key::Atom(a) => 1 + a,
             Key::Sum(s) => 1 + atoms + s,
         };
-        // What is a term of one sum alone is in no pair that is shared.
+        // A term with a single use is not part of a shared pair.
         let mut uses = vec![0_u32; 1 + atoms + sums.len()];
         for (key, _) in sums.iter().flatten() {
             uses[place(*key)] += 1;
@@ -31,7 +32,7 @@ impl Pairs {
             common.clear();
             common.extend(terms.iter().filter(|(key, _)| uses[place(*key)] > 1));
             for (i, a) in common.iter().enumerate() {
-                all.extend(common[i + 1..].iter().map(|b| (Pair::of(*a, *b), k)));
+                all.extend(common[i + 1..].iter().map(|b| (Pair::new(*a, *b), k)));
             }
         }
         let mut pairs = Pairs::default();
@@ -39,7 +40,7 @@ impl Pairs {
         pairs
     }
 
-    /// Adds pairs that no sum had before, each with a sum that has it.
+    /// Adds pairs that no sum contained before, each with a sum that contains it.
     pub(super) fn add(&mut self, mut pairs: Vec<(Pair, usize)>) {
         pairs.sort_unstable();
         for same in pairs.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
@@ -48,6 +49,7 @@ impl Pairs {
         }
     }
 
+    /// Removes a sum from the list of a pair.
     pub(super) fn remove(&mut self, pair: Pair, sum: usize) {
         let Some(list) = self.lists.get_mut(&pair) else { return };
         self.shared.remove(&(list.len(), Reverse(pair)));
@@ -57,35 +59,40 @@ impl Pairs {
         }
     }
 
-    /// The pair that most sums share, of equals the first in order, with those; none if no two share one.
+    /// Removes and returns the pair that the most sums share, with these sums; among equals the first one.
+    /// Returns `None` if no pair is shared.
     pub(super) fn take_most_shared(&mut self) -> Option<(Pair, Vec<usize>)> {
         let (_, Reverse(pair)) = self.shared.pop_last()?;
         Some((pair, self.lists.remove(&pair)?))
     }
 }
 
-/// The numbers of two keys and the ratio of their coefficients, in one number: its highest and its middle 32
-/// bits, and the lower half.
+/// Numbers of two keys and the ratio of their coefficients, packed into one integer: bits 96 to 127, bits 64
+/// to 95, and the lower half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Pair(u128);
 
 impl Pair {
-    /// Two terms in order, but the number 1 comes second: a sum begins with a value.
-    pub(super) fn of(a: (Key, f64), b: (Key, f64)) -> Pair {
+    /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
+    /// begins with a value.
+    pub(super) fn new(a: (Key, f64), b: (Key, f64)) -> Pair {
         let [x, y] = [a.0.number(), b.0.number()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };
         Pair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
     }
 
+    /// Returns the number of the first key.
     pub(super) fn first(self) -> u32 {
         (self.0 >> 96) as u32
     }
 
+    /// Returns the number of the second key.
     pub(super) fn second(self) -> u32 {
         (self.0 >> 64) as u32
     }
 
+    /// Returns the coefficient of the second term divided by that of the first.
     pub(super) fn ratio(self) -> f64 {
         f64::from_bits(self.0 as u64)
     }

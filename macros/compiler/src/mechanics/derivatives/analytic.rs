@@ -81,7 +81,7 @@ fn entries<'g>(
 ) -> ForceDerivatives<'g> {
     let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = ForceDerivatives { by_q: zero(), by_v: zero() };
-    let paths = Paths::of(joints, most);
+    let paths = Paths::new(joints, most);
     let mut entries = Entries { columns, all: columns.concat(), links: paths.links(), sums, out };
     paths.propagate(&mut entries);
     entries.out

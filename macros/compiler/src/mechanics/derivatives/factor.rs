@@ -24,7 +24,7 @@ pub struct Factor<'g> {
 
 impl<'g> Factor<'g> {
     /// Factorises a mass matrix, symmetric or not.
-    pub fn of(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
+    pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {

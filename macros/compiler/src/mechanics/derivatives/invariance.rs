@@ -23,7 +23,7 @@ type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
 
 /// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance determines.
 #[derive(Default)]
-pub struct Known<'g> {
+pub struct InvariantColumns<'g> {
     /// Columns of `∂v̇/∂q`.
     pub by_q: Columns<'g>,
     /// Columns of `∂v̇/∂v`.
@@ -31,8 +31,8 @@ pub struct Known<'g> {
 }
 
 /// Finds the columns of derivatives that invariance under displacements of a free base determines.
-pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
-    let mut found = Known::default();
+pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> InvariantColumns<'g> {
+    let mut found = InvariantColumns::default();
     let is_base = |base: usize| match model.links[base] {
         Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q: q.0, v: v.0 }),
         _ => None,
@@ -41,9 +41,9 @@ pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     if bases.is_empty() {
         return found;
     }
-    let others = Others::of(model, joints);
+    let others = NoninertialTerms::new(model, joints);
     for base in
-        bases.into_iter().filter(|base| base.carries_all_alike(model, joints) && others.let_fall(base.v))
+        bases.into_iter().filter(|base| base.carries_all_uniformly(model, joints) && others.let_fall(base.v))
     {
         let v = base.v;
         let columns = |first: usize, block: Mat3<'g>| {
@@ -77,7 +77,7 @@ struct Base {
 impl Base {
     /// Returns true if the masses, gravity and joints of all other links are independent of the pose and the
     /// velocity of the base, whether or not they are descendants of the base.
-    fn carries_all_alike<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
+    fn carries_all_uniformly<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
         let mut all = model.gravity.0.to_vec();
         for (k, (link, joint)) in model.links.iter().zip(joints).enumerate() {
             let Inertia { mass, moment, tensor } = link.inertia;
@@ -111,16 +111,16 @@ impl Base {
 }
 
 /// All terms of the equations of motion except the inertia of the links.
-struct Others<'g> {
+struct NoninertialTerms<'g> {
     /// Derivatives of these terms with respect to configuration and velocity.
     forces: ForceDerivatives<'g>,
     /// For each velocity: whether the terms depend on the acceleration of that velocity.
     inertial: Vec<bool>,
 }
 
-impl<'g> Others<'g> {
+impl<'g> NoninertialTerms<'g> {
     /// Derives the equations of motion of the model with massless links.
-    fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Others<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> NoninertialTerms<'g> {
         let mut massless = model.clone();
         for link in &mut massless.links {
             link.inertia = Inertia::zero(model.graph);
@@ -129,10 +129,10 @@ impl<'g> Others<'g> {
         let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
         let depends = |k: usize| {
             let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-            forces.iter().any(|force| !d.of(*force).is_zero())
+            forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(depends).collect();
-        Others { forces: symbolic::derivatives(model, &forces), inertial }
+        NoninertialTerms { forces: symbolic::derivatives(model, &forces), inertial }
     }
 
     /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose
@@ -147,7 +147,7 @@ fn are_free(of: &[Vec<Expr<'_>>], first: usize) -> bool {
     of.iter().all(|row| row[first..first + 3].iter().all(|e| e.is_zero()))
 }
 
-impl<'g> Known<'g> {
+impl<'g> InvariantColumns<'g> {
     /// Replaces the columns of the force derivatives by the known columns of the acceleration derivatives;
     /// the other columns of the acceleration derivatives are computed from the force derivatives.
     pub fn replace(&self, forces: &mut ForceDerivatives<'g>) {

@@ -22,22 +22,23 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix
 }
 
 fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
-    let by = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let column = |mut d: Derivative<'g>| values.iter().map(|e| d.of(*e)).collect();
-    (0..model.parameters.len()).map(|k| column(by(k))).collect()
+    let derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let column = |mut d: Derivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
+    (0..model.parameters.len()).map(|k| column(derivative(k))).collect()
 }
 
 /// Returns the columns of `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`.
 pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>]) -> Matrix<'g> {
-    let factor = Factor::of(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
+    let factor = Factor::new(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let a = factor.solve(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
-    let by = |s| match Quantity::of(s) {
+    let acceleration = |s| match Quantity::of(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };
     let columns = inverse_dynamics(model, joints);
-    let solved =
-        |column: &Vec<Expr<'g>>| factor.solve(replace_all(column, &by).iter().map(|e| -*e).collect());
+    let solved = |column: &Vec<Expr<'g>>| {
+        factor.solve(replace_all(column, &acceleration).iter().map(|e| -*e).collect())
+    };
     columns.iter().map(solved).collect()
 }

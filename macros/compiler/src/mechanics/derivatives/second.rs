@@ -78,7 +78,7 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
     let sums = contracted(model, joints, (&own, &virtual_twists), sums);
     let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = Hessian { qq: zero(), qv: zero(), vv: zero(), qa: zero() };
-    let paths = Paths::of(joints, most);
+    let paths = Paths::new(joints, most);
     let mut entries =
         Entries { columns: &columns, all: columns.concat(), links: paths.links(), sums: &sums, out };
     paths.propagate(&mut entries);
@@ -156,11 +156,12 @@ pub struct ConstraintHessian<'g> {
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
-    let given = |first: usize, n: usize| -> Vec<Expr<'g>> {
+    let arguments = |first: usize, n: usize| -> Vec<Expr<'g>> {
         (first..first + n).map(|k| Quantity::Given(k).expr(model.graph)).collect()
     };
     let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w, z, y) = (given(0, nc), given(nc, nv), given(nc + nv, nc), given(2 * nc + nv, nc));
+    let (lambda, w, z, y) =
+        (arguments(0, nc), arguments(nc, nv), arguments(nc + nv, nc), arguments(2 * nc + nv, nc));
     let (rows, a) = (constraints::jacobian(model), accelerations(model));
     let along: Vec<Expr<'g>> = rows.iter().map(|row| dot(row, &w)).collect();
     let biases = constraints::biases(model);
@@ -216,7 +217,7 @@ struct Sums<'g> {
 
 impl<'g> Sums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
-    fn turned(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    fn moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
         self.change(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
     }
 
@@ -267,15 +268,15 @@ fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g
     let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
     let lever = (h.dot(a)) * 2.0;
     // Row i of J [b]× is (column i of J) × b.
-    let turned = |i: usize| Vec3([j.at(i, 0), j.at(i, 1), j.at(i, 2)]).cross(b);
-    let rows = [turned(0), turned(1), turned(2)];
-    let at = |i: usize, k: usize| rows[i][k] + rows[k][i] + h[i] * a[k] + a[i] * h[k];
+    let cross_row = |i: usize| Vec3([j.entry(i, 0), j.entry(i, 1), j.entry(i, 2)]).cross(b);
+    let rows = [cross_row(0), cross_row(1), cross_row(2)];
+    let tensor_entry = |i: usize, k: usize| rows[i][k] + rows[k][i] + h[i] * a[k] + a[i] * h[k];
     Inertia {
         mass: body.mass.zero(),
         moment: -p,
         tensor: Sym3 {
-            diagonal: [at(0, 0) - lever, at(1, 1) - lever, at(2, 2) - lever],
-            off: [at(0, 1), at(0, 2), at(1, 2)],
+            diagonal: [tensor_entry(0, 0) - lever, tensor_entry(1, 1) - lever, tensor_entry(2, 2) - lever],
+            off: [tensor_entry(0, 1), tensor_entry(0, 2), tensor_entry(1, 2)],
         },
     }
 }
@@ -299,13 +300,13 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
         for other in &self.columns[self.links[dof]] {
             let [qq, _, vq, _, _, aq] = changes.meet(other);
             // Half of the value for each of the two orders.
-            out.put(|h| &mut h.qq, &own, other, qq * 0.5);
-            out.put(|h| &mut h.qq, other, &own, qq * 0.5);
-            out.put(|h| &mut h.qv, other, &own, vq);
-            out.put(|h| &mut h.qa, other, &own, aq);
+            out.add_entry(|h| &mut h.qq, &own, other, qq * 0.5);
+            out.add_entry(|h| &mut h.qq, other, &own, qq * 0.5);
+            out.add_entry(|h| &mut h.qv, other, &own, vq);
+            out.add_entry(|h| &mut h.qa, other, &own, aq);
             let vv = sums.change(&own.column.subspace).dot(other.column.subspace.angular)
                 + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
-            out.put(|h| &mut h.vv, &own, other, vv);
+            out.add_entry(|h| &mut h.vv, &own, other, vv);
         }
         changes
     }
@@ -319,17 +320,17 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
                     let out = &mut self.out;
                     match part {
                         0 => {
-                            out.put(|h| &mut h.qq, own, other, entry);
-                            out.put(|h| &mut h.qq, other, own, entry);
+                            out.add_entry(|h| &mut h.qq, own, other, entry);
+                            out.add_entry(|h| &mut h.qq, other, own, entry);
                         }
-                        1 => out.put(|h| &mut h.qv, own, other, entry),
-                        2 => out.put(|h| &mut h.qv, other, own, entry),
+                        1 => out.add_entry(|h| &mut h.qv, own, other, entry),
+                        2 => out.add_entry(|h| &mut h.qv, other, own, entry),
                         3 => {
-                            out.put(|h| &mut h.vv, own, other, entry);
-                            out.put(|h| &mut h.vv, other, own, entry);
+                            out.add_entry(|h| &mut h.vv, own, other, entry);
+                            out.add_entry(|h| &mut h.vv, other, own, entry);
                         }
-                        4 => out.put(|h| &mut h.qa, own, other, entry),
-                        _ => out.put(|h| &mut h.qa, other, own, entry),
+                        4 => out.add_entry(|h| &mut h.qa, own, other, entry),
+                        _ => out.add_entry(|h| &mut h.qa, other, own, entry),
                     }
                 }
             }
@@ -338,7 +339,7 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
 }
 
 impl<'g> Hessian<'g> {
-    fn put(
+    fn add_entry(
         &mut self,
         block: for<'h> fn(&'h mut Hessian<'g>) -> &'h mut Matrix<'g>,
         row: &Directions<'g>,
@@ -393,10 +394,10 @@ impl<'g> Changes<'g> {
                 .plus(&analytic::cross_force(s, &plain.wrench)),
             factored: inertia(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
             moment_by_q: plain.transposed_map(&own.factor)
-                + sums.turned(&column.first)
+                + sums.moment(&column.first)
                 + s.angular.cross(sums.moment),
             by_v: inertia(&column.rate).plus(&plain.map(s)),
-            moment_by_v: sums.turned(s),
+            moment_by_v: sums.moment(s),
             momentum: inertia(s),
         }
     }

@@ -76,7 +76,7 @@ pub fn subtrees<'g>(
 pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
     let second = second_moments(&body.tensor);
     let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
-    let j = Mat3::from_fn(|i, k| second.at(i, k) * multiple);
+    let j = Mat3::from_fn(|i, k| second.entry(i, k) * multiple);
     let zero = Vec3::zero(body.mass.graph());
     Subtree {
         inertia: *body,

@@ -36,11 +36,12 @@ pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let turning = rotation_rates(model.space());
     let direction = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
-        let seed = |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.of(*rate));
+        let seed =
+            |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.differentiate(*rate));
         let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
-        let known = turning.iter().map(|(entry, rate)| (*entry, by.of(*rate))).collect::<Vec<_>>();
-        Derivative::along(own.into_iter().chain(given).collect(), model.graph).knowing(known)
+        let known = turning.iter().map(|(entry, rate)| (*entry, by.differentiate(*rate))).collect::<Vec<_>>();
+        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph).knowing(known)
     };
     columns(e, (0..model.nv()).map(direction))
 }
@@ -49,28 +50,28 @@ fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let direction = |k: usize| {
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
         let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];
-        Derivative::along(own.into_iter().chain(given).collect(), model.graph)
+        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
     };
     columns(e, (0..model.nv()).map(direction))
 }
 
 /// Returns the derivatives of expressions with respect to the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let by = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
-    columns(e, (0..model.nu()).map(by))
+    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
+    columns(e, (0..model.nu()).map(derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let by = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-    columns(e, (0..model.nv()).map(by))
+    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+    columns(e, (0..model.nv()).map(derivative))
 }
 
 fn columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {
     let mut rows = vec![Vec::new(); e.len()];
     for mut d in directions {
         for (row, e) in rows.iter_mut().zip(e) {
-            row.push(if e.value().is_some() { e.zero() } else { d.of(*e) });
+            row.push(if e.value().is_some() { e.zero() } else { d.differentiate(*e) });
         }
     }
     rows

@@ -27,7 +27,7 @@ struct Limb {
     /// Velocities of the limb, from the leaves to the root.
     velocities: Vec<usize>,
     /// Number of identical limbs in the SIMD lanes of the expressions.
-    alike: usize,
+    identical: usize,
 }
 
 impl Trunk {
@@ -56,7 +56,7 @@ impl Trunk {
 
     /// Returns the partition with the given trunk, or `None` if there is only one limb or the mass matrix
     /// couples different limbs.
-    pub fn of(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
+    pub fn new(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
         let order = elimination_order(joints, mass.len());
         let mut limbs: Vec<Limb> = Vec::new();
         let mut limb_of_joint: Vec<Option<usize>> = Vec::with_capacity(joints.len());
@@ -66,7 +66,7 @@ impl Trunk {
             let limb = match joint.dofs.iter().all(|dof| is_trunk[dof.index]) {
                 true => carried,
                 false => Some(carried.unwrap_or_else(|| {
-                    limbs.push(Limb { velocities: Vec::new(), alike: joint.limbs });
+                    limbs.push(Limb { velocities: Vec::new(), identical: joint.limbs });
                     limbs.len() - 1
                 })),
             };
@@ -85,7 +85,7 @@ impl Trunk {
         };
         let n = mass.len();
         let velocities = order.into_iter().filter(|k| is_trunk[*k]).collect();
-        let several = limbs.iter().map(|limb| limb.alike).sum::<usize>() > 1;
+        let several = limbs.iter().map(|limb| limb.identical).sum::<usize>() > 1;
         (several && (0..n).all(|i| (0..i).all(|j| is_apart(i, j)))).then_some(Trunk { velocities, limbs })
     }
 
@@ -108,7 +108,7 @@ impl Trunk {
 impl Limb {
     /// Returns the sum over all identical limbs in the SIMD lanes.
     fn lane_sum<'g>(&self, e: Expr<'g>) -> Expr<'g> {
-        if self.alike == 1 { e } else { e.lane_sum(self.alike) }
+        if self.identical == 1 { e } else { e.lane_sum(self.identical) }
     }
 }
 
@@ -136,7 +136,7 @@ pub struct Inverse<'a, 'g> {
 
 impl<'a, 'g> Inverse<'a, 'g> {
     /// Computes the blocks.
-    pub fn of(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
+    pub fn new(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
             return Inverse { trunk, parts: Vec::new() };

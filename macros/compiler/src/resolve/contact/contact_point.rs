@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
         let derivatives = |c: &Coordinate| {
             let mut d =
                 Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
-            position.map(|e| d.of(e))
+            position.map(|e| d.differentiate(e))
         };
         let tangents = [derivatives(&first), derivatives(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {

@@ -51,7 +51,7 @@ impl<'g> Builder<'_, 'g> {
                 .help("write it by `u` and `w`, the place along the body's x and y, as in `0.1 * sin(3 * u)`; where it is level, a plane will do");
             return None;
         }
-        let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).of(e);
+        let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);
         let slopes = [derivative(height_of, 0), derivative(height_of, 1)];
         let curvatures = [derivative(slopes[0], 0), derivative(slopes[0], 1), derivative(slopes[1], 1)];
         Some(Terrain { height: height_of, slopes, curvatures })

@@ -97,7 +97,7 @@ impl<'g> Builder<'_, 'g> {
         if let Some(None) = soft {
             return;
         }
-        let place = contact.first.place.to(&contact.second.place);
+        let place = contact.first.place.join(&contact.second.place);
         let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
         let mut points: Vec<CandidatePoint<'g>> = Vec::new();
         for first in &firsts {

@@ -128,7 +128,7 @@ impl<'g> Builder<'_, 'g> {
             let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
             energy += at_zero * (1.0 / factorial) * power;
             power = power * x;
-            derivative = d.of(derivative);
+            derivative = d.differentiate(derivative);
             // A law with corner points is a polynomial between them.
             if derivative.is_zero() && !has_corners(force, symbol) {
                 return Some(energy);

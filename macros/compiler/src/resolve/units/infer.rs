@@ -177,7 +177,7 @@ impl<'a> Inference<'a> {
 
     /// Whether two dimensions are known to be different.
     pub fn are_different(&mut self, a: &Dimension, b: &Dimension) -> bool {
-        let quotient = a.over(b).and_then(|quotient| self.system.resolve(&quotient));
+        let quotient = a.quotient(b).and_then(|quotient| self.system.resolve(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
 

@@ -51,7 +51,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
-        let Some(dimension) = Dimension::variable(*parameter).over(&dimension::TIME) else { continue };
+        let Some(dimension) = Dimension::variable(*parameter).quotient(&dimension::TIME) else { continue };
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
     }
     let sides = std::mem::take(&mut places.sides);
@@ -280,7 +280,7 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
         "any" => "any".to_string(),
         "rad" => "rad/s".to_string(),
         _ => {
-            let rate = dimension.over(&dimension::TIME).and_then(|rate| inference.system.resolve(&rate));
+            let rate = dimension.quotient(&dimension::TIME).and_then(|rate| inference.system.resolve(&rate));
             rate.map_or("any".to_string(), |rate| si::unit(&rate))
         }
     };
@@ -309,7 +309,7 @@ fn constraint_units(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inf
         Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
     };
     let known = dimension.filter(|d| d.is_known() && !inference.limit_exceeded);
-    let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.over(&d)?))) else {
+    let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.quotient(&d)?))) else {
         return ["any".to_string(), "any".to_string()];
     };
     let unit = match (dimension == angle, configurations) {

@@ -109,9 +109,9 @@ pub fn collect<'a>(
         places.add_all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
-            let dimension = power.and_then(|power| FORCE.over(&LENGTH.power(power)?));
+            let dimension = power.and_then(|power| FORCE.quotient(&LENGTH.power(power)?));
             places.add_if_known([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
-            places.add_if_known(&soft.dissipation, TIME.over(&LENGTH), "s/m");
+            places.add_if_known(&soft.dissipation, TIME.quotient(&LENGTH), "s/m");
             places.add_all(&soft.speed, &SPEED, "m/s");
         }
     }
@@ -247,7 +247,7 @@ impl<'a> DimensionedExpressions<'a> {
         // A force at a point does work on a length, a torque on an angle.
         let force = match on_point && action.kind.row().torque {
             true => Some(ENERGY),
-            false => ENERGY.over(&work.coordinate),
+            false => ENERGY.quotient(&work.coordinate),
         };
         if let Some(force) = force {
             self.add_element(action, &work, &force, inference);
@@ -266,8 +266,8 @@ impl<'a> DimensionedExpressions<'a> {
             _ => [""; 3],
         };
         self.add_all(limit.from.iter().chain(&limit.to), &q, length);
-        self.add_if_known(&limit.max_speed, q.over(&TIME), speed);
-        self.add_if_known(&limit.max_effort, ENERGY.over(&q), effort);
+        self.add_if_known(&limit.max_speed, q.quotient(&TIME), speed);
+        self.add_if_known(&limit.max_effort, ENERGY.quotient(&q), effort);
         self.add_all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
@@ -291,7 +291,7 @@ impl<'a> DimensionedExpressions<'a> {
     ) {
         let [n, stiffness, damping, inertance] = work.units;
         let q = &work.coordinate;
-        let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
+        let per = |times: i64| force.quotient(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
         let row = action.kind.row();
         for (key, e) in &action.arguments {
             let (dimension, unit) = match &key.row().quantity {
@@ -301,7 +301,7 @@ impl<'a> DimensionedExpressions<'a> {
                 ForceQuantity::Force => (Some(force.clone()), n),
                 ForceQuantity::Energy => (Some(ENERGY), "J"),
                 ForceQuantity::Coordinate => (Some(q.clone()), if q.is_plain() { "rad" } else { "" }),
-                ForceQuantity::Speed => (q.over(&TIME), ""),
+                ForceQuantity::Speed => (q.quotient(&TIME), ""),
                 ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
                 ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
                 // The direction belongs to an input, whose unit is set below.
@@ -314,7 +314,7 @@ impl<'a> DimensionedExpressions<'a> {
                     vec![("stretch", q.clone()), ("length", q.clone())]
                 }
                 (Locals::Speed, Key::Force | Key::Energy) => {
-                    q.over(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
+                    q.quotient(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
                 }
                 _ => Vec::new(),
             };

@@ -137,7 +137,7 @@ fn parameter_error(
         (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
     // The expected dimension requires that of the parameter to change by this power of the quotient.
     let power = mismatch.found.exponent(v).plus(mismatch.expected.exponent(v).negated())?;
-    let needed = is.times_power(&expected.over(&found)?, power.inverse()?)?;
+    let needed = is.times_power(&expected.quotient(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
     if !is.is_known() || !needed.is_known() {
         return None;
@@ -211,7 +211,7 @@ fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> 
     let reason = mismatch.origin.reason;
     if !found.is_known() || !expected.is_known() {
         let factor = found
-            .over(expected)
+            .quotient(expected)
             .filter(Dimension::is_known)
             .map_or(String::new(), |d| format!(": they differ by {}", super::si::unit(&d)));
         return match reason {

@@ -147,7 +147,7 @@ pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
                 (false, _) if text.contains('/') => write!(text, "·({factor})"),
                 (false, _) => write!(text, "·{factor}"),
             };
-            let dimension = if divide { a.over(&b)? } else { a.times(&b)? };
+            let dimension = if divide { a.quotient(&b)? } else { a.times(&b)? };
             Some((dimension, text))
         }
         _ => {

@@ -55,7 +55,7 @@ impl System {
 
     /// Equates two dimensions.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
-        let quotient = a.over(b).and_then(|quotient| self.resolve(&quotient));
+        let quotient = a.quotient(b).and_then(|quotient| self.resolve(&quotient));
         let Some(quotient) = quotient else { return Outcome::LimitExceeded };
         match quotient.unknown.last() {
             None if quotient.is_plain() => Outcome::Holds(Vec::new()),

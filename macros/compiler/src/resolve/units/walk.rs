@@ -333,7 +333,7 @@ impl<'a> Inference<'a> {
         match (base, exponent) {
             (Value::Number(value), Value::Number(n)) => Value::Number(value.powf(n)),
             (Value::Number(_), _) => Value::quantity(PLAIN),
-            (base, Value::Number(n)) => base.power(Ratio::of(n)),
+            (base, Value::Number(n)) => base.power(Ratio::from_value(n)),
             (Value::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::variable(self.system.variable());
                 self.plain_defaults.push((dimension, Some(power.clone())));
@@ -367,7 +367,7 @@ impl<'a> Inference<'a> {
 /// Returns a quantity divided by another dimension; other values are unchanged.
 fn quotient(value: Value, divisor: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.over(divisor) {
+        Value::Quantity { dimension, anchor } => match dimension.quotient(divisor) {
             Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },

@@ -153,12 +153,12 @@ impl Case<'_, '_> {
             return;
         }
         let (output, function) = (self.output, self.function(base).cloned());
-        let of = |values: &Values| function.as_ref().map_or_else(Vec::new, |f| values.run(output, f));
-        let rows = of(&self.values).len();
+        let outputs = |values: &Values| function.as_ref().map_or_else(Vec::new, |f| values.run(output, f));
+        let rows = outputs(&self.values).len();
         let mut rest = &found[..];
         for by in by {
             let (columns, after) = rest.split_at(self.values.size(*by) * rows);
-            self.compare_columns(what, columns, *by, &of);
+            self.compare_columns(what, columns, *by, &outputs);
             rest = after;
         }
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
@@ -171,25 +171,28 @@ impl Case<'_, '_> {
         let (columns, nv) = (self.here("__rate_matrix"), self.values.v.len());
         move |values, by, k, h| match by {
             By::Q => {
-                let along = |j: usize| match columns.get(k * nv + j) {
+                let displacement = |j: usize| match columns.get(k * nv + j) {
                     Some(entry) => h * entry,
                     None => f64::from(u8::from(j == k)) * h,
                 };
-                values.displaced(&charts, &(0..nv).map(along).collect::<Vec<_>>())
+                values.displaced(&charts, &(0..nv).map(displacement).collect::<Vec<_>>())
             }
             _ => values.changed(by, k, h),
         }
     }
 
     /// Returns a function along the motion, as a function of time.
-    pub(super) fn along<F: Fn(&Values) -> Vec<f64>>(&self, of: F) -> impl Fn(f64) -> Vec<f64> + use<F> {
+    pub(super) fn along_motion<F: Fn(&Values) -> Vec<f64>>(
+        &self,
+        of: F,
+    ) -> impl Fn(f64) -> Vec<f64> + use<F> {
         let (values, charts) = (self.values.clone(), self.model.charts.clone());
         // With declared generalized speeds, joint velocities differ from `v`.
         let joints = match self.function("rates_of_speeds") {
             Some(rates) => values.run(self.output, rates),
             None => values.v.clone(),
         };
-        move |h| of(&values.later(&charts, &joints, h))
+        move |h| of(&values.values_after(&charts, &joints, h))
     }
 
     /// Compares every function with its variants with lanes and with prepared values.
@@ -243,14 +246,14 @@ impl Case<'_, '_> {
         if !depends_on_accelerations {
             self.compare_columns("mass matrix", &mass, By::A, &|x| x.run(output, &inverse));
             let rate = self.here("momentum_rate");
-            let along = self.along(|x| x.run(output, &momentum));
+            let along = self.along_motion(|x| x.run(output, &momentum));
             self.compare("momenta", &sum(&rate, &forces), &along);
         }
         self.compare_columns("momenta", &momenta, By::V, &|x| x.run(output, &kinetic));
         if !self.model.time && !depends_on_accelerations {
             let power = dot(&forces, &self.values.v) + self.here("disturbance_power")[0]
                 - self.here("dissipated_power")[0];
-            let along = self.along(|x| sum(&x.run(output, &kinetic), &x.run(output, &potential)));
+            let along = self.along_motion(|x| sum(&x.run(output, &kinetic), &x.run(output, &potential)));
             self.compare("energy", &[power], &along);
             let effort = dot(&self.here("generalized_forces"), &self.values.v);
             let bound = SAME * (1.0 + effort.abs());
@@ -272,10 +275,14 @@ impl Case<'_, '_> {
         for function in outputs {
             let depends_on_velocities = function.arguments.contains(&catalogue::Argument::V);
             let by = if depends_on_velocities { By::V } else { By::Q };
-            let named = |suffix: &str| format!("{}{suffix}", function.name);
-            self.check_columns(&named(catalogue::JACOBIAN), &function.name, &[by]);
-            self.check_columns(&named(catalogue::DERIVATIVES), &function.name, &[By::Q, By::V, By::A, By::U]);
-            self.check_columns(&named(catalogue::BY_PARAMETERS), &function.name, &[By::Parameters]);
+            let full_name = |suffix: &str| format!("{}{suffix}", function.name);
+            self.check_columns(&full_name(catalogue::JACOBIAN), &function.name, &[by]);
+            self.check_columns(
+                &full_name(catalogue::DERIVATIVES),
+                &function.name,
+                &[By::Q, By::V, By::A, By::U],
+            );
+            self.check_columns(&full_name(catalogue::BY_PARAMETERS), &function.name, &[By::Parameters]);
         }
     }
 
@@ -287,13 +294,13 @@ impl Case<'_, '_> {
         let inputs = self.here("__input_derivatives");
         if let Some(forces) = self.function("generalized_forces").cloned().filter(|_| !inputs.is_empty()) {
             let nv = self.values.v.len();
-            let of = |x: &Values| x.run(output, &forces);
+            let forces_of = |x: &Values| x.run(output, &forces);
             let bound = SAME * (1.0 + size(&inputs));
-            self.close("forces of inputs", &inputs[..nv], &of(&self.values), bound);
+            self.close("forces of inputs", &inputs[..nv], &forces_of(&self.values), bound);
             let mut rest = &inputs[nv..];
             for by in [By::Q, By::V, By::U] {
                 let (columns, after) = rest.split_at(self.values.size(by) * nv);
-                self.compare_columns("forces of inputs", columns, by, &of);
+                self.compare_columns("forces of inputs", columns, by, &forces_of);
                 rest = after;
             }
         }
@@ -431,7 +438,7 @@ impl Case<'_, '_> {
             if !matrix.is_empty() {
                 self.compare_columns("momentum", &matrix, By::V, &|x| x.run(output, &momentum));
                 let change = sum(&product(&matrix, &a), &self.here("centroidal_momentum_bias"));
-                let along = self.along(|x| x.run(output, &momentum));
+                let along = self.along_motion(|x| x.run(output, &momentum));
                 self.compare("momentum", &change, &along);
             }
         }
@@ -460,7 +467,7 @@ impl Case<'_, '_> {
             let a = self.here("forward_dynamics");
             let before = std::mem::replace(&mut self.values.a, a);
             let kept = self.here("conserved");
-            let along = self.along(|x| x.run(output, &conserved));
+            let along = self.along_motion(|x| x.run(output, &conserved));
             self.compare("what is conserved", &vec![0.0; kept.len()], &along);
             self.values.a = before;
         }

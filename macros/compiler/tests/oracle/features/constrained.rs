@@ -14,12 +14,12 @@ impl Case<'_, '_> {
         };
         let output = self.output;
         self.check_columns("constraint_jacobian", "constraint_rates", &[By::V]);
-        let along = self.along(|x| x.run(output, &residuals));
+        let along = self.along_motion(|x| x.run(output, &residuals));
         let holonomic = self.here("constraint_residuals").len();
         self.compare("residuals", &self.here("constraint_rates")[..holonomic], &along);
         let jacobian = self.here("constraint_jacobian");
         let change = sum(&product(&jacobian, &self.values.a), &self.here("constraint_bias"));
-        let along = self.along(|x| x.run(output, &rates));
+        let along = self.along_motion(|x| x.run(output, &rates));
         self.compare("rates of constraints", &change, &along);
         self.check_constrained_dynamics(&jacobian);
     }
@@ -64,10 +64,10 @@ impl Case<'_, '_> {
         let given = self.values.given.clone();
         let [lambda, w, z, y] = [(0, nc), (nc, nv), (nc + nv, nc), (2 * nc + nv, nc)]
             .map(|(first, count)| given[first..first + count].to_vec());
-        let along = |x: &Values| product(&x.run(output, &jacobian), &w);
+        let product_with_w = |x: &Values| product(&x.run(output, &jacobian), &w);
         let sum_of_all = |x: &Values| {
             let change = sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
-            dot(&z, &change) + dot(&y, &x.run(output, &rates)) - dot(&lambda, &along(x))
+            dot(&z, &change) + dot(&y, &x.run(output, &rates)) - dot(&lambda, &product_with_w(x))
         };
         use By::{A, Q, V};
         let (state, by_multipliers) = found.split_at(4 * nv * nv);
@@ -75,7 +75,7 @@ impl Case<'_, '_> {
         self.compare_blocks(what, state, &[(Q, Q), (Q, V), (V, V), (Q, A)], &sum_of_all);
         let columns: Vec<f64> =
             (0..nv).flat_map(|k| (0..nc).map(move |i| -by_multipliers[i * nv + k])).collect();
-        self.compare_columns(what, &columns, Q, &along);
+        self.compare_columns(what, &columns, Q, &product_with_w);
     }
 
     pub(super) fn check_contacts(&mut self) {
@@ -97,7 +97,7 @@ impl Case<'_, '_> {
         if self.name.contains(source::RIMS) {
             return;
         }
-        let along = self.along(move |x| {
+        let along = self.along_motion(move |x| {
             let gaps = x.run(output, &gaps);
             of.iter().map(|k| gaps[*k]).collect()
         });

@@ -157,10 +157,10 @@ pub fn source(seed: u64) -> (String, String) {
         has_constraints: false,
         has_parameters: false,
     };
-    for k in 0..1 + source.random.below(4) {
+    for k in 0..1 + source.random.index_below(4) {
         source.add_body(k);
     }
-    for k in 0..source.random.below(7) {
+    for k in 0..source.random.index_below(7) {
         source.add_element(k);
     }
     let mut arguments = "gravity = -9.81 * y".to_string();
@@ -180,11 +180,11 @@ pub fn source(seed: u64) -> (String, String) {
 
 impl Source {
     fn chance(&mut self, one_in: usize) -> bool {
-        self.random.below(one_in) == 0
+        self.random.index_below(one_in) == 0
     }
 
     fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.random.below(list.len())]
+        list[self.random.index_below(list.len())]
     }
 
     fn number(&mut self) -> String {
@@ -201,7 +201,7 @@ impl Source {
         let parent = match self.bodies.len() {
             0 => "ground".to_string(),
             _ if self.chance(3) => "ground".to_string(),
-            n => self.bodies[self.random.below(n)].clone(),
+            n => self.bodies[self.random.index_below(n)].clone(),
         };
         let is_particle = self.chance(5);
         if is_particle {
@@ -238,10 +238,10 @@ impl Source {
     fn point(&mut self) -> String {
         let particles = self.particles.len();
         if !self.points.is_empty() && self.chance(5) {
-            let n = self.random.below(self.points.len());
+            let n = self.random.index_below(self.points.len());
             return self.points[n].clone();
         }
-        let n = self.random.below(particles + self.bodies.len() + 1);
+        let n = self.random.index_below(particles + self.bodies.len() + 1);
         if n < particles {
             return self.particles[n].clone();
         }
@@ -252,14 +252,14 @@ impl Source {
     /// Returns a random scalar: a function of the state, time or an input, or a number.
     fn scalar(&mut self) -> String {
         let coordinate = (!self.coordinates.is_empty()).then(|| {
-            let n = self.random.below(self.coordinates.len());
+            let n = self.random.index_below(self.coordinates.len());
             self.coordinates[n].clone()
         });
         if !self.states.is_empty() && self.chance(5) {
-            let n = self.random.below(self.states.len());
+            let n = self.random.index_below(self.states.len());
             return self.states[n].clone();
         }
-        match (self.random.below(12), coordinate) {
+        match (self.random.index_below(12), coordinate) {
             (0, _) => "t".to_string(),
             (1, _) => self.number(),
             (2, _) => format!("look({})", self.number()),
@@ -278,8 +278,9 @@ impl Source {
         let same = self.scalar();
         let mut text = String::new();
         for (k, c) in form.char_indices() {
-            let alone = |c: Option<char>| !c.is_some_and(char::is_alphanumeric);
-            let is_letter = alone(form[..k].chars().last()) && alone(form[k + 1..].chars().next());
+            let is_boundary = |c: Option<char>| !c.is_some_and(char::is_alphanumeric);
+            let is_letter =
+                is_boundary(form[..k].chars().last()) && is_boundary(form[k + 1..].chars().next());
             match c {
                 'S' if is_letter => text += &self.scalar(),
                 'B' if is_letter => text += &same,
@@ -297,13 +298,13 @@ impl Source {
     }
 
     fn heavy(&mut self) -> String {
-        let n = self.random.below(self.bodies.len());
+        let n = self.random.index_below(self.bodies.len());
         self.bodies.get(n).cloned().unwrap_or_else(|| "ground".to_string())
     }
 
     /// Returns a random body, a frame or the ground.
     fn axes(&mut self) -> String {
-        let n = self.random.below(self.bodies.len() + self.frames.len() + 1);
+        let n = self.random.index_below(self.bodies.len() + self.frames.len() + 1);
         let named = self.bodies.iter().chain(&self.frames).nth(n);
         named.cloned().unwrap_or_else(|| "ground".to_string())
     }
@@ -316,11 +317,11 @@ impl Source {
     fn add_element(&mut self, k: usize) {
         let any = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
             let n = list(source).len();
-            (n > 0).then(|| source.random.below(n)).map(|n| list(source)[n].clone())
+            (n > 0).then(|| source.random.index_below(n)).map(|n| list(source)[n].clone())
         };
         let coordinate = any(self, |source| &source.coordinates);
         let body = any(self, |source| &source.bodies);
-        let (kind, law) = (self.random.below(32), self.one_of(&LAWS));
+        let (kind, law) = (self.random.index_below(32), self.one_of(&LAWS));
         let field = match (kind, coordinate, body) {
             (0, Some(on), _) => format!("#[acts(on = {on}, stiffness = 2)] element{k}: Spring"),
             (1, Some(on), _) => {

@@ -80,26 +80,26 @@ impl Values {
         program.run(&|s| match Quantity::of(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            quantity => self.at(quantity, &[]),
+            quantity => self.value(quantity, &[]),
         })
     }
 
     /// Returns the results of a function of the prepared mechanism.
     pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
-        let numbers = prepared.numbers.run(&|s| self.at(Quantity::of(s), &[]));
-        let at = |name: &str| {
+        let numbers = prepared.numbers.run(&|s| self.value(Quantity::of(s), &[]));
+        let outputs = |name: &str| {
             let of = prepared.functions.iter().find(|f| f.name == name);
-            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.at(Quantity::of(s), &numbers)))
+            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.value(Quantity::of(s), &numbers)))
         };
-        let called = Called::ALL.map(|called| at(called.function()));
+        let called = Called::ALL.map(|called| outputs(called.function()));
         function.program.run(&|s| match Quantity::of(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            quantity => self.at(quantity, &numbers),
+            quantity => self.value(quantity, &numbers),
         })
     }
 
-    fn at(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
+    fn value(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
         let get = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
         match quantity {
             Quantity::Time => self.t,
@@ -125,7 +125,7 @@ impl Values {
 
     /// Returns the results of a program without calls.
     fn run_alone(&self, program: &Program) -> Vec<f64> {
-        program.run(&|s| self.at(Quantity::of(s), &[]))
+        program.run(&|s| self.value(Quantity::of(s), &[]))
     }
 
     /// Returns the values with one entry changed, except configuration coordinates.
@@ -150,7 +150,7 @@ impl Values {
 
     /// Returns the values after a short time `h`: moved with the joint velocities, with constant
     /// accelerations.
-    pub fn later(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
+    pub fn values_after(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
         let step: Vec<f64> = joints.iter().map(|v| h * v).collect();
         let mut values = self.displaced(charts, &step);
         values.t += h;
@@ -215,8 +215,8 @@ fn turn(quaternion: &mut [f64], step: &[f64]) {
 pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [one, two, three] = [h, 2.0 * h, 3.0 * h].map(|h| (of(h), of(-h)));
     let part = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
-    let at = |k: usize| (45.0 * part(&one, k) - 9.0 * part(&two, k) + part(&three, k)) / (60.0 * h);
-    (0..one.0.len()).map(at).collect()
+    let derivative = |k: usize| (45.0 * part(&one, k) - 9.0 * part(&two, k) + part(&three, k)) / (60.0 * h);
+    (0..one.0.len()).map(derivative).collect()
 }
 
 /// Returns the derivative at zero of a function, with an error estimate. Halving the step changes the result

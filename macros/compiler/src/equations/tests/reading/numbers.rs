@@ -62,14 +62,14 @@ pub struct Numbers<'g> {
 }
 
 impl<'g> Numbers<'g> {
-    pub fn of(model: &Model<'g>) -> Numbers<'g> {
+    pub fn new(model: &Model<'g>) -> Numbers<'g> {
         let joints = crate::kinematics::joints(model);
         let lagrange = lagrange::derive(model, &joints);
         let inputs = forces::generalized_forces(model, &joints);
         let mut all = lagrange.mass_matrix.concat();
         all.extend(inputs.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias));
         let quaternion = model.nq() > model.nv();
-        Numbers { nv: model.nv(), forces: crate::expr::eval::Tape::of(&all), quaternion }
+        Numbers { nv: model.nv(), forces: crate::expr::eval::Tape::new(&all), quaternion }
     }
 
     pub fn accelerations(&self, q: &[f64], v: &[f64], u: &[f64], parameters: &[f64]) -> Vec<f64> {
@@ -99,7 +99,7 @@ impl<'g> Numbers<'g> {
     /// at rest is the identity.
     pub fn linear(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let n = self.nv;
-        let at = |k: usize, h: f64| {
+        let accelerations = |k: usize, h: f64| {
             let (mut q, mut v) = (q.to_vec(), vec![0.0; n]);
             match (k < n, self.quaternion && k >= 3) {
                 (true, true) => (q[k], q[6]) = ((h / 2.0).sin(), (h / 2.0).cos()),
@@ -110,7 +110,10 @@ impl<'g> Numbers<'g> {
         };
         let h = 1e-3;
         let slope = |k: usize| -> Vec<f64> {
-            let ((a, b), (c, d)) = ((at(k, h), at(k, -h)), (at(k, 2.0 * h), at(k, -2.0 * h)));
+            let ((a, b), (c, d)) = (
+                (accelerations(k, h), accelerations(k, -h)),
+                (accelerations(k, 2.0 * h), accelerations(k, -2.0 * h)),
+            );
             (0..n).map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * h)).collect()
         };
         let columns: Vec<Vec<f64>> = (0..2 * n).map(slope).collect();

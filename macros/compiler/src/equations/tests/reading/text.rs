@@ -97,7 +97,7 @@ pub struct Text {
 }
 
 impl Text {
-    pub fn of(text: &str) -> Text {
+    pub fn parse(text: &str) -> Text {
         // Continuation lines are indented.
         let mut lines: Vec<String> = Vec::new();
         for line in text.lines() {
@@ -166,13 +166,14 @@ impl Text {
 
     /// Returns the coefficients of the characteristic polynomial in ascending powers, from its values.
     pub fn coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
-        let at = |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
+        let polynomial_value =
+            |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
         let degree =
             ["⁶", "⁵", "⁴", "³", "²"].iter().position(|p| self.polynomial.contains(&format!("s{p}")));
         let n = degree.map_or(1, |k| 6 - k);
         // Newton interpolation at equidistant points, expanded to powers.
         let points: Vec<f64> = (0..=n).map(|k| k as f64 - n as f64 / 2.0).collect();
-        let mut table: Vec<f64> = points.iter().map(|s| at(*s)).collect();
+        let mut table: Vec<f64> = points.iter().map(|s| polynomial_value(*s)).collect();
         for order in 1..=n {
             for k in (order..=n).rev() {
                 table[k] = (table[k] - table[k - 1]) / (points[k] - points[k - order]);

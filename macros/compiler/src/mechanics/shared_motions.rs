@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// Partial velocities of links that are placed by expressions, for links that share at least one with another
 /// link. A shared partial velocity is stored once. Empty if no two links share one.
-pub struct Alike<'g> {
+pub struct SharedMotions<'g> {
     motions: Vec<SharedMotion<'g>>,
     /// True for each link that shares a partial velocity with another link.
     concerned: Vec<bool>,
@@ -27,22 +27,24 @@ struct SharedMotion<'g> {
     links: Vec<usize>,
 }
 
-impl<'g> Alike<'g> {
+impl<'g> SharedMotions<'g> {
     /// Collects shared motion subspaces.
-    pub fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
-        Alike::by(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
+    pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
+        SharedMotions::collect(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
     }
 
     /// Collects shared time derivatives of motion subspaces.
-    pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
-        Alike::by(model, joints, |joint, dof| joint.drift.as_ref()?.subspace_rates.get(dof).copied())
+    pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
+        SharedMotions::collect(model, joints, |joint, dof| {
+            joint.drift.as_ref()?.subspace_rates.get(dof).copied()
+        })
     }
 
-    fn by(
+    fn collect(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,
-    ) -> Alike<'g> {
+    ) -> SharedMotions<'g> {
         let mut motions: Vec<SharedMotion<'g>> = Vec::new();
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
         // Wrenches of links with a parent are transmitted to the parent, and identical limbs are summed in
@@ -73,7 +75,7 @@ impl<'g> Alike<'g> {
         }
         motions.iter_mut().for_each(|motion| motion.links.retain(|k| concerned[*k]));
         motions.retain(|motion| !motion.links.is_empty());
-        Alike { motions, concerned }
+        SharedMotions { motions, concerned }
     }
 
     /// Returns true for a link whose partial velocities are stored in this collection.
