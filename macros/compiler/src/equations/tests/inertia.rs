@@ -39,7 +39,7 @@ fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
         said.contains("Q6 are the generalized forces of gravity, force elements and inputs; their terms"),
         "{text}"
     );
-    assert!(said.contains("`equations = lagrange` among the arguments"), "{text}");
+    assert!(said.contains("The option `equations = lagrange` of `#[mechanism]`"), "{text}");
 }
 
 /// Returns the constant `EQUATIONS` of a mechanism.
