@@ -135,9 +135,9 @@ impl Assembly<'_, '_> {
         Ok(at)
     }
 
-    /// Returns a configuration on the constraints near `q`, without a change of the coordinates whose velocities
-    /// are held. The search starts from `q`, then from increasingly perturbed values of the other entries. The
-    /// first result whose angles are within half a revolution of the guess is preferred.
+    /// Returns a configuration on the constraints near `q`, without a change of the coordinates whose
+    /// velocities are held. The search starts from `q`, then from increasingly perturbed values of the other
+    /// entries. The first result whose angles are within half a revolution of the guess is preferred.
     pub fn assembled(&self, q: &[f64], guess: &[f64], held: &[bool]) -> Option<Vec<f64>> {
         let (given, held) = (self.entries(held), indices(held));
         let mut far = None;

@@ -79,8 +79,8 @@ impl Robot {
         Ok((DVector::from_vec(found), mode))
     }
 
-    /// Returns a configuration near `q` that satisfies the constraints; coordinates whose joint velocities have
-    /// the indices `held` do not change, see [`Constrained::assemble`].
+    /// Returns a configuration near `q` that satisfies the constraints; coordinates whose joint velocities
+    /// have the indices `held` do not change, see [`Constrained::assemble`].
     ///
     /// # Errors
     ///
@@ -99,8 +99,8 @@ impl Robot {
         Ok(self.ask(Question::Assemble(Some(mode)), q, held)?.0)
     }
 
-    /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of the
-    /// constraints, whether it satisfies them or not; see [`assemble`](Self::assemble).
+    /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of
+    /// the constraints, whether it satisfies them or not; see [`assemble`](Self::assemble).
     ///
     /// # Errors
     ///
@@ -146,7 +146,8 @@ impl Robot {
         Ok(self.ask(Question::Project, q, &[])?.0)
     }
 
-    /// Returns the velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.
+    /// Returns the velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic
+    /// energy.
     ///
     /// # Errors
     ///
@@ -188,8 +189,8 @@ impl Robot {
 }
 
 impl<const N: usize> Padded<N, N, N, &Robot> {
-    /// Returns the constraints for assembly, whose displacements are joint velocities: declared speeds need not
-    /// determine these.
+    /// Returns the constraints for assembly, whose displacements are joint velocities: declared speeds need
+    /// not determine these.
     fn assembled(
         &self,
         t: f64,

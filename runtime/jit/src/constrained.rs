@@ -11,7 +11,7 @@ use linkwork_compiler::catalogue::{Argument, Id};
 
 /// A function that the runtime evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ConstrainedFunction {
     /// Accelerations.
     Accelerations,
     /// Accelerations and multipliers.
@@ -34,26 +34,26 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     let matrix = |name, rows, columns| Matrix { name, rows, columns };
     let functions = [
         (
-            Kind::Accelerations,
+            ConstrainedFunction::Accelerations,
             "forward_dynamics",
             "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where friction jams.",
             vec![matrix("result", nv, 1)],
         ),
         (
-            Kind::Dynamics,
+            ConstrainedFunction::Dynamics,
             "constrained_dynamics",
             "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
             vec![matrix("accelerations", nv, 1), matrix("multipliers", nc, 1)],
         ),
         (
-            Kind::Derivatives,
+            ConstrainedFunction::Derivatives,
             "forward_dynamics_derivatives",
             "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
             vec![matrix("by_q", nv, nv), matrix("by_v", nv, nv), matrix("by_tau", nv, nv)],
         ),
     ];
     for (kind, name, documentation, results) in functions {
-        if kind != Kind::Derivatives || has_derivatives {
+        if kind != ConstrainedFunction::Derivatives || has_derivatives {
             let plan = Plan::Constrained(kind);
             maker.entries.push(Entry::new(name, documentation.to_string(), arguments.clone(), results, plan));
         }
@@ -64,7 +64,7 @@ impl Robot {
     /// Evaluates a function with the arguments `t` (if the mechanism depends on it), `q`, `v` and `tau`.
     pub(crate) fn call_constrained(
         &self,
-        kind: Kind,
+        kind: ConstrainedFunction,
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
@@ -76,7 +76,7 @@ impl Robot {
 
 /// A call of a function.
 struct Call<'a> {
-    kind: Kind,
+    kind: ConstrainedFunction,
     t: f64,
     q: &'a [f64],
     v: &'a [f64],
@@ -95,7 +95,7 @@ impl Visitor for Call<'_> {
         for (k, one) in robot.shared.states.iter().enumerate() {
             v[n + k] = robot.parameter_values()[one.parameter];
         }
-        if self.kind == Kind::Derivatives {
+        if self.kind == ConstrainedFunction::Derivatives {
             let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(self.t, &q, &v, &tau);
             for (to, from) in self.out.chunks_exact_mut(n * n).zip([by_q, by_v, by_tau]) {
                 for (to, from) in to.chunks_exact_mut(n).zip(from.column_iter()) {

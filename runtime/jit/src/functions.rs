@@ -1,6 +1,6 @@
 //! Functions of a loaded mechanism: their signatures, and how results follow from programs.
 
-use crate::constrained::Kind;
+use crate::constrained::ConstrainedFunction;
 use crate::frames::Access;
 use crate::inverse::Inverse;
 use crate::kernels::{self, Columns};
@@ -77,7 +77,7 @@ pub(crate) enum Plan {
     },
     Space(Space),
     /// A function of a mechanism with constraints, which the runtime evaluates.
-    Constrained(Kind),
+    Constrained(ConstrainedFunction),
 }
 
 /// Derivatives of forward dynamics that call other functions.
@@ -212,8 +212,8 @@ fn solve(n: usize, inverse: &[f64], forces: &mut [f64], columns: &[Vec<Columns>;
     kernels::minus_products(n, inverse, [by_q, by_v], columns, work);
 }
 
-/// Writes the matrices of a linear system: derivatives of the accelerations by `q` and `v`, minus those by the
-/// inputs, and the matrix that the rates of displacements are multiplied by.
+/// Writes the matrices of a linear system: derivatives of the accelerations by `q` and `v`, minus those by
+/// the inputs, and the matrix that the rates of displacements are multiplied by.
 fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out: &mut [f64]) {
     let (state, by_input) = out.split_at_mut(4 * n * n);
     for j in 0..n {

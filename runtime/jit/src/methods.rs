@@ -111,7 +111,8 @@ macro_rules! methods {
                 ///
                 /// # Errors
                 ///
-                /// The mechanism lacks this function, a slice has the wrong length, or a parameter has no value.
+                /// The mechanism lacks this function, a slice has the wrong length, or a parameter has no
+                /// value.
                 pub fn $name(&self, $($argument: &[f64]),*) -> methods!(@type $kind) {
                     let state = methods!(@state $($argument)*);
                     methods!(@body $kind self $name state)
@@ -151,7 +152,8 @@ macro_rules! methods {
 methods! {
     /// Returns the mass matrix.
     matrix mass_matrix mass_matrix_into(q);
-    /// Returns the generalized forces that keep the accelerations zero: of gravity, springs, dampers, and velocities.
+    /// Returns the generalized forces that keep the accelerations zero: of gravity, springs, dampers, and
+    /// velocities.
     vector bias_forces bias_forces_into(q, v);
     /// Returns the accelerations under generalized forces.
     vector forward_dynamics forward_dynamics_into(q, v, tau);
@@ -209,7 +211,8 @@ macro_rules! others {
 others! {
     /// Returns the configuration with all coordinates zero and identity quaternions.
     neutral neutral_into() State::default();
-    /// Returns the configuration that is reached from `q` in one unit of time with the constant velocity `dv`.
+    /// Returns the configuration that is reached from `q` in one unit of time with the constant velocity
+    /// `dv`.
     integrate integrate_into(q, dv) State { q, other: [dv, &[], &[]], ..State::default() };
     /// Returns the velocity that leads from one configuration to another in one unit of time.
     difference difference_into(from, to) State { other: [from, to, &[]], ..State::default() };

@@ -18,18 +18,18 @@ use std::borrow::Borrow;
 
 /// A robot as a [`Mechanism`] of constant dimensions, for integrators and all other code for any mechanism.
 ///
-/// The dimensions are at least those of the robot. Further coordinates have unit inertia, and only generalized
-/// forces act on them; further inputs have no effect. With equal dimensions nothing is padded. States of first
-/// order are the last velocities, as in [`Extended`](linkwork::Extended). Constraints are those of
-/// [`Constrained`], of which a robot has `NV` at most; further ones are always satisfied.
+/// The dimensions are at least those of the robot. Further coordinates have unit inertia, and only
+/// generalized forces act on them; further inputs have no effect. With equal dimensions nothing is padded.
+/// States of first order are the last velocities, as in [`Extended`](linkwork::Extended). Constraints are
+/// those of [`Constrained`], of which a robot has `NV` at most; further ones are always satisfied.
 ///
 /// Derivatives are those of the option `derivatives`; without it they are NaN. Contacts are those of
 /// [`PaddedContacts`].
 ///
-/// Two designs were weighed: dimensions as associated types of the traits, so that loaded mechanisms have dynamic
-/// vectors, and this one, a capacity. Associated types change every signature of the runtime, and dynamic vectors
-/// allocate in every stage of an integrator. With a capacity, mechanisms of the attribute lose nothing; its
-/// costs are additional entries of the vectors of a stage, not of the generated code.
+/// Two designs were weighed: dimensions as associated types of the traits, so that loaded mechanisms have
+/// dynamic vectors, and this one, a capacity. Associated types change every signature of the runtime, and
+/// dynamic vectors allocate in every stage of an integrator. With a capacity, mechanisms of the attribute
+/// lose nothing; its costs are additional entries of the vectors of a stage, not of the generated code.
 ///
 /// ```
 /// use linkwork::prelude::simulate;
@@ -64,8 +64,8 @@ impl Robot {
     ///
     /// # Errors
     ///
-    /// A dimension is smaller than that of the robot, a parameter has no value, or the robot has no inertia, or
-    /// contacts ([`padded_contacts`](Self::padded_contacts)).
+    /// A dimension is smaller than that of the robot, a parameter has no value, or the robot has no inertia,
+    /// or contacts ([`padded_contacts`](Self::padded_contacts)).
     pub fn padded<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
     ) -> Result<Padded<NQ, NV, NU>, Error> {

@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 /// A mechanism that was loaded at run time, with values of its parameters.
 ///
-/// Copies are cheap and share the machine code; each has parameters of its own. Threads may call the functions
-/// of one robot at the same time.
+/// Copies are cheap and share the machine code; each has parameters of its own. Threads may call the
+/// functions of one robot at the same time.
 #[derive(Clone)]
 pub struct Robot {
     pub(crate) shared: Arc<Shared>,

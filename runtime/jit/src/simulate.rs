@@ -108,8 +108,8 @@ pub enum Inputs<'a> {
     Zero,
     /// Constant inputs.
     Constant(&'a [f64]),
-    /// Inputs at times: linear between the times, and constant before the first and after the last one. Inputs
-    /// jump where a time occurs twice.
+    /// Inputs at times: linear between the times, and constant before the first and after the last one.
+    /// Inputs jump where a time occurs twice.
     Samples {
         /// Times, s, which do not decrease.
         times: &'a [f64],
@@ -122,7 +122,7 @@ pub enum Inputs<'a> {
     Sampled(f64, Controller<'a>),
 }
 
-/// State and inputs at an instant.
+/// PaddedState and inputs at an instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Time, s.
@@ -140,8 +140,8 @@ pub struct Sample {
 pub struct Run {
     /// The samples.
     pub samples: Vec<Sample>,
-    /// Time from which the motion is integrated by an implicit method, because it is stiff; `None` for methods
-    /// other than [`Method::Automatic`].
+    /// Time from which the motion is integrated by an implicit method, because it is stiff; `None` for
+    /// methods other than [`Method::Automatic`].
     pub stiff_from: Option<f64>,
 }
 
@@ -203,8 +203,8 @@ impl Robot {
 }
 
 impl<'a, 'i> Simulation<'a, 'i> {
-    /// Sets the initial configuration and velocity. The velocity may be followed by the states of first order;
-    /// without them these have the values that they have among the parameters.
+    /// Sets the initial configuration and velocity. The velocity may be followed by the states of first
+    /// order; without them these have the values that they have among the parameters.
     pub fn from(self, q: &'a [f64], v: &'a [f64]) -> Self {
         Self { q: Some(q), v: Some(v), ..self }
     }
@@ -332,7 +332,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
             Inputs::Function(function) => (Given::Zero, Some((None, function))),
             Inputs::Sampled(period, function) => (Given::Zero, Some((Some(period), function))),
         };
-        let plan = Plan {
+        let settings = Settings {
             robot,
             method,
             start: self.start,
@@ -341,7 +341,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
             overlaps: self.overlaps,
             inputs,
         };
-        let mut driver = Driver { plan, controller, sink: sample, has_begun: false, stiff_from: None };
+        let mut driver = Driver { settings, controller, sink: sample, has_begun: false, stiff_from: None };
         let mut go = || {
             let moving = Moving { driver: &mut driver, q: &q, v: &v };
             match is_contact_method && with_contacts {
@@ -379,7 +379,7 @@ enum Given<'a> {
 
 /// Checked settings of a run.
 #[derive(Clone, Copy)]
-struct Plan<'a> {
+struct Settings<'a> {
     robot: &'a Robot,
     method: Method,
     start: f64,
@@ -391,7 +391,7 @@ struct Plan<'a> {
 
 /// A run.
 struct Driver<'a, 'i, 's> {
-    plan: Plan<'a>,
+    settings: Settings<'a>,
     /// Function of the inputs, with its period.
     controller: Option<(Option<f64>, Controller<'i>)>,
     sink: &'s mut (dyn FnMut(Sample) + Send),
@@ -412,8 +412,8 @@ impl Visitor for Moving<'_, '_, '_, '_> {
 
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output {
         let driver = self.driver;
-        let start = State::new(driver.plan.start, self.q, self.v);
-        match driver.plan.method {
+        let start = PaddedState::new(driver.settings.start, self.q, self.v);
+        match driver.settings.method {
             Method::Automatic(e) => driver.automatic(robot, start, e),
             Method::DormandPrince(e) => driver.go(robot, start, DormandPrince::new().tolerance(e, e)),
             Method::DormandPrince8(e) => driver.go(robot, start, DormandPrince8::new().tolerance(e, e)),
@@ -436,8 +436,8 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
 
     fn visit<M: Mechanism<N, N, N, Scalar = f64>, const N: usize>(self, robot: &M) -> Self::Output {
         let driver = self.driver;
-        let start = State::new(driver.plan.start, self.q, self.v);
-        match driver.plan.method {
+        let start = PaddedState::new(driver.settings.start, self.q, self.v);
+        match driver.settings.method {
             Method::TimeStepping(h) => driver.go(robot, start, TimeStepping::step(h)),
             Method::TimeSteppingMidpoint(h) => driver.go(robot, start, TimeStepping::step(h).midpoint()),
             Method::EventDriven(e) => driver.go(robot, start, EventDriven::new().tolerance(e, e)),
@@ -448,23 +448,23 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
 
 /// A state with padding.
 #[derive(Clone, Copy)]
-struct State<const N: usize> {
+struct PaddedState<const N: usize> {
     t: f64,
     q: SVector<f64, N>,
     v: SVector<f64, N>,
 }
 
-impl<const N: usize> State<N> {
+impl<const N: usize> PaddedState<N> {
     fn new(t: f64, q: &[f64], v: &[f64]) -> Self {
         let padded = |x: &[f64]| SVector::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
-        State { t, q: padded(q), v: padded(v) }
+        PaddedState { t, q: padded(q), v: padded(v) }
     }
 }
 
 /// A section of a run between kinks of the inputs.
 #[derive(Clone)]
 struct Section<const N: usize> {
-    start: State<N>,
+    start: PaddedState<N>,
     end: f64,
     /// Times of samples after the start.
     times: Vec<f64>,
@@ -474,7 +474,7 @@ struct Section<const N: usize> {
     overlaps: Overlaps,
 }
 
-impl Plan<'_> {
+impl Settings<'_> {
     /// Returns the inputs at a time; at a jump the limit before or after it.
     fn inputs<const N: usize>(&self, t: f64, is_before: bool) -> SVector<f64, N> {
         let n = self.robot.nu();
@@ -520,7 +520,7 @@ impl Plan<'_> {
         Some(if t > self.end - every * 1e-9 { self.end } else { t })
     }
 
-    fn sample<const N: usize>(&self, state: &State<N>, u: &SVector<f64, N>) -> Sample {
+    fn sample<const N: usize>(&self, state: &PaddedState<N>, u: &SVector<f64, N>) -> Sample {
         let (robot, t) = (self.robot, state.t);
         let u = match self.inputs {
             Given::Samples(..) => self.inputs(t, false),
@@ -534,7 +534,7 @@ impl Plan<'_> {
 
 /// Inputs as integration methods ask for them.
 struct Feed<'f, 'i, const N: usize> {
-    plan: &'f Plan<'f>,
+    settings: &'f Settings<'f>,
     section: &'f Section<N>,
     controller: Option<&'f mut (Option<f64>, Controller<'i>)>,
     /// Inputs in the current period.
@@ -547,7 +547,7 @@ impl<const N: usize> Feed<'_, '_, N> {
     /// Calls the function of the inputs. Inputs that are NaN end the run.
     fn controlled(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         let Some((_, function)) = &mut self.controller else { return SVector::zeros() };
-        let robot = self.plan.robot;
+        let robot = self.settings.robot;
         let mut u = SVector::<f64, N>::zeros();
         let mut failure = self.failure.borrow_mut();
         if failure.is_none() {
@@ -578,8 +578,8 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
     }
 }
 
-/// State at the end of an integration; after an error the last sample before it.
-type Reached<const N: usize> = (State<N>, Result<(), Error>);
+/// PaddedState at the end of an integration; after an error the last sample before it.
+type Reached<const N: usize> = (PaddedState<N>, Result<(), Error>);
 
 /// Maximum number of steps of an explicit method before an implicit one is tried.
 const MOST_STEPS: u64 = 200_000;
@@ -594,20 +594,22 @@ impl Driver<'_, '_, '_> {
     /// Integrates section by section.
     fn sections<const N: usize>(
         &mut self,
-        start: State<N>,
+        start: PaddedState<N>,
         mut integrate: impl FnMut(&mut Self, &Section<N>) -> Reached<N>,
     ) -> Result<(), Error> {
-        let plan = self.plan;
-        let (mut start, mut overlaps, mut next) = (start, plan.overlaps, 1);
-        for end in plan.stops() {
+        let settings = self.settings;
+        let (mut start, mut overlaps, mut next) = (start, settings.overlaps, 1);
+        for end in settings.stops() {
             let mut times = Vec::new();
-            while let Some(t) = plan.time(next).filter(|t| *t <= end && times.last() != Some(&plan.end)) {
+            while let Some(t) =
+                settings.time(next).filter(|t| *t <= end && times.last() != Some(&settings.end))
+            {
                 times.push(t);
                 next += 1;
             }
-            let u = plan.inputs::<N>(start.t, false);
+            let u = settings.inputs::<N>(start.t, false);
             let rate = match end > start.t {
-                true => (plan.inputs::<N>(end, true) - u) / (end - start.t),
+                true => (settings.inputs::<N>(end, true) - u) / (end - start.t),
                 false => SVector::zeros(),
             };
             let (reached, ended) = integrate(self, &Section { start, end, times, u, rate, overlaps });
@@ -618,7 +620,7 @@ impl Driver<'_, '_, '_> {
     }
 
     /// Integrates with one method.
-    fn go<M, S, const N: usize>(&mut self, m: &M, start: State<N>, method: S) -> Result<(), Error>
+    fn go<M, S, const N: usize>(&mut self, m: &M, start: PaddedState<N>, method: S) -> Result<(), Error>
     where
         M: Mechanism<N, N, N, Scalar = f64>,
         S: integrate::Method<f64> + Copy,
@@ -628,28 +630,29 @@ impl Driver<'_, '_, '_> {
         })
     }
 
-    /// Integrates a section with one method, from a state of it. `goes_on` receives each sample, and the number
-    /// of evaluations of the dynamics since the sample before; where it returns false the integration ends.
+    /// Integrates a section with one method, from a state of it. `goes_on` receives each sample, and the
+    /// number of evaluations of the dynamics since the sample before; where it returns false the integration
+    /// ends.
     fn along<M, S, const N: usize>(
         &mut self,
         m: &M,
         section: &Section<N>,
-        from: State<N>,
+        from: PaddedState<N>,
         method: S,
-        goes_on: &mut dyn FnMut(&State<N>, u64) -> bool,
+        goes_on: &mut dyn FnMut(&PaddedState<N>, u64) -> bool,
     ) -> Reached<N>
     where
         M: Mechanism<N, N, N, Scalar = f64>,
         S: integrate::Method<f64>,
     {
-        let plan = self.plan;
+        let settings = self.settings;
         let mut times: Vec<f64> = section.times.iter().copied().filter(|t| *t > from.t).collect();
         if !self.has_begun {
             times.insert(0, from.t);
         }
         let (evaluations, failure) = (Cell::new(0_u64), RefCell::new(None));
         let feed = Feed {
-            plan: &plan,
+            settings: &settings,
             section,
             controller: self.controller.as_mut(),
             u: SVector::zeros(),
@@ -663,7 +666,7 @@ impl Driver<'_, '_, '_> {
             .overlaps(section.overlaps)
             .method(method)
             .with_inputs(feed);
-        if plan.every.is_some() {
+        if settings.every.is_some() {
             run = run.sample_at(&times);
         }
         let mut last = from;
@@ -673,20 +676,20 @@ impl Driver<'_, '_, '_> {
                 Err(error) => {
                     let error = match failure.take() {
                         Some(message) => Error::Value(message),
-                        None => plan.robot.motion_error(error),
+                        None => settings.robot.motion_error(error),
                     };
                     return (last, Err(error));
                 }
             };
-            last = State { t: sample.t, q: sample.q, v: sample.v };
+            last = PaddedState { t: sample.t, q: sample.q, v: sample.v };
             // Ends of sections between samples, and starts of sections, are no samples.
-            let is_wanted = match plan.every {
+            let is_wanted = match settings.every {
                 Some(_) => times.contains(&sample.t),
                 None => sample.t > from.t || !self.has_begun,
             };
             if is_wanted {
                 self.has_begun = true;
-                (self.sink)(plan.sample(&last, &sample.u));
+                (self.sink)(settings.sample(&last, &sample.u));
             }
             if !goes_on(&last, evaluations.replace(0)) {
                 return (last, Ok(()));
@@ -700,7 +703,7 @@ impl Driver<'_, '_, '_> {
     fn automatic<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,
-        start: State<N>,
+        start: PaddedState<N>,
         tolerance: f64,
     ) -> Result<(), Error> {
         let explicit = DormandPrince::new().tolerance(tolerance, tolerance);
@@ -748,14 +751,14 @@ impl Driver<'_, '_, '_> {
         &mut self,
         m: &Padded<N, N, N, &Robot>,
         section: &Section<N>,
-        from: State<N>,
+        from: PaddedState<N>,
         until: f64,
         method: Rodas<f64>,
         most: u64,
     ) -> bool {
         let (evaluations, failure) = (Cell::new(0_u64), RefCell::new(None));
         let feed = Feed {
-            plan: &self.plan,
+            settings: &self.settings,
             section,
             controller: self.controller.as_mut(),
             u: SVector::zeros(),

@@ -73,7 +73,8 @@ fn close(found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// Accelerations with multipliers, also in a singular configuration, projections, impulses, derivatives, assembly.
+/// Accelerations with multipliers, also in a singular configuration, projections, impulses, derivatives,
+/// assembly.
 #[test]
 fn constraints_agree_with_generated_rust() -> Result<(), std::boxed::Box<dyn std::error::Error>> {
     let robot = Loader::text(SLIDER).load()?;

@@ -15,8 +15,8 @@ use std::borrow::Borrow;
 /// Gap of a contact that is padding, m: it never closes.
 const FAR: f64 = 1e30;
 
-/// A robot with contacts as a [`Mechanism`] of constant dimensions: a [`Padded`] with at most `NK` contacts that
-/// have `NR` rates.
+/// A robot with contacts as a [`Mechanism`] of constant dimensions: a [`Padded`] with at most `NK` contacts
+/// that have `NR` rates.
 #[derive(Clone, Debug)]
 pub struct PaddedContacts<
     const NQ: usize,
@@ -30,7 +30,8 @@ pub struct PaddedContacts<
 }
 
 impl Robot {
-    /// Returns the robot with its contacts as a mechanism of constant dimensions, see [`padded`](Self::padded).
+    /// Returns the robot with its contacts as a mechanism of constant dimensions, see
+    /// [`padded`](Self::padded).
     ///
     /// # Errors
     ///

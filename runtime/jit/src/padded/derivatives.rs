@@ -45,8 +45,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         })
     }
 
-    /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns of
-    /// the given ones.
+    /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns
+    /// of the given ones.
     fn squares<const K: usize>(
         &self,
         f: Internal,
