@@ -27,19 +27,41 @@
 //! so that what rests does not bounce.
 //!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato,
-//! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where
-//! all contacts stick that approach there is a linear system, else Newton's method for their natural map
-//! (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) begins there, or with the impulses of the
-//! step before, and takes two or three steps as a rule; where it finds nothing, it goes on between projected
-//! gradient steps with momentum (Nesterov; Mazhar et al., *Using Nesterov's method to accelerate multibody
-//! dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of these, and 19 000 of
-//! Newton's. All contacts take each step at once, so that the order in which they are declared decides
-//! nothing. Without friction an active set that takes in contact after contact comes first. Impulses that are
-//! shared by more contacts than the motion can tell apart (a table on four legs) are those of least norm
-//! where all of them hold; where some of them slip there may be several solutions, and of piles of boxes
-//! rounding chooses between them in about one of 3000 steps. Newton's law of restitution together with
-//! friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all
-//! coefficients of restitution are lowered together until it does not.
+//! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008).
+//!
+//! # Solution
+//!
+//! The impulses are searched in four stages, each of which ends the search if it satisfies the conditions to
+//! rounding. All contacts take each iteration at once, so that the order of declaration decides nothing.
+//!
+//! 1. Where all contacts stick that approach, the problem is linear.
+//! 2. Newton's method for the natural map (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991),
+//!    from there or from the impulses of the step before: mostly two or three iterations.
+//! 3. A sequence of at most 16 convex problems, with at most 60 iterations of Newton's method in all. The
+//!    conditions with friction are neither convex nor always solvable. They become a convex problem with
+//!    exactly one solution if normal impulses are coupled to slip (Anitescu, Math. Program. 105, 2006), which
+//!    Drake and MuJoCo solve; but then sliding surfaces separate. The sequence keeps the convexity and
+//!    removes this error: each problem subtracts the separation that the slip of the problem before would
+//!    cause (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011), and the regularisation is removed by
+//!    multipliers, so that contacts stay rigid and redundant contacts do no harm. A pivoting method (Lemke)
+//!    would need friction cones with edges, projected Gauss–Seidel (Siconos, ODE) depends on the order of
+//!    contacts and converges slowly for large mass ratios, and ADMM (Pinocchio) needs tuned penalties.
+//! 4. Newton's method for the natural map from the best impulses of the sequence.
+//!
+//! A step of [`TimeStepping`](crate::integrate::TimeStepping) that has found nothing takes the impulses that
+//! violate the conditions least, and reports the violation
+//! ([`Sample::violation`](crate::simulate::Sample::violation)). The impulses of each convex problem dissipate
+//! energy, so that such a step adds none either. For single impacts ([`impact`] and [`solve`]), and in steps
+//! with up to six contacts or with coefficients of friction above 4, up to 24 contacts go on to an active set
+//! (without friction), projected gradient steps with momentum (Nesterov; Mazhar et al., ACM Trans. Graph. 34,
+//! 2015), friction that grows by degrees, and guesses of sticking contacts. Single impacts for which these
+//! fail, too, are errors.
+//!
+//! Mechanisms with many contacts have matrices for their closed contacts only. Impulses that are shared by
+//! more contacts than the motion can tell apart (a table on four legs) are those of least norm where all of
+//! them stick; where some of them slip there may be several solutions. Newton's law of restitution together
+//! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would,
+//! all coefficients of restitution are lowered together until it does not.
 
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
@@ -63,6 +85,7 @@ mod overlap;
 mod phase;
 mod problem;
 mod response;
+mod selection;
 mod stepping;
 mod total;
 
@@ -83,6 +106,7 @@ pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::{Equations, Problem, entry};
+use selection::Selection;
 #[doc(hidden)]
 pub use response::responses;
 #[doc(hidden)]
@@ -226,6 +250,11 @@ pub struct Responses<T, const NV: usize, const NR: usize> {
 }
 
 impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
+    /// No effects.
+    fn zeros() -> Self {
+        Self { velocities: zeros::<T, NV, NR>(), rates: zeros::<T, NR, NR>() }
+    }
+
     /// From all entries, column by column. As generated code calls it.
     #[doc(hidden)]
     pub fn from_list<const N: usize>(list: &[T; N]) -> Self {
@@ -249,12 +278,14 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
     /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
     /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
     pub held: SVector<T, NV>,
+    /// Largest violation of the contact conditions by the impulses, as a contact velocity.
+    pub violation: T,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
     /// State that no contact has changed.
     pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
-        Self { q, v, held: SVector::zeros() }
+        Self { q, v, held: SVector::zeros(), violation: T::zero() }
     }
 }
 
@@ -343,7 +374,11 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     match closed(mechanism, t, q, free, None)? {
-        Some(closed) => act(mechanism, t, (q, free), &closed, (|| *before, None), &mut Acted::nothing()),
+        Some(closed) => {
+            let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
+            let mut acted = Acted::nothing(selection, Problem::none());
+            act(mechanism, t, (q, free), &closed, (|| *before, None), &mut acted)
+        }
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }
 }
@@ -384,8 +419,9 @@ where
         return Ok(SVector::zeros());
     };
     let before = || came.rates(mechanism, t + h, &free.q);
-    let solved =
-        act(mechanism, t + h, (&free.q, &end), &closed, (before, Some(&given)), &mut Acted::nothing());
+    let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
+    let mut acted = Acted::nothing(selection, Problem::of_step());
+    let solved = act(mechanism, t + h, (&free.q, &end), &closed, (before, Some((&given, true))), &mut acted);
     Ok(solved.map_err(reported)?.impulses / h)
 }
 
@@ -487,33 +523,44 @@ where
 
 /// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its
 /// matrices are large, so it is filled in place.
-struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
-    problem: Problem<T, NK, NR>,
-    impulses: Total<T, NR>,
+struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
+    selection: Selection<CK, CR>,
+    problem: Problem<T, CK, CR>,
+    impulses: Total<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
     free: SVector<T, NV>,
     /// None if nothing has acted.
-    responses: Option<Responses<T, NV, NR>>,
+    responses: Option<Responses<T, NV, CR>>,
 }
 
-impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
-    fn nothing() -> Self {
+impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK, CR> {
+    fn nothing(selection: Selection<CK, CR>, problem: Problem<T, CK, CR>) -> Self {
         let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
-        Self { problem: Problem::none(), impulses, free, responses: None }
+        Self { selection, problem, impulses, free, responses: None }
     }
 }
 
 /// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are
 /// evaluated only where they matter. If the contact forces at the start of a step are known, which would add
-/// `given` to the velocity, their rotation in the step is taken into account, and the search for impulses
-/// begins with them.
-fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+/// `given` to the velocity, the search for impulses begins with them, and their rotation in the step is taken
+/// into account where the bodies are moving.
+fn act<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    const CK: usize,
+    const CR: usize,
+>(
     mechanism: &M,
     t: T,
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
-    (before, given): (impl Fn() -> SVector<T, NR>, Option<&SVector<T, NV>>),
-    acted: &mut Acted<T, NV, NK, NR>,
+    (before, given): (impl Fn() -> SVector<T, NR>, Option<(&SVector<T, NV>, bool)>),
+    acted: &mut Acted<T, NV, CK, CR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
     T: Real,
@@ -522,28 +569,36 @@ where
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
-    let layout = Layout::of(mechanism);
-    let problem = &mut acted.problem;
-    problem.select(layout, &laws, closed, &after);
+    let Acted { selection, problem, .. } = acted;
+    let (layout, laws) = (selection.layout(), selection.laws(&laws));
+    problem.select(layout, &laws, &selection.closed(), &selection.rates(&after));
     if laws.iter().any(|law| law.stiction > law.friction) {
-        let rates = before();
+        let rates = selection.rates(&before());
         problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= near());
     }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),
-        false => before(),
+        false => selection.rates(&before()),
     };
     if !is_loaded && !problem.was_loaded(&before) {
         return Ok(solved);
     }
-    let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
+    let responses = acted.responses.insert(selection.responses(mechanism, t, q, closed));
     problem.weigh(&responses.rates);
-    let failed = failed::<M, T, NQ, NV, NU, NK, NR>;
+    problem.depends_on(NV);
+    let failed = |contact| failed::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
     let mut equations = Equations::of(problem);
-    let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
-        let rates = mechanism.contact_rates(t, q, &(free + given)) - after;
-        problem.transport(given, &rates, responses, &mut equations)
+    // Contact forces on bodies at rest do not rotate, but begin the search where it is long.
+    let given = given.filter(|(given, is_moving)| {
+        **given != SVector::<T, NV>::zeros() && (*is_moving || problem.is_left_to_convex_problems())
+    });
+    let start = given.map(|(given, is_moving)| {
+        let rates = selection.rates(&(mechanism.contact_rates(t, q, &(free + given)) - after));
+        match is_moving {
+            true => problem.transport(given, &rates, responses, &mut equations),
+            false => (problem.start(&rates, &mut equations), SVector::zeros()),
+        }
     });
     if let Some((_, correction)) = &start {
         solved.v += correction;
@@ -562,11 +617,15 @@ where
     }
     let impulses = match found {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
-        Err(contact) if !problem.rebounds() => return Err(failed(contact)),
-        _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,
+        Err(contact) if !problem.rebounds() => problem.relaxed(Err(contact)).map_err(failed)?,
+        _ => {
+            let found = tempered(problem, &laws, &before, may_gain);
+            problem.relaxed(found).map_err(failed)?
+        }
     };
-    solved.impulses = problem.spread(&impulses);
-    solved.v += responses.velocities * solved.impulses;
+    let all = problem.spread(&impulses);
+    solved.impulses = selection.spread(&all);
+    solved.v += responses.velocities * all;
     acted.impulses = impulses;
     Ok(solved)
 }
@@ -580,9 +639,8 @@ fn tempered<T: Real, const NK: usize, const NR: usize>(
     may_gain: bool,
 ) -> Result<Total<T, NR>, usize> {
     // A bit of the part each.
-    const HALVINGS: usize = 12;
     let (mut least, mut step) = (T::zero(), T::one());
-    for _ in 0..HALVINGS {
+    for _ in 0..problem.halvings() {
         step *= constant(0.5);
         problem.aim(laws, before, least + step);
         if problem.solve().is_ok_and(|impulses| !(may_gain && problem.gains(&impulses))) {

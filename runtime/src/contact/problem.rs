@@ -8,6 +8,7 @@ use crate::private::{constant, epsilon};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
+mod convex;
 mod linear;
 mod newton;
 mod restitution;
@@ -67,8 +68,16 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where
     /// impulses move nothing.
     step: Total<T, NK>,
+    /// Number of velocities that the rates are determined by.
+    velocities: usize,
     /// A factor of all steps, with which Newton's method may come nearer.
     scale: T,
+    /// Whether impulses that violate the contact conditions are better than none.
+    is_relaxed: bool,
+    /// Largest violation of the contact conditions by the impulses found last, as a contact velocity.
+    violation: T,
+    /// Impulses that violate the conditions least, after a search that has found none that satisfy them.
+    closest: List<T, NR>,
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
@@ -93,7 +102,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             friction: Total::repeat(T::zero()),
             kinetic: Total::repeat(T::zero()),
             step: Total::repeat(T::zero()),
+            velocities: usize::MAX,
             scale: T::one(),
+            is_relaxed: false,
+            violation: T::zero(),
+            closest: Total::repeat(T::zero()),
         }
     }
 
@@ -176,6 +189,27 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         all
     }
 
+    /// Impulses that satisfy the contact conditions, or, where a step is relaxed, those that violate them least.
+    pub(super) fn relaxed(&self, found: Result<List<T, NR>, usize>) -> Result<List<T, NR>, usize> {
+        found.or_else(|contact| if self.is_relaxed { Ok(self.closest) } else { Err(contact) })
+    }
+
+    /// No contacts, in a step that takes impulses which violate the contact conditions where it has no others.
+    pub(super) fn of_step() -> Self {
+        Self { is_relaxed: true, ..Self::none() }
+    }
+
+    /// Largest violation of the contact conditions by the impulses found last, as a contact velocity.
+    pub(super) fn violation(&self) -> T {
+        self.violation
+    }
+
+    /// How often the part of restitution that the energy allows is halved: less often in large problems, so
+    /// that a step stays short.
+    pub(super) fn halvings(&self) -> usize {
+        if self.size > newton::LARGE { 5 } else { 12 }
+    }
+
     /// Whether surfaces approach each other without impulses.
     pub(super) fn is_loaded(&self) -> bool {
         (0..self.count).filter(|k| self.is_gap(*k)).any(|k| self.free[self.rows[k].first] < T::zero())
@@ -186,6 +220,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (0..self.count)
             .filter(|k| self.is_gap(*k))
             .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
+    }
+
+    /// Sets the number of velocities that the rates are determined by.
+    pub(super) fn depends_on(&mut self, velocities: usize) {
+        self.velocities = velocities;
     }
 
     /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
