@@ -439,12 +439,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows.fold(T::zero(), |most, row| most.max(along(row).abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
-        let mut pushes = kept.together(&stay);
-        // Points that contradict each other are not worth a long way.
-        let is_long = farthest(&pushes) > most;
-        if is_long {
-            pushes = List::repeat(T::zero());
-        }
+        // Equations can contradict each other: gaps of parallel faces differ if a contact has moved to another
+        // edge, and one displacement cannot close them all. Open contacts then stay open. If overlaps still
+        // differ, the conditions without friction alone decide.
+        let is_consistent = |shut: &Total<bool, NK>, pushes: &List<T, NR>| {
+            let left = kept.rates(pushes);
+            (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough) && farthest(pushes) <= most
+        };
+        let mut overlapping = stay;
+        (0..kept.count).for_each(|c| overlapping[c] &= kept.free[c] <= enough);
+        let mut tried = [stay, overlapping].into_iter().map(|shut| (shut, kept.together(&shut)));
+        let found = tried.find(|(shut, pushes)| is_consistent(shut, pushes));
+        let mut pushes = found.map_or(List::repeat(T::zero()), |(_, pushes)| pushes);
         let left = kept.rates(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = kept.with(left);
