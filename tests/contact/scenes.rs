@@ -106,7 +106,7 @@ fn random_scenes_of_two_bricks_go_on() {
         let step = match seed / 3 % 3 {
             0 => step,
             1 => step.midpoint(),
-            _ => step.euler(),
+            _ => step.leapfrog(),
         };
         let weight = m.mass * (1.0 + m.ratio);
         m.checked((m.posed(poses), v), step, (h, 60, 100.0 * weight * h * h));

@@ -373,7 +373,7 @@ fn fixed_scenes() {
     let methods = [
         ("4 evaluations", TimeStepping::step(1e-3)),
         ("2", TimeStepping::step(1e-3).midpoint()),
-        ("1", TimeStepping::step(1e-3).euler()),
+        ("1", TimeStepping::step(1e-3).leapfrog()),
     ];
     for (text, method) in methods {
         let scene = |name, size, duration| Scene { name, seed: 0, size, method, h: 1e-3, duration };
@@ -420,7 +420,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
                     let $e = if $random.next() < 0.6 { 0.0 } else { $random.next() };
                     let h = 10f64.powf($random.uniform(-4.0, -2.3));
                     let step = TimeStepping::step(h);
-                    let method = $random.choose(&[step, step.midpoint(), step.euler()]);
+                    let method = $random.choose(&[step, step.midpoint(), step.leapfrog()]);
                     // Masses up to 10⁴ times as large as others.
                     let grade = $random.uniform(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
                     let $grade = $random.choose(&[0.0, grade]);

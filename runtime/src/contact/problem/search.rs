@@ -25,8 +25,7 @@ const STEEP: f64 = 4.0;
 const GUESSED: usize = 6;
 /// Rows up to which Newton's method for the natural map takes less time than a convex problem.
 const DENSE: usize = 36;
-/// Violation of the contact conditions, as a part of the largest rate, that is as good as none where rows
-/// depend on each other.
+/// Violation of the contact conditions, as a part of the largest rate, that is as good as none in a step.
 const ENOUGH: f64 = 1e-10;
 /// Most contacts of which all pairs are tried then.
 const PAIRED: usize = 24;
@@ -68,7 +67,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let is_found = |problem: &Self, found: &Trial<T, NK, NR>| {
             found.worst.0 <= problem.speed() * epsilon::<T>().sqrt() || problem.solves(found)
         };
-        if self.is_exhaustive() && !self.solves(&found) {
+        let is_enough = self.is_relaxed && found.worst.0 <= self.speed() * constant(ENOUGH);
+        if self.is_exhaustive() && !is_enough && !self.solves(&found) {
             let other = self.exhaustive(found.impulses);
             let other = self.tried(other);
             // What rounding leaves of the map under very different masses says little.
