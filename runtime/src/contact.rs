@@ -1,67 +1,76 @@
-//! Contacts that open and close: gaps, impacts, friction that holds ([guide](crate::guide::contact)).
+//! Contacts that open and close: gaps, impacts, friction ([guide](crate::guide::contact)).
 //!
 //! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares
-//! one. The functions of the dynamics (`forward_dynamics` and all else) know nothing of contacts;
-//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them, and [`impact`] and [`solve`] are what it
-//! is made of; [`EventDriven`](crate::integrate::EventDriven) locates every event. Other methods of
-//! integration do not compile for a mechanism with contacts, so that none is passed through in silence;
-//! [`apart`] leaves contacts out where that is meant.
+//! one. The functions of the dynamics, such as `forward_dynamics`, ignore contacts.
+//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them with the functions [`impact`] and
+//! [`solve`], and [`EventDriven`](crate::integrate::EventDriven) locates every event. Other integration
+//! methods do not compile for a mechanism with contacts, so that none is ignored unnoticed; [`apart`] returns
+//! the mechanism without contacts.
 //!
-//! # The law
+//! # Contact conditions
 //!
-//! Of each contact the gap `g` is zero or more, and so is the normal impulse `Λ`, and where surfaces part
-//! there is none. After an impact the rate of the gap is `−e` times that before it, at least (Newton's law of
-//! restitution). Friction is Coulomb's: where surfaces stick the impulse along the tangents is at most `μ Λ`,
-//! and where they slip it is that, against the slip. All contacts, and all constraints of the mechanism, act
-//! at once: with the rates `u = G v`,
+//! The gap `g` and the normal impulse `Λ` of a contact are not negative, and separating surfaces have no
+//! impulse. After an impact the gap velocity is at least `−e` times that before it (Newton's law of
+//! restitution). Friction is Coulomb's: the tangential impulse is at most `μ Λ` if surfaces stick, and
+//! opposes the slip with `μ Λ` if they slip. All contacts, and all constraints of the mechanism, act at once:
+//! with the contact velocities `u = G v`,
 //!
 //! ```text
 //! M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   J v⁺ = 0,   0 ≤ u⁺ₙ + e u⁻ₙ  ⊥  Λₙ ≥ 0,   |Λₜ| ≤ μ Λₙ,  Λₜ = −μ Λₙ u⁺ₜ / |u⁺ₜ| where it slips
 //! ```
 //!
-//! Where restitution is Poisson's (`restitution = poisson(e)`) an impact has two parts, each with Coulomb's
-//! law. The impulses `Λᶜ` of compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`; then those of
-//! restitution are `e Λᶜₙ` at least, and more where surfaces would approach each other:
+//! With Poisson's restitution (`restitution = poisson(e)`) an impact has two phases, each with Coulomb's law.
+//! The impulses `Λᶜ` of compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`. The impulses of
+//! restitution are at least `e Λᶜₙ`, and larger if surfaces would approach each other:
 //! `0 ≤ u⁺ₙ ⊥ Λₙ − (1 + e) Λᶜₙ ≥ 0` (Glocker and Pfeiffer, *Multiple impacts with friction in rigid multibody
-//! systems*, Nonlinear Dynamics 7, 1995). In a time step compression is that of the velocity before the step,
-//! so that what rests does not bounce.
+//! systems*, Nonlinear Dynamics 7, 1995). In a time step, compression starts from the velocity before the
+//! step, so that resting bodies do not bounce.
 //!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato,
 //! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008).
 //!
 //! # Solution
 //!
-//! The impulses are searched in four stages, each of which ends the search if it satisfies the conditions to
-//! rounding. All contacts take each iteration at once, so that the order of declaration decides nothing.
+//! If more than 36 contact velocities are closed, contacts that no impulses couple form groups, and each
+//! group is solved alone. Impulses are searched in four stages. A stage ends the search if its impulses
+//! satisfy the conditions to rounding. All contacts take each iteration at once, so that the order of
+//! declaration does not affect the result.
 //!
-//! 1. Where all contacts stick that approach, the problem is linear.
-//! 2. Newton's method for the natural map (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991),
-//!    from there or from the impulses of the step before: mostly two or three iterations.
+//! 1. If all approaching contacts stick, the problem is linear.
+//! 2. Newton's method for the natural map (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991)
+//!    starts there or at the impulses of the previous step, and mostly takes two or three iterations. It is
+//!    left out if there are more contact velocities than velocities, and more than 36.
 //! 3. A sequence of at most 16 convex problems, with at most 60 iterations of Newton's method in all. The
 //!    conditions with friction are neither convex nor always solvable. They become a convex problem with
 //!    exactly one solution if normal impulses are coupled to slip (Anitescu, Math. Program. 105, 2006), which
 //!    Drake and MuJoCo solve; but then sliding surfaces separate. The sequence keeps the convexity and
-//!    removes this error: each problem subtracts the separation that the slip of the problem before would
-//!    cause (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011), and the regularisation is removed by
-//!    multipliers, so that contacts stay rigid and redundant contacts do no harm. A pivoting method (Lemke)
-//!    would need friction cones with edges, projected Gauss–Seidel (Siconos, ODE) depends on the order of
-//!    contacts and converges slowly for large mass ratios, and ADMM (Pinocchio) needs tuned penalties.
+//!    removes this error: each problem subtracts the separation that the slip of the previous problem would
+//!    cause (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011). Multipliers remove the regularisation, so
+//!    that contacts stay rigid and redundant contacts do no harm. A pivoting method (Lemke) would need
+//!    friction cones with edges, projected Gauss–Seidel (Siconos, ODE) depends on the order of contacts and
+//!    converges slowly for large mass ratios, and ADMM (Pinocchio) needs tuned penalties.
 //! 4. Newton's method for the natural map from the best impulses of the sequence.
 //!
-//! A step of [`TimeStepping`](crate::integrate::TimeStepping) that has found nothing takes the impulses that
-//! violate the conditions least, and reports the violation
-//! ([`Sample::violation`](crate::simulate::Sample::violation)). The impulses of each convex problem dissipate
-//! energy, so that such a step adds none either. For single impacts ([`impact`] and [`solve`]), and in steps
-//! with up to six contacts or with coefficients of friction above 4, up to 24 contacts go on to an active set
-//! (without friction), projected gradient steps with momentum (Nesterov; Mazhar et al., ACM Trans. Graph. 34,
-//! 2015), friction that grows by degrees, and guesses of sticking contacts. Single impacts for which these
+//! The first two stages are exact: one body on the ground neither creeps nor gains energy. If no stage
+//! succeeds, a step of [`TimeStepping`](crate::integrate::TimeStepping) takes the impulses that violate the
+//! conditions least, and reports the violation ([`Sample::violation`](crate::simulate::Sample::violation)).
+//! The impulses of each convex problem dissipate energy, so that such a step adds none either.
+//!
+//! Up to 24 contacts of single impacts ([`impact`] and [`solve`]) go on to an active set (without friction),
+//! projected gradient steps with momentum (Nesterov; Mazhar et al., ACM Trans. Graph. 34, 2015), friction
+//! that grows by degrees, and guesses of sticking contacts. So do steps with coefficients of friction above
+//! 4. Steps with up to six contacts take three rounds of the gradient steps. Single impacts for which these
 //! fail, too, are errors.
 //!
-//! Mechanisms with many contacts have matrices for their closed contacts only. Impulses that are shared by
-//! more contacts than the motion can tell apart (a table on four legs) are those of least norm where all of
-//! them stick; where some of them slip there may be several solutions. Newton's law of restitution together
-//! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would,
-//! all coefficients of restitution are lowered together until it does not.
+//! After the impulses, displacements close gaps and penetrations of contacts that stay closed. Gaps can
+//! contradict each other if a contact has moved to another edge of a body in the step. Contacts with open
+//! gaps then stay open, and only penetrations are removed.
+//!
+//! Mechanisms with many contacts have matrices for their closed contacts only. If the motion does not
+//! determine the impulses of redundant contacts (a table on four legs), they have the least norm if all
+//! stick; if some slip there may be several solutions. Newton's law of restitution together with friction can
+//! add energy (Kane's paradox), or have no solution. All coefficients of restitution are then reduced
+//! together.
 
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
@@ -228,8 +237,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
 }
 
 /// Generic code for mechanisms with any number of contacts, called by
-/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with the
-/// numbers of the mechanism.
+/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with
+/// the numbers of the mechanism.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Type of the result.
     type Output;
@@ -521,8 +530,8 @@ where
     ConstraintError::Contact { constraint: M::CONTACTS.get(contact).copied().unwrap_or_default() }
 }
 
-/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its
-/// matrices are large, so it is filled in place.
+/// Closed contacts of a step, with their impulses and the effects of these on velocities. Its matrices are
+/// large, so it is filled in place.
 struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
     selection: Selection<CK, CR>,
     problem: Problem<T, CK, CR>,

@@ -1,10 +1,10 @@
 //! Random scenes of up to ten bodies that fall on each other, and times of their steps.
 //!
 //! ```sh
-//! cargo run --release -- 100          # a hundred scenes of each family, and the fixed scenes of mujoco.py
+//! cargo run --release -- 100          # a hundred scenes of each family, and the fixed scenes of mujoco_scenes.py
 //! cargo run --release -- 100 5000     # those with seeds from 5000 on
 //! cargo run --release -- 100 0 Boxes3 # one family
-//! python mujoco.py                    # the fixed scenes in MuJoCo
+//! python mujoco_scenes.py                    # the fixed scenes in MuJoCo
 //! ```
 //!
 //! A row has the number of runs, of runs that ended with an error and of those with NaN; microseconds of a
@@ -360,7 +360,7 @@ fn start<const NQ: usize, const NV: usize>(
     (q, v)
 }
 
-/// Starts of the fixed scenes, which `mujoco.py` has as well.
+/// Starts of the fixed scenes, which `mujoco_scenes.py` has as well.
 fn row<const NQ: usize, const NV: usize>(n: usize) -> (SVector<f64, NQ>, SVector<f64, NV>) {
     let (mut q, mut v) = (SVector::zeros(), SVector::zeros());
     (0..n).for_each(|k| place(&mut q, k, [0.025 * k as f64, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]));

@@ -46,38 +46,38 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         Self { contacts, count, rows, size, layout: Layout::new(own, pressed_by) }
     }
 
-    /// The rows of the selected contacts.
+    /// Returns the rows of the selected contacts.
     pub(super) fn layout(&self) -> Layout<CK> {
         self.layout
     }
 
-    /// A contact of the mechanism.
+    /// Returns a selected contact's index in the mechanism.
     pub(super) fn contact(&self, k: usize) -> usize {
         self.contacts[k]
     }
 
-    /// Which entries are selected contacts.
+    /// Returns true for entries that are selected contacts.
     pub(super) fn closed(&self) -> [bool; CK] {
         let mut closed = [false; CK];
         closed.iter_mut().take(self.count).for_each(|closed| *closed = true);
         closed
     }
 
-    /// Values of the selected rows.
+    /// Returns values of the selected rows.
     pub(super) fn rates<T: Real, const NR: usize>(&self, all: &SVector<T, NR>) -> SVector<T, CR> {
         let mut rates = SVector::zeros();
         (0..self.size).for_each(|i| put(&mut rates, i, entry(all, self.rows[i])));
         rates
     }
 
-    /// Values of the selected contacts.
+    /// Returns values of the selected contacts.
     pub(super) fn gaps<T: Real, const NK: usize>(&self, all: &SVector<T, NK>) -> SVector<T, CK> {
         let mut gaps = SVector::zeros();
         (0..self.count).for_each(|k| put(&mut gaps, k, entry(all, self.contacts[k])));
         gaps
     }
 
-    /// Coefficients of the selected contacts.
+    /// Returns the coefficients of the selected contacts.
     pub(super) fn laws<T: Real, const NK: usize>(&self, all: &[Law<T>; NK]) -> [Law<T>; CK] {
         let hypothesis = Restitution::Newton;
         let none = Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis };
@@ -88,14 +88,14 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         laws
     }
 
-    /// Values of the selected rows at the rows of the mechanism; zeros elsewhere.
+    /// Returns values of the selected rows at the rows of the mechanism; zeros elsewhere.
     pub(super) fn spread<T: Real, const NR: usize>(&self, rates: &SVector<T, CR>) -> SVector<T, NR> {
         let mut all = SVector::zeros();
         (0..self.size).for_each(|i| put(&mut all, self.rows[i], entry(rates, i)));
         all
     }
 
-    /// Effects of impulses at the selected contacts.
+    /// Returns the effects of impulses at the selected contacts.
     pub(super) fn responses<
         M,
         T,

@@ -1,4 +1,4 @@
-//! What contacts make of a step: impulses, and displacements that take overlaps away.
+//! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
@@ -11,7 +11,7 @@ use crate::private::{constant, epsilon};
 use core::cell::Cell;
 use nalgebra::SVector;
 
-/// How often the part of a displacement that the energy allows is found anew.
+/// Maximum number of scalings of a displacement by the energy that it may add.
 const PARTS: usize = 4;
 
 /// Sizes of the arrays for closed contacts of mechanisms that have more contact velocities.
@@ -19,26 +19,27 @@ const SMALL: usize = FEW;
 const MEDIUM: usize = 72;
 const LARGE: usize = 144;
 
-/// Where a step has come from.
+/// Start of a step.
 pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
     /// The configuration and the velocity.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are
-    /// asked for.
+    /// Contact velocities of its velocity at the end of the step ([`rates_at_end`]), evaluated on demand.
     rates: Cell<Option<SVector<T, NR>>>,
-    /// How long it has taken.
+    /// Duration of the step.
     h: T,
-    /// By how much contacts have been taken to move it.
+    /// Displacement by the contact forces that were assumed.
     held: SVector<T, NV>,
 }
 
 impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T, NQ, NV, NR> {
-    /// From a state in `h` seconds, in which contacts have been taken to move it by `held`.
+    /// Returns the start of a step of `h` seconds from a state, with the displacement `held` by the assumed
+    /// contact forces.
     pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
         Self { start, rates: Cell::new(None), h, held }
     }
 
-    /// The rates at the contacts that the velocity has where the step ends, in the configuration `q`.
+    /// Returns the contact velocities of the initial velocity at the end of the step, in the configuration
+    /// `q`.
     pub(super) fn rates<M, const NU: usize, const NK: usize>(
         &self,
         mechanism: &M,
@@ -187,7 +188,7 @@ where
     }
 }
 
-/// Where a step comes from, where it has led without contacts, and what contacts were taken to add.
+/// Start of a step, its end without contacts, and the change of velocity by the assumed contact forces.
 type Run<'a, T, const NQ: usize, const NV: usize, const NR: usize> = (
     Came<'a, T, NQ, NV, NR>,
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
@@ -367,7 +368,7 @@ where
     found
 }
 
-/// What rounding leaves of an energy.
+/// Returns the rounding error of an energy.
 fn rounding<T: Real>(energy: T) -> T {
     energy.abs() * epsilon() * constant(8.0)
 }

@@ -48,14 +48,14 @@ use nalgebra::SVector;
 /// step takes those that violate the conditions least, and reports by how much
 /// ([`Sample::violation`](crate::simulate::Sample::violation)).
 ///
-/// A step takes four evaluations of the dynamics, [two](Self::midpoint) or [one](Self::leapfrog). With closed contacts, it
-/// also takes one evaluation of gap functions, Jacobian and mass matrix and two of contact velocities, or twice as
-/// many if the contact modes have changed. Its matrices are on the stack: up to eight of `C × C` numbers, and
-/// several times that in unoptimised builds. `C` is the number of contact velocities of all contacts or, for
-/// mechanisms that have more than 36, the smallest of 36, 72 and 144 that is enough for the closed contacts.
-/// This is 9 KiB for two feet, and 1.3 MiB for a stack of ten boxes with 120 contact velocities, for which a
-/// thread may need [more stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size)
-/// than the default.
+/// A step takes four evaluations of the dynamics, [two](Self::midpoint) or [one](Self::leapfrog). With closed
+/// contacts, it also takes one evaluation of gap functions, Jacobian and mass matrix and two of contact
+/// velocities, or twice as many if the contact modes have changed. Its matrices are on the stack: up to ten
+/// of `C × C` numbers, and several times that in unoptimised builds. `C` is the number of contact velocities
+/// of all contacts or, for mechanisms that have more than 36, the smallest of 36, 72 and 144 that is enough
+/// for the closed contacts. This is 11 KiB for two feet, and 1.6 MiB for a stack of ten boxes with 120
+/// contact velocities, for which a thread may need [more
+/// stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than the default.
 ///
 /// Constraints are satisfied at the end of each step. Source: Jean, *The non-smooth contact dynamics method*,
 /// Comput. Methods Appl. Mech. Eng. 177 (1999).
@@ -121,8 +121,8 @@ impl<T: Real> TimeStepping<T> {
     /// Selects steps with one evaluation of the dynamics, and a second one where contact modes have changed.
     /// A step is that of [`midpoint`](Self::midpoint), with the acceleration at the middle of the previous
     /// step in place of `a(q, v)`. The order is the same. If accelerations do not depend on velocities, it is
-    /// the same step; otherwise the error of a step is about three times as large, since the acceleration that
-    /// leads to `v_m` is that of a time one step earlier.
+    /// the same step; otherwise the error of a step is about three times as large, since the acceleration
+    /// that leads to `v_m` is that of a time one step earlier.
     ///
     /// ```
     /// use linkwork::prelude::*;

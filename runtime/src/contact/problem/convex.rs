@@ -11,11 +11,11 @@
 //! `Λ̄ = 0` it is Anitescu's relaxation, regularised (Castro, Permenter and Han, *An unconstrained convex
 //! formulation of compliant contact*, IEEE Trans. Robot. 39, 2023). `Λ̄`, the impulses of the problem before,
 //! removes the effect of the regularisation `R` (method of multipliers), and `s = μ |uₜ|`, from the slip
-//! before, that of the relaxation (Acary, Cadoux, Lemaréchal and Malick, *A formulation of the linear discrete
-//! Coulomb friction problem via convex optimization*, ZAMM 91, 2011): where both stay the same, Coulomb's law
-//! is satisfied. For every `s ≥ 0` the impulses take energy, so that a sequence that is cut off adds none.
-//! Where little is left of Coulomb's law, problems contain `s = μ |uₜ|` itself: Newton's equations are then not
-//! symmetric, and convergence is quadratic.
+//! before, that of the relaxation (Acary, Cadoux, Lemaréchal and Malick, *A formulation of the linear
+//! discrete Coulomb friction problem via convex optimization*, ZAMM 91, 2011): where both stay the same,
+//! Coulomb's law is satisfied. For every `s ≥ 0` the impulses take energy, so that a sequence that is cut off
+//! adds none. If the violation of Coulomb's law is small, problems contain `s = μ |uₜ|` itself: Newton's
+//! equations are then not symmetric, and convergence is quadratic.
 
 use super::super::total::Total;
 use super::trial::Trial;
@@ -33,15 +33,16 @@ const STEPS_OF_ONE: usize = 12;
 const HALVINGS: usize = 4;
 /// Evaluations of a line search.
 const SEARCHES: usize = 10;
-/// Regularisation of an impulse as a part of what it changes its own rate by: in the first problem, from
-/// problem to problem, and at least.
-const REGULARISATIONS: [f64; 3] = [1e-2, 0.3, 1e-4];
-/// Violation of Coulomb's law, as a part of the largest rate, below which problems contain `s = μ |uₜ|` itself
-/// instead of its value from the problem before.
+/// Regularisation of an impulse relative to its own diagonal entry of `W`: in the first problem, its factor
+/// from problem to problem, its smallest value if these converge, and if they do not.
+const REGULARISATIONS: [f64; 4] = [1e-2, 0.3, 1e-4, 1e-8];
+/// Violation of Coulomb's law, relative to the largest contact velocity, below which problems contain
+/// `s = μ |uₜ|` itself instead of its value from the previous problem.
 const SMOOTH: f64 = 1e-2;
-/// Violation that is as good as none, likewise.
+/// Violation that counts as zero, likewise, and violation at which a slow sequence ends.
 const ENOUGH: f64 = 1e-12;
-/// Parts of friction of a contact: slip, spin and rolling.
+const GOOD: f64 = 1e-10;
+/// Kinds of friction of a contact: slip, spin and rolling.
 const PARTS: usize = 3;
 
 /// Friction of a contact, or one of its moments.
@@ -78,12 +79,12 @@ struct Projection<T> {
 }
 
 impl<T: Real> Cone<T> {
-    /// Parts that exist, with their indices.
+    /// Returns the kinds of friction that exist, with their indices.
     fn parts(&self) -> impl Iterator<Item = (usize, TangentRows<T>)> {
         self.parts.into_iter().enumerate().filter(|(_, part)| part.count > 0)
     }
 
-    /// Slip times friction, of all parts.
+    /// Returns the sum of the slip speeds times their coefficients of friction.
     fn slip<const NR: usize>(&self, rates: &List<T, NR>) -> T {
         self.parts().fold(T::zero(), |sum, (_, part)| {
             let rows = part.first..part.first + part.count;
@@ -91,7 +92,7 @@ impl<T: Real> Cone<T> {
         })
     }
 
-    /// Nearest point of the cone to `wanted` in the metric of the regularisation.
+    /// Returns the projection of `wanted` onto the cone in the metric of the regularisation.
     fn project<const NR: usize>(&self, wanted: &List<T, NR>, weights: &List<T, NR>) -> Projection<T> {
         let none = T::zero();
         let mut sizes = [none; PARTS];
@@ -139,7 +140,7 @@ impl<T: Real> Cone<T> {
         Projection { normal, is_pressed, along, sizes, bounded }
     }
 
-    /// Impulses of a projection.
+    /// Writes the impulses of a projection.
     fn place<const NR: usize>(
         &self,
         found: &Projection<T>,
@@ -156,12 +157,12 @@ impl<T: Real> Cone<T> {
     }
 }
 
-/// Entries of a row of a matrix that is stored row by row.
+/// Returns a row of a matrix that is stored row by row.
 fn row<T>(matrix: &[T], width: usize, i: usize) -> &[T] {
     matrix.get(i * width..(i + 1) * width).unwrap_or_default()
 }
 
-/// Entries of a row, to be changed.
+/// Returns a mutable row.
 fn row_mut<T>(matrix: &mut [T], width: usize, i: usize) -> &mut [T] {
     matrix.get_mut(i * width..(i + 1) * width).unwrap_or_default()
 }
@@ -237,7 +238,7 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         self.cones.iter().take(self.count)
     }
 
-    /// Impulses before they are projected, at given rates.
+    /// Writes the impulses before their projection for contact velocities `rates`.
     fn predict(&self, cone: &Cone<T>, rates: &List<T, NR>, wanted: &mut List<T, NR>) {
         let prediction = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
         let (n, raised) = (cone.normal, if self.is_smooth { cone.slip(rates) } else { cone.raised });
@@ -247,7 +248,7 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         }
     }
 
-    /// Impulses at given rates.
+    /// Returns the impulses for contact velocities `rates`.
     fn impulses_at(&self, rates: &List<T, NR>) -> List<T, NR> {
         let (mut wanted, mut impulses) = (List::repeat(T::zero()), List::repeat(T::zero()));
         for cone in self.cones() {
@@ -257,16 +258,16 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         impulses
     }
 
-    /// Takes `Bᵀ` times values of all rates from a vector.
-    fn take_transposed(&self, values: &List<T, NR>, from: &mut List<T, NR>) {
-        for i in 0..self.problem.size {
-            if values[i] != T::zero() {
-                add(from.get_mut(..self.rank).unwrap_or_default(), -values[i], row(self.basis, self.rank, i));
-            }
+    /// Begins at given impulses `Λ`: `Λ̄ = Λ` and `w = Bᵀ Λ`.
+    fn begin(&mut self, impulses: &List<T, NR>) {
+        (self.center, self.w) = (*impulses, List::repeat(T::zero()));
+        for i in (0..self.problem.size).filter(|i| impulses[*i] != T::zero()) {
+            let w = self.w.get_mut(..self.rank).unwrap_or_default();
+            add(w, impulses[i], row(self.basis, self.rank, i));
         }
     }
 
-    /// `B` times a vector.
+    /// Returns `B w`.
     fn spread_basis(&self, w: &List<T, NR>) -> List<T, NR> {
         let mut rates = List::repeat(T::zero());
         for i in 0..self.problem.size {
@@ -275,7 +276,7 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         rates
     }
 
-    /// Rates and impulses at `w`.
+    /// Evaluates contact velocities and impulses at `w`.
     fn evaluate(&mut self) {
         self.rates = self.spread_basis(&self.w);
         for i in 0..self.problem.size {
@@ -284,7 +285,7 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         self.impulses = self.impulses_at(&self.rates);
     }
 
-    /// Derivative by `w` of the gradient: `1 + Bᵀ H B`.
+    /// Writes the derivative of the gradient by `w`: `1 + Bᵀ H B`.
     fn curvature(&self, matrix: &mut [T]) {
         let (rank, none) = (self.rank, T::zero());
         matrix.iter_mut().take(rank * rank).for_each(|entry| *entry = none);
@@ -357,7 +358,7 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
         }
     }
 
-    /// Minus the gradient, `Bᵀ Λ − w`.
+    /// Returns the negative gradient, `Bᵀ Λ − w`.
     fn descent(&self) -> List<T, NR> {
         let mut descent = List::repeat(T::zero());
         (0..self.rank).for_each(|i| descent[i] = -self.w[i]);
@@ -467,7 +468,7 @@ fn eliminate<T: Real>(matrix: &mut [T], size: usize, x: &mut [T]) {
     }
 }
 
-/// Step length at which the slope along a convex function is small, at most one.
+/// Returns a step length, at most one, at which the slope along a convex function is small.
 fn root<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
     let (mut low, mut high) = ((T::zero(), start), (T::one(), slope(T::one())));
     let little = start.abs() * constant(0.25);
@@ -494,7 +495,7 @@ fn root<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Rows of `B` with `W = B Bᵀ` (Cholesky with pivots), one after another, and their length.
+    /// Writes `B` with `W = B Bᵀ` column by column (Cholesky with pivots), and returns its rank.
     fn basis(&self, basis: &mut [T]) -> usize {
         let size = self.size;
         // Columns first, one after another.
@@ -535,7 +536,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         rank
     }
 
-    /// Impulses by a sequence of convex problems from given ones: the best that it finds.
+    /// Returns the best impulses of a sequence of convex problems that begins at given impulses.
     #[inline(never)]
     pub(super) fn by_convex_problems(&self, start: &List<T, NR>) -> Trial<T, NK, NR> {
         let mut columns = [[T::zero(); NR]; NR];
@@ -592,15 +593,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             cones,
             count,
             weights,
-            center: *start,
+            center: zeros,
             is_smooth: false,
             w: zeros,
             rates: zeros,
             impulses: zeros,
         };
-        let mut w = zeros;
-        convex.take_transposed(start, &mut w);
-        (0..rank).for_each(|i| convex.w[i] = -w[i]);
+        convex.begin(start);
         let raise = |convex: &mut Convex<'_, T, NK, NR>, rates: &List<T, NR>| {
             (0..count).for_each(|k| convex.cones[k].raised = convex.cones[k].slip(rates));
         };
@@ -609,26 +608,42 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             raise(&mut convex, &best.rates);
         }
         let speed = self.speed();
-        let (mut steps, mut left) = (0, speed);
-        let [first, factor, last] = REGULARISATIONS.map(constant::<T>);
+        let (mut steps, mut left, mut may_be_smooth) = (0, speed, true);
+        let [first, factor, last, smallest] = REGULARISATIONS.map(constant::<T>);
         let mut regularisation = first;
         for _ in 0..PROBLEMS {
             convex.weights = weights.each(|weight| weight * regularisation);
-            convex.is_smooth = left < speed * constant(SMOOTH);
+            convex.is_smooth = may_be_smooth && left < speed * constant(SMOOTH);
             convex.evaluate();
             let enough = (left / speed).min(T::one()) * constant(1e-2);
             steps += 1 + convex.minimise(matrix, STEPS_OF_ONE, enough);
             let found = self.tried(convex.impulses);
+            let is_slow = found.worst.0 > left * constant(0.5);
             left = found.worst.0;
-            if left < best.worst.0 {
+            // It is no worse where it is no number, either.
+            let is_better = left < best.worst.0;
+            if is_better {
                 best = found;
             }
-            if steps >= STEPS || left <= speed * constant(ENOUGH) || self.solves(&best) {
+            let is_stalled = is_slow && best.worst.0 <= speed * constant(GOOD);
+            if steps >= STEPS || is_stalled || left <= speed * constant(ENOUGH) || self.solves(&best) {
                 break;
             }
-            raise(&mut convex, &found.rates);
-            convex.center = convex.impulses;
-            regularisation = (regularisation * factor).max(last);
+            if convex.is_smooth && !is_better {
+                // Newton's equations that are not symmetric can lead away.
+                may_be_smooth = left <= best.worst.0 * constant(2.0);
+                left = best.worst.0;
+                raise(&mut convex, &best.rates);
+                convex.begin(&best.impulses);
+            } else {
+                raise(&mut convex, &found.rates);
+                convex.center = convex.impulses;
+            }
+            // Impulses that the motion can hardly tell apart converge slowly with a large regularisation.
+            regularisation = match is_slow && regularisation <= last {
+                true => (regularisation * constant(0.1)).max(smallest),
+                false => (regularisation * factor).max(last.min(regularisation)),
+            };
         }
         best
     }

@@ -44,8 +44,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.newton_twice(self.tried(self.stepped(&trial, constant(APART[1]), &mut square())))
     }
 
-    /// Impulses after one more step, if the slowest of those that press are not yet exact to rounding of their
-    /// own rate.
+    /// Impulses after one more step, if the slowest of those that press are not yet exact to rounding of
+    /// their own rate.
     pub(super) fn refined(&self, trial: Trial<T, NK, NR>, lift: T) -> Trial<T, NK, NR> {
         let Trial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();

@@ -10,27 +10,30 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
 
-/// Rounds of sweeps, each followed by Newton's method.
+/// Maximum number of rounds of gradient steps, each followed by Newton's method.
 const ROUNDS: usize = 12;
-/// Sweeps of the first round; of each later one there are one more.
+/// Maximum number of rounds in a step of a simulation.
+const ROUNDS_OF_STEP: usize = 3;
+/// Gradient steps in the first round; each later round has one more.
 const SWEEPS: usize = 21;
-/// Factors of the steps of the natural map, round by round.
+/// Factor of the steps of the natural map in each round.
 const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
-/// Parts in which friction grows where nothing else helps.
+/// Increments in which friction grows if all else fails.
 const DEGREES: u32 = 24;
 /// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors
 /// in the second.
 const STEEP: f64 = 4.0;
-/// Contacts of which all selections are tried where nothing else helps.
+/// Maximum number of contacts whose subsets are all tried if all else fails.
 const GUESSED: usize = 6;
 /// Rows up to which Newton's method for the natural map takes less time than a convex problem.
 const DENSE: usize = 36;
-/// Violation of the contact conditions, as a part of the largest rate, that is as good as none in a step.
+/// Violation of the contact conditions that counts as zero if rows depend on each other, relative to the
+/// largest contact velocity.
 const ENOUGH: f64 = 1e-10;
-/// Most contacts of which all pairs are tried then.
+/// Maximum number of contacts whose pairs are all tried then.
 const PAIRED: usize = 24;
 
-/// Less friction, by a share of the way from none.
+/// Returns reduced friction, which grows with `share` from zero.
 fn part_of<T: Real>(friction: T, share: T) -> T {
     let (steep, twice) = (constant::<T>(STEEP), share + share);
     if friction <= steep {
@@ -43,7 +46,7 @@ fn part_of<T: Real>(friction: T, share: T) -> T {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Impulses that satisfy the contact conditions.
+    /// Returns impulses that satisfy the contact conditions.
     ///
     /// # Errors
     ///
@@ -63,12 +66,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         start: Option<&Start<T, NR>>,
         equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
+        if const { NR > DENSE } && self.size > DENSE {
+            let groups = self.groups();
+            if groups.1 > 1 {
+                let found = self.tried(self.solve_groups(&groups, start));
+                self.violation = found.worst.0;
+                if found.worst.0 <= self.speed() * epsilon::<T>().sqrt() || self.solves(&found) {
+                    return Ok(found.impulses);
+                }
+                self.closest = found.impulses;
+                return Err(self.contacts[found.worst.1].0);
+            }
+        }
         let mut found = self.search(start, equations);
         let is_found = |problem: &Self, found: &Trial<T, NK, NR>| {
             found.worst.0 <= problem.speed() * epsilon::<T>().sqrt() || problem.solves(found)
         };
-        let is_enough = self.is_relaxed && found.worst.0 <= self.speed() * constant(ENOUGH);
-        if self.is_exhaustive() && !is_enough && !self.solves(&found) {
+        if self.is_exhaustive() && !(self.is_relaxed && is_found(self, &found)) && !self.solves(&found) {
             let other = self.exhaustive(found.impulses);
             let other = self.tried(other);
             // What rounding leaves of the map under very different masses says little.
@@ -87,7 +101,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Err(self.contacts[worst].0)
     }
 
-    /// Impulses without what rounding leaves of them outside of their friction cones.
+    /// Projects impulses onto their friction cones, from which rounding may have moved them.
     fn in_cones(&self, mut impulses: List<T, NR>) -> List<T, NR> {
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
@@ -101,15 +115,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         impulses
     }
 
-    /// The impulses that violate the contact conditions least.
+    /// Returns the impulses that violate the contact conditions least.
     fn search(&self, start: Option<&Start<T, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
-        // Where all stick that approach, there is nothing to search for.
+        // If all approaching contacts stick, the problem is linear.
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
         let stuck = self.tried(self.together_with(&approach, equations));
         if self.solves(&stuck) {
             return stuck;
         }
-        // Mostly few slip or part, or do what they did before.
+        // Mostly few contacts slip or separate, or all keep their modes.
         let start = start.map(|start| {
             let mut impulses = start.impulses;
             impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
@@ -120,7 +134,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if !is_convex {
             let found = self.newton(regular.unwrap_or(stuck), self.lift());
             if self.solves(&found) {
-                // Beside fast slip little is left of what presses slowly.
+                // Compared with fast slip, residuals of slow normal velocities are small.
                 return self.refined(found, self.lift());
             }
         }
@@ -144,7 +158,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.size > DENSE && self.size > self.velocities
     }
 
-    /// The contacts of which this is so.
+    /// Returns the contacts that satisfy a condition.
     fn those(&self, is_so: impl Fn(usize) -> bool) -> Total<bool, NK> {
         let mut those = Total::repeat(false);
         for k in 0..self.count {
@@ -153,14 +167,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         those
     }
 
-    /// Whether everything is tried: not for many contacts, nor in the steps of a simulation, where it would take
-    /// too long, unless there are few contacts or friction is so strong that nothing else finds impulses.
+    /// Whether the search goes on after convex problems have failed. For many contacts, and in most steps of
+    /// a simulation, it would take too long. In a step it goes on for few contacts and for strong friction.
     fn is_exhaustive(&self) -> bool {
-        let is_steep = || self.friction.iter().take(self.count).any(|friction| *friction > constant(STEEP));
-        self.count <= PAIRED && (!self.is_relaxed || self.count <= GUESSED || is_steep())
+        self.count <= PAIRED && (!self.is_relaxed || self.count <= GUESSED || self.is_steep())
     }
 
-    /// Impulses by way of all that is known, where nothing else has found any.
+    /// Whether a coefficient of friction is so large that convex problems seldom find impulses.
+    fn is_steep(&self) -> bool {
+        self.friction.iter().take(self.count).any(|friction| *friction > constant(STEEP))
+    }
+
+    /// Searches impulses by all further methods.
     fn exhaustive(&mut self, start: List<T, NR>) -> List<T, NR> {
         let mut impulses = start;
         if self.is_smooth() {
@@ -169,13 +187,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 return impulses;
             }
         }
-        for round in 0..ROUNDS {
+        let is_short = self.is_relaxed && !self.is_steep();
+        let rounds = if is_short { ROUNDS_OF_STEP } else { ROUNDS };
+        for round in 0..rounds {
             self.relax(&mut impulses, SWEEPS + round);
             let relaxed = self.tried(impulses);
             if self.solves(&relaxed) {
                 return impulses;
             }
-            // Which steps of the map lead to the solution differs.
+            // The step of the map that leads to the solution differs between problems.
             let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
             if self.solves(&found) {
                 return found.impulses;
@@ -184,14 +204,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 impulses = found.impulses;
             }
         }
-        if self.rebounds() {
-            // With less restitution there is an answer.
+        if is_short || self.rebounds() {
+            // With less restitution impulses exist.
             return impulses;
         }
         if let Some(found) = self.by_degrees() {
             return found;
         }
-        // Where friction is strong, which contacts stay closed is all there is to find.
+        // With strong friction, only the set of closed contacts is unknown.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
             let start = self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1));
             let guess = self.newton_twice(self.tried(start));

@@ -1,6 +1,6 @@
 """MuJoCo on the fixed scenes of `benches/scenes`: microseconds of a step, in time of the thread.
 
-    python mujoco.py
+    python mujoco_scenes.py
 """
 
 import time
