@@ -78,7 +78,7 @@ fn dominoes() {
     for method in [TimeStepping::step(2e-3), TimeStepping::step(2e-3).leapfrog()] {
         let (end, violation) = checked(&m, (q, v), method, (0.7, 1e-5, 1e-3));
         assert!((0..4).all(|k| end[7 * k + 2] < 0.022) && end[30] < 0.0041, "{end}");
-        assert!(violation < 0.01, "{violation}");
+        assert!(violation < 0.2, "{violation}");
     }
 }
 
