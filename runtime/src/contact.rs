@@ -1,45 +1,76 @@
-//! Contacts that open and close: gaps, impacts, friction that holds ([guide](crate::guide::contact)).
+//! Contacts that open and close: gaps, impacts, friction ([guide](crate::guide::contact)).
 //!
 //! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares
-//! one. The functions of the dynamics (`forward_dynamics` and all else) know nothing of contacts;
-//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them, and [`impact`] and [`solve`] are what it
-//! is made of; [`EventDriven`](crate::integrate::EventDriven) locates every event. Other methods of
-//! integration do not compile for a mechanism with contacts, so that none is passed through in silence;
-//! [`apart`] leaves contacts out where that is meant.
+//! one. The functions of the dynamics, such as `forward_dynamics`, ignore contacts.
+//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them with the functions [`impact`] and
+//! [`solve`], and [`EventDriven`](crate::integrate::EventDriven) locates every event. Other integration
+//! methods do not compile for a mechanism with contacts, so that none is ignored unnoticed; [`apart`] returns
+//! the mechanism without contacts.
 //!
-//! # The law
+//! # Contact conditions
 //!
-//! Of each contact the gap `g` is zero or more, and so is the normal impulse `Λ`, and where surfaces part
-//! there is none. After an impact the rate of the gap is `−e` times that before it, at least (Newton's law of
-//! restitution). Friction is Coulomb's: where surfaces stick the impulse along the tangents is at most `μ Λ`,
-//! and where they slip it is that, against the slip. All contacts, and all constraints of the mechanism, act
-//! at once: with the rates `u = G v`,
+//! The gap `g` and the normal impulse `Λ` of a contact are not negative, and separating surfaces have no
+//! impulse. After an impact the gap velocity is at least `−e` times that before it (Newton's law of
+//! restitution). Friction is Coulomb's: the tangential impulse is at most `μ Λ` if surfaces stick, and
+//! opposes the slip with `μ Λ` if they slip. All contacts, and all constraints of the mechanism, act at once:
+//! with the contact velocities `u = G v`,
 //!
 //! ```text
 //! M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   J v⁺ = 0,   0 ≤ u⁺ₙ + e u⁻ₙ  ⊥  Λₙ ≥ 0,   |Λₜ| ≤ μ Λₙ,  Λₜ = −μ Λₙ u⁺ₜ / |u⁺ₜ| where it slips
 //! ```
 //!
-//! Where restitution is Poisson's (`restitution = poisson(e)`) an impact has two parts, each with Coulomb's
-//! law. The impulses `Λᶜ` of compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`; then those of
-//! restitution are `e Λᶜₙ` at least, and more where surfaces would approach each other:
+//! With Poisson's restitution (`restitution = poisson(e)`) an impact has two phases, each with Coulomb's law.
+//! The impulses `Λᶜ` of compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`. The impulses of
+//! restitution are at least `e Λᶜₙ`, and larger if surfaces would approach each other:
 //! `0 ≤ u⁺ₙ ⊥ Λₙ − (1 + e) Λᶜₙ ≥ 0` (Glocker and Pfeiffer, *Multiple impacts with friction in rigid multibody
-//! systems*, Nonlinear Dynamics 7, 1995). In a time step compression is that of the velocity before the step,
-//! so that what rests does not bounce.
+//! systems*, Nonlinear Dynamics 7, 1995). In a time step, compression starts from the velocity before the
+//! step, so that resting bodies do not bounce.
 //!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato,
-//! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where
-//! all contacts stick that approach there is a linear system, else Newton's method for their natural map
-//! (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) begins there, or with the impulses of the
-//! step before, and takes two or three steps as a rule; where it finds nothing, it goes on between projected
-//! gradient steps with momentum (Nesterov; Mazhar et al., *Using Nesterov's method to accelerate multibody
-//! dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of these, and 19 000 of
-//! Newton's. All contacts take each step at once, so that the order in which they are declared decides
-//! nothing. Without friction an active set that takes in contact after contact comes first. Impulses that are
-//! shared by more contacts than the motion can tell apart (a table on four legs) are those of least norm
-//! where all of them hold; where some of them slip there may be several solutions, and of piles of boxes
-//! rounding chooses between them in about one of 3000 steps. Newton's law of restitution together with
-//! friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all
-//! coefficients of restitution are lowered together until it does not.
+//! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008).
+//!
+//! # Solution
+//!
+//! If more than 36 contact velocities are closed, contacts that no impulses couple form groups, and each
+//! group is solved alone. Impulses are searched in four stages. A stage ends the search if its impulses
+//! satisfy the conditions to rounding. All contacts take each iteration at once, so that the order of
+//! declaration does not affect the result.
+//!
+//! 1. If all approaching contacts stick, the problem is linear.
+//! 2. Newton's method for the natural map (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991)
+//!    starts there or at the impulses of the previous step, and mostly takes two or three iterations. It is
+//!    left out if there are more contact velocities than velocities, and more than 36.
+//! 3. A sequence of at most 16 convex problems, with at most 60 iterations of Newton's method in all. The
+//!    conditions with friction are neither convex nor always solvable. They become a convex problem with
+//!    exactly one solution if normal impulses are coupled to slip (Anitescu, Math. Program. 105, 2006), which
+//!    Drake and MuJoCo solve; but then sliding surfaces separate. The sequence keeps the convexity and
+//!    removes this error: each problem subtracts the separation that the slip of the previous problem would
+//!    cause (Acary, Cadoux, Lemaréchal and Malick, ZAMM 91, 2011). Multipliers remove the regularisation, so
+//!    that contacts stay rigid and redundant contacts do no harm. A pivoting method (Lemke) would need
+//!    friction cones with edges, projected Gauss–Seidel (Siconos, ODE) depends on the order of contacts and
+//!    converges slowly for large mass ratios, and ADMM (Pinocchio) needs tuned penalties.
+//! 4. Newton's method for the natural map from the best impulses of the sequence.
+//!
+//! The first two stages are exact: one body on the ground neither creeps nor gains energy. If no stage
+//! succeeds, a step of [`TimeStepping`](crate::integrate::TimeStepping) takes the impulses that violate the
+//! conditions least, and reports the violation ([`Sample::violation`](crate::simulate::Sample::violation)).
+//! The impulses of each convex problem dissipate energy, so that such a step adds none either.
+//!
+//! Up to 24 contacts of single impacts ([`impact`] and [`solve`]) go on to an active set (without friction),
+//! projected gradient steps with momentum (Nesterov; Mazhar et al., ACM Trans. Graph. 34, 2015), friction
+//! that grows by degrees, and guesses of sticking contacts. So do steps with coefficients of friction above
+//! 4. Steps with up to six contacts take three rounds of the gradient steps. Single impacts for which these
+//! fail, too, are errors.
+//!
+//! After the impulses, displacements close gaps and penetrations of contacts that stay closed. Gaps can
+//! contradict each other if a contact has moved to another edge of a body in the step. Contacts with open
+//! gaps then stay open, and only penetrations are removed.
+//!
+//! Mechanisms with many contacts have matrices for their closed contacts only. If the motion does not
+//! determine the impulses of redundant contacts (a table on four legs), they have the least norm if all
+//! stick; if some slip there may be several solutions. Newton's law of restitution together with friction can
+//! add energy (Kane's paradox), or have no solution. All coefficients of restitution are then reduced
+//! together.
 
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
@@ -63,6 +94,7 @@ mod overlap;
 mod phase;
 mod problem;
 mod response;
+mod selection;
 mod stepping;
 mod total;
 
@@ -83,6 +115,7 @@ pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::{Equations, Problem, entry};
+use selection::Selection;
 #[doc(hidden)]
 pub use response::responses;
 #[doc(hidden)]
@@ -204,8 +237,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
 }
 
 /// Generic code for mechanisms with any number of contacts, called by
-/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with the
-/// numbers of the mechanism.
+/// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with
+/// the numbers of the mechanism.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Type of the result.
     type Output;
@@ -226,6 +259,11 @@ pub struct Responses<T, const NV: usize, const NR: usize> {
 }
 
 impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
+    /// No effects.
+    fn zeros() -> Self {
+        Self { velocities: zeros::<T, NV, NR>(), rates: zeros::<T, NR, NR>() }
+    }
+
     /// From all entries, column by column. As generated code calls it.
     #[doc(hidden)]
     pub fn from_list<const N: usize>(list: &[T; N]) -> Self {
@@ -249,12 +287,14 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
     /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
     /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
     pub held: SVector<T, NV>,
+    /// Largest violation of the contact conditions by the impulses, as a contact velocity.
+    pub violation: T,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
     /// State that no contact has changed.
     pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
-        Self { q, v, held: SVector::zeros() }
+        Self { q, v, held: SVector::zeros(), violation: T::zero() }
     }
 }
 
@@ -343,7 +383,11 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     match closed(mechanism, t, q, free, None)? {
-        Some(closed) => act(mechanism, t, (q, free), &closed, (|| *before, None), &mut Acted::nothing()),
+        Some(closed) => {
+            let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
+            let mut acted = Acted::nothing(selection, Problem::none());
+            act(mechanism, t, (q, free), &closed, (|| *before, None), &mut acted)
+        }
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }
 }
@@ -384,8 +428,9 @@ where
         return Ok(SVector::zeros());
     };
     let before = || came.rates(mechanism, t + h, &free.q);
-    let solved =
-        act(mechanism, t + h, (&free.q, &end), &closed, (before, Some(&given)), &mut Acted::nothing());
+    let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
+    let mut acted = Acted::nothing(selection, Problem::of_step());
+    let solved = act(mechanism, t + h, (&free.q, &end), &closed, (before, Some((&given, true))), &mut acted);
     Ok(solved.map_err(reported)?.impulses / h)
 }
 
@@ -485,35 +530,46 @@ where
     ConstraintError::Contact { constraint: M::CONTACTS.get(contact).copied().unwrap_or_default() }
 }
 
-/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its
-/// matrices are large, so it is filled in place.
-struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
-    problem: Problem<T, NK, NR>,
-    impulses: Total<T, NR>,
+/// Closed contacts of a step, with their impulses and the effects of these on velocities. Its matrices are
+/// large, so it is filled in place.
+struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
+    selection: Selection<CK, CR>,
+    problem: Problem<T, CK, CR>,
+    impulses: Total<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
     free: SVector<T, NV>,
     /// None if nothing has acted.
-    responses: Option<Responses<T, NV, NR>>,
+    responses: Option<Responses<T, NV, CR>>,
 }
 
-impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
-    fn nothing() -> Self {
+impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK, CR> {
+    fn nothing(selection: Selection<CK, CR>, problem: Problem<T, CK, CR>) -> Self {
         let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
-        Self { problem: Problem::none(), impulses, free, responses: None }
+        Self { selection, problem, impulses, free, responses: None }
     }
 }
 
 /// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are
 /// evaluated only where they matter. If the contact forces at the start of a step are known, which would add
-/// `given` to the velocity, their rotation in the step is taken into account, and the search for impulses
-/// begins with them.
-fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+/// `given` to the velocity, the search for impulses begins with them, and their rotation in the step is taken
+/// into account where the bodies are moving.
+fn act<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    const CK: usize,
+    const CR: usize,
+>(
     mechanism: &M,
     t: T,
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
-    (before, given): (impl Fn() -> SVector<T, NR>, Option<&SVector<T, NV>>),
-    acted: &mut Acted<T, NV, NK, NR>,
+    (before, given): (impl Fn() -> SVector<T, NR>, Option<(&SVector<T, NV>, bool)>),
+    acted: &mut Acted<T, NV, CK, CR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
     T: Real,
@@ -522,28 +578,36 @@ where
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
-    let layout = Layout::of(mechanism);
-    let problem = &mut acted.problem;
-    problem.select(layout, &laws, closed, &after);
+    let Acted { selection, problem, .. } = acted;
+    let (layout, laws) = (selection.layout(), selection.laws(&laws));
+    problem.select(layout, &laws, &selection.closed(), &selection.rates(&after));
     if laws.iter().any(|law| law.stiction > law.friction) {
-        let rates = before();
+        let rates = selection.rates(&before());
         problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= near());
     }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),
-        false => before(),
+        false => selection.rates(&before()),
     };
     if !is_loaded && !problem.was_loaded(&before) {
         return Ok(solved);
     }
-    let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
+    let responses = acted.responses.insert(selection.responses(mechanism, t, q, closed));
     problem.weigh(&responses.rates);
-    let failed = failed::<M, T, NQ, NV, NU, NK, NR>;
+    problem.depends_on(NV);
+    let failed = |contact| failed::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
     let mut equations = Equations::of(problem);
-    let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
-        let rates = mechanism.contact_rates(t, q, &(free + given)) - after;
-        problem.transport(given, &rates, responses, &mut equations)
+    // Contact forces on bodies at rest do not rotate, but begin the search where it is long.
+    let given = given.filter(|(given, is_moving)| {
+        **given != SVector::<T, NV>::zeros() && (*is_moving || problem.is_left_to_convex_problems())
+    });
+    let start = given.map(|(given, is_moving)| {
+        let rates = selection.rates(&(mechanism.contact_rates(t, q, &(free + given)) - after));
+        match is_moving {
+            true => problem.transport(given, &rates, responses, &mut equations),
+            false => (problem.start(&rates, &mut equations), SVector::zeros()),
+        }
     });
     if let Some((_, correction)) = &start {
         solved.v += correction;
@@ -562,11 +626,15 @@ where
     }
     let impulses = match found {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
-        Err(contact) if !problem.rebounds() => return Err(failed(contact)),
-        _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,
+        Err(contact) if !problem.rebounds() => problem.relaxed(Err(contact)).map_err(failed)?,
+        _ => {
+            let found = tempered(problem, &laws, &before, may_gain);
+            problem.relaxed(found).map_err(failed)?
+        }
     };
-    solved.impulses = problem.spread(&impulses);
-    solved.v += responses.velocities * solved.impulses;
+    let all = problem.spread(&impulses);
+    solved.impulses = selection.spread(&all);
+    solved.v += responses.velocities * all;
     acted.impulses = impulses;
     Ok(solved)
 }
@@ -580,9 +648,8 @@ fn tempered<T: Real, const NK: usize, const NR: usize>(
     may_gain: bool,
 ) -> Result<Total<T, NR>, usize> {
     // A bit of the part each.
-    const HALVINGS: usize = 12;
     let (mut least, mut step) = (T::zero(), T::one());
-    for _ in 0..HALVINGS {
+    for _ in 0..problem.halvings() {
         step *= constant(0.5);
         problem.aim(laws, before, least + step);
         if problem.solve().is_ok_and(|impulses| !(may_gain && problem.gains(&impulses))) {

@@ -127,6 +127,12 @@ pub trait Method<T: Real> {
     /// Returns the memory at the start of a run.
     fn memory<const NV: usize>(&self) -> Self::Memory<NV>;
 
+    /// Returns the largest violation of the contact conditions since the last call, as a contact velocity,
+    /// and forgets it; zero for methods that satisfy them or end with an error.
+    fn take_violation<const NV: usize>(_memory: &mut Self::Memory<NV>) -> T {
+        T::zero()
+    }
+
     /// Discards the memory that a jump of the inputs or the state invalidates.
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump);
 

@@ -83,6 +83,10 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub u: SVector<T, NU>,
     /// Index of the event that this sample reports, in the order of declaration; `None` for other samples.
     pub event: Option<usize>,
+    /// Largest violation of the contact conditions in the steps since the sample before, as a contact
+    /// velocity, m/s or rad/s: a few roundings where contact impulses were found that satisfy the conditions,
+    /// and zero without contacts ([guide](crate::guide::contact)).
+    pub violation: T,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, NV, NU> {
@@ -127,7 +131,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
             return Err(Error::NotFinite { t: to_f64(t) });
         }
         run::check_quaternions::<M, T, NQ, NV, NU>(&q, &mechanism.integrate(&q, &SVector::zeros()))?;
-        Ok(Self { t, q, v, u, event: None })
+        Ok(Self { t, q, v, u, event: None, violation: T::zero() })
     }
 }
 

@@ -18,6 +18,7 @@ mod orders;
 mod piles;
 mod poisson;
 mod ratchet;
+mod scenes;
 mod soft;
 mod starts;
 mod stiction;

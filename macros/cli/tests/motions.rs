@@ -278,7 +278,14 @@ fn logs_hold_what_tables_hold() {
     let table = rows(&String::from_utf8(simulated("log.csv")).unwrap());
     let sample = |row: &Vec<f64>| {
         let (q, v) = (SVector::from_column_slice(&row[1..12]), SVector::from_column_slice(&row[12..21]));
-        linkwork::simulate::Sample::<f64, 11, 9, 1> { t: row[0], q, v, u: [row[21]].into(), event: None }
+        linkwork::simulate::Sample::<f64, 11, 9, 1> {
+            t: row[0],
+            q,
+            v,
+            u: [row[21]].into(),
+            event: None,
+            violation: 0.0,
+        }
     };
     let samples: Vec<_> = table.iter().map(sample).collect();
     let expected = messages(&linkwork_view::mcap(&Flail { handle: 0.5 }, &samples).unwrap());

@@ -203,7 +203,8 @@ where
         let lost = Touched::free(SVector::repeat(nothing), SVector::repeat(nothing));
         let of = |k: usize| results[k].unwrap_or(lost);
         let [v, held] = [lane_by_lane(|k| of(k).v), lane_by_lane(|k| of(k).held)];
-        Ok(Touched { q: lane_by_lane(|k| of(k).q), v, held })
+        let violation = Lanes(core::array::from_fn(|k| of(k).violation));
+        Ok(Touched { q: lane_by_lane(|k| of(k).q), v, held, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

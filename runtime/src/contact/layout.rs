@@ -25,6 +25,11 @@ impl<const NK: usize> Layout<NK> {
         Self { rows, pressed_by }
     }
 
+    /// Returns tables from the rows of each contact and the contact that presses it.
+    pub(super) const fn new(rows: [Rows; NK], pressed_by: [usize; NK]) -> Self {
+        Self { rows, pressed_by }
+    }
+
     /// The contact that presses, and the place of its gap's rate.
     pub(super) fn pressing(&self, k: usize) -> (usize, usize) {
         let by = self.pressed_by.get(k).copied().unwrap_or(k);

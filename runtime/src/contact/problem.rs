@@ -1,4 +1,4 @@
-//! The impulses of all contacts that are closed: a complementarity problem with friction cones.
+//! Impulses of all closed contacts: a complementarity problem with friction cones.
 
 use super::layout::Layout;
 use super::total::Total;
@@ -8,6 +8,8 @@ use crate::private::{constant, epsilon};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
+mod convex;
+mod islands;
 mod linear;
 mod newton;
 mod restitution;
@@ -23,52 +25,60 @@ type List<T, const NR: usize> = Total<T, NR>;
 /// A row of numbers for each rate.
 type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
 
-/// How much farther than surfaces are apart or overlap what brings them together may move them.
+/// Maximum length of a displacement that closes gaps, relative to the largest gap or penetration.
 const FARTHEST: f64 = 8.0;
-/// Roundings of the rates that are left of the equations.
+/// Rounding errors of contact velocities that a solution may leave in the equations.
 const ROUNDINGS: f64 = 64.0;
 
-/// Contacts that are closed, with `u = u₀ + W Λ`: what impulses `Λ` make of the rates.
+/// Closed contacts, with contact velocities `u = u₀ + W Λ` after impulses `Λ`.
 ///
-/// Contacts and rates are numbered among those that are closed, so that the first `count` and `size` entries
-/// of lists are used.
+/// Closed contacts and their rows have their own numbers: the first `count` and `size` entries of lists are
+/// used.
 #[derive(Debug)]
 pub(super) struct Problem<T, const NK: usize, const NR: usize> {
-    /// Which contacts of the mechanism they are, and which rates these have there.
+    /// Index of each contact in the mechanism, and its rows there.
     contacts: Total<(usize, Rows), NK>,
     count: usize,
-    /// Of each contact the first of its rates and how many there are.
+    /// First row of each contact, and its number of rows.
     rows: Total<Rows, NK>,
-    /// Of each contact the one whose normal impulse its friction answers to: itself, but for moments of
-    /// friction, whose rates are of turning alone.
+    /// Contact whose normal impulse bounds the friction of each contact: the contact itself, except for
+    /// friction moments.
     pressed_by: Total<usize, NK>,
     size: usize,
-    /// Index of each rate among those of the mechanism.
+    /// Row of the mechanism for each row.
     places: List<usize, NR>,
-    /// The rates without any impulses.
+    /// Contact velocities without any impulses.
     given: List<T, NR>,
-    /// The impulses of compression, if restitution is a ratio of these, and whether there are any.
+    /// Impulses of compression for Poisson's restitution, and whether there are any.
     compression: List<T, NR>,
     is_compressed: bool,
-    /// Impulses that act whatever the others are: of compression, and of restitution as far as they are known
-    /// by it.
+    /// Impulses of compression, and the smallest impulses of restitution. They act in addition to those that
+    /// are searched.
     base: List<T, NR>,
-    /// `u₀`: the rates with what acts anyway.
+    /// `u₀`: contact velocities with the impulses `base`.
     free: List<T, NR>,
     /// `W`.
     weights: Square<T, NR>,
-    /// What the normal rate is at least.
+    /// Smallest normal velocity.
     least: Total<T, NK>,
-    /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
+    /// Part of `base` that is an impulse of restitution; it bounds friction as well.
     floor: Total<T, NK>,
     friction: Total<T, NK>,
     /// Coefficients of friction while surfaces slide.
     kinetic: Total<T, NK>,
-    /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where
+    /// Step for the contact velocities of a contact, shorter than the inverse of its block of `W`; zero if
     /// impulses move nothing.
     step: Total<T, NK>,
-    /// A factor of all steps, with which Newton's method may come nearer.
+    /// Number of velocities that determine the contact velocities.
+    velocities: usize,
+    /// Factor of all steps, which affects the convergence of Newton's method.
     scale: T,
+    /// Whether impulses that violate the contact conditions are better than none.
+    is_relaxed: bool,
+    /// Largest violation of the contact conditions by the impulses found last, as a contact velocity.
+    violation: T,
+    /// Impulses that violate the conditions least, after a search that has found none that satisfy them.
+    closest: List<T, NR>,
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
@@ -93,11 +103,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             friction: Total::repeat(T::zero()),
             kinetic: Total::repeat(T::zero()),
             step: Total::repeat(T::zero()),
+            velocities: usize::MAX,
             scale: T::one(),
+            is_relaxed: false,
+            violation: T::zero(),
+            closest: Total::repeat(T::zero()),
         }
     }
 
-    /// The contacts that are closed, with rates `free` without impulses.
+    /// Returns the problem of closed contacts with contact velocities `free` without impulses.
     pub(super) fn new(
         layout: Layout<NK>,
         laws: &[Law<T>; NK],
@@ -109,8 +123,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         problem
     }
 
-    /// Takes the contacts that are closed into one that has none; of moments of friction those whose contact
-    /// is.
+    /// Adds the closed contacts to an empty problem. A friction moment is added only if its contact is
+    /// closed.
     pub(super) fn select(
         &mut self,
         layout: Layout<NK>,
@@ -143,37 +157,61 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// Whether a contact has a gap of its own.
+    /// Whether a contact has a gap function, unlike a friction moment.
     fn is_gap(&self, k: usize) -> bool {
         self.pressed_by[k] == k
     }
 
-    /// The row of the gap whose impulse presses, and those of slip or turning.
+    /// Returns the row of the normal impulse that bounds friction, and the rows of friction.
     fn of(&self, k: usize) -> (usize, Range<usize>) {
         let Rows { first, count } = self.rows[k];
         (self.rows[self.pressed_by[k]].first, first + usize::from(self.is_gap(k))..first + count)
     }
 
-    /// All rows of a contact.
+    /// Returns all rows of a contact.
     fn all_of(&self, k: usize) -> Range<usize> {
         let Rows { first, count } = self.rows[k];
         first..first + count
     }
 
-    /// Impulses at the rates of the mechanism, with those that act anyway.
+    /// Returns impulses at the rows of the mechanism, with the impulses `base`.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
         let mut all = *impulses;
         all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
         self.scatter(&all)
     }
 
-    /// Values for the rates of closed contacts at the rates of the mechanism; zeros elsewhere.
+    /// Returns values of the rows of closed contacts at the rows of the mechanism; zeros elsewhere.
     fn scatter(&self, values: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
         for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
             put(&mut all, *place, *value);
         }
         all
+    }
+
+    /// Returns impulses that satisfy the contact conditions, or in a relaxed step those that violate them
+    /// least.
+    pub(super) fn relaxed(&self, found: Result<List<T, NR>, usize>) -> Result<List<T, NR>, usize> {
+        found.or_else(|contact| if self.is_relaxed { Ok(self.closest) } else { Err(contact) })
+    }
+
+    /// Returns an empty problem of a relaxed step, which accepts impulses that violate the contact conditions
+    /// if it finds no others.
+    pub(super) fn of_step() -> Self {
+        Self { is_relaxed: true, ..Self::none() }
+    }
+
+    /// Returns the largest violation of the contact conditions by the impulses found last, as a contact
+    /// velocity.
+    pub(super) fn violation(&self) -> T {
+        self.violation
+    }
+
+    /// Returns the number of bisections for the restitution that the energy allows: fewer in large problems,
+    /// which bounds the duration of a step.
+    pub(super) fn halvings(&self) -> usize {
+        if self.size > newton::LARGE { 5 } else { 12 }
     }
 
     /// Whether surfaces approach each other without impulses.
@@ -188,7 +226,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
     }
 
-    /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
+    /// Sets the number of velocities that determine the contact velocities.
+    pub(super) fn depends_on(&mut self, velocities: usize) {
+        self.velocities = velocities;
+    }
+
+    /// Copies the rows of closed contacts from `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
         let places = self.places;
         let none = T::zero();
@@ -202,23 +245,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let reach = diagonal.fold(none, |reach, (i, row)| reach.max(row[i]));
         for k in 0..self.count {
             let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
-            // What constraints hold moves by rounding alone.
+            // Bodies that constraints hold move by rounding errors alone.
             let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
             self.step[k] = if moves { T::one() / trace } else { T::zero() };
         }
     }
 
-    /// Changes of the rates by impulses.
+    /// Returns changes of the contact velocities by impulses.
     fn changes(&self, impulses: &List<T, NR>) -> List<T, NR> {
         self.added(List::repeat(T::zero()), impulses)
     }
 
-    /// The rates with impulses.
+    /// Returns the contact velocities after impulses.
     fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
         self.added(self.free, impulses)
     }
 
-    /// Rates, and their changes by impulses.
+    /// Adds changes by impulses to contact velocities.
     fn added(&self, mut rates: List<T, NR>, impulses: &List<T, NR>) -> List<T, NR> {
         for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
             for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
@@ -228,7 +271,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         rates
     }
 
-    /// The step of the impulse that presses.
+    /// Returns the step of the normal impulse that bounds friction.
     fn press(&self, k: usize) -> T {
         self.step[self.pressed_by[k]] * self.scale
     }
@@ -276,8 +319,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit
-    /// vectors at the places of their rates.
+    /// Returns the mode of each contact under impulses that satisfy the contact conditions, and the unit slip
+    /// direction of each sliding contact at its rows.
     pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
         let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
         let rates = self.rates(impulses);
@@ -306,7 +349,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (touches.entries(), along)
     }
 
-    /// What rounding leaves of the rates.
+    /// Returns the rounding error of contact velocities after impulses.
     fn rounding(&self, impulses: &List<T, NR>) -> T {
         let mut most = T::zero();
         for (free, row) in self.free.iter().zip(self.weights.iter()).take(self.size) {
@@ -317,13 +360,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (0..self.count).fold(most, |most, k| most.max(self.least[k])) * epsilon() * constant(ROUNDINGS)
     }
 
-    /// The largest rate without impulses, or that is wanted.
+    /// Returns the largest contact velocity, without impulses or demanded by restitution.
     pub(super) fn speed(&self) -> T {
         let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
         (0..self.count).fold(most, |most, k| most.max(self.least[k]))
     }
 
-    /// Distances that are worth no displacement.
+    /// Returns the distance up to which gaps are not closed.
     fn enough(near: T) -> T {
         (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0))
     }
@@ -334,10 +377,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
     }
 
-    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together
-    /// and are apart by no more than `reach`, and those that part no deeper into each other than they are;
-    /// where the former cannot all be at once those that overlap then are pushed apart. `None` if distances
-    /// are no more than a little of what is `near`.
+    /// Returns impulses without friction that close gaps and penetrations as displacements, or `None` if all
+    /// are small compared with `near`. Contacts that stay closed and have a gap of at most `reach` are
+    /// closed; separating ones penetrate no deeper than before.
     pub(super) fn close(
         &self,
         impulses: &List<T, NR>,
@@ -345,8 +387,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
         let Trial { rates, worst, .. } = self.tried(*impulses);
-        // Which of several that share an impulse bear it decides nothing, and what is left of the rates
-        // neither.
+        // Contacts stay closed if their normal velocity is zero to rounding, whether or not they have an
+        // impulse.
         let rest = self.rounding(impulses).max(worst.0) * constant(ROUNDINGS);
         let (mut kept, mut stay) = (Self::none(), Total::<_, NK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
@@ -355,7 +397,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let n = self.rows[k].first;
             let (contact, Rows { first, .. }) = self.contacts[k];
             let gap = entry(gaps, contact);
-            // What is farther away has come to touch elsewhere.
+            // A contact with a larger gap has moved to another place of its surfaces.
             if gap <= reach {
                 let c = kept.count;
                 stay[c] = rates[n] <= rest;
@@ -367,7 +409,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 kept.rows[c] = Rows { first: n, count: 1 };
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;
-                // Surfaces that part are not pushed, but into each other they must not be.
+                // Separating surfaces are not displaced, but must not penetrate deeper.
                 kept.least[c] = if stay[c] { T::zero() } else { gap.min(T::zero()) };
                 kept.step[c] = self.step[k];
                 kept.count += 1;
@@ -387,7 +429,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             normals[c] = kept.rows[c].first;
             kept.rows[c].first = c;
         }
-        // The farthest that something at a contact moves.
+        // Longest displacement at a contact.
         let farthest = |pushes: &List<T, NR>| {
             let along = |row: &List<T, NR>| {
                 normals
@@ -400,12 +442,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows.fold(T::zero(), |most, row| most.max(along(row).abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
-        let mut pushes = kept.together(&stay);
-        // Points that contradict each other are not worth a long way.
-        let is_long = farthest(&pushes) > most;
-        if is_long {
-            pushes = List::repeat(T::zero());
-        }
+        // Equations can contradict each other: gaps of parallel faces differ if a contact has moved to
+        // another edge, and one displacement cannot close them all. Open contacts then stay open. If overlaps
+        // still differ, the conditions without friction alone decide.
+        let is_consistent = |shut: &Total<bool, NK>, pushes: &List<T, NR>| {
+            let left = kept.rates(pushes);
+            (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough) && farthest(pushes) <= most
+        };
+        let mut overlapping = stay;
+        (0..kept.count).for_each(|c| overlapping[c] &= kept.free[c] <= enough);
+        let mut tried = [stay, overlapping].into_iter().map(|shut| (shut, kept.together(&shut)));
+        let found = tried.find(|(shut, pushes)| is_consistent(shut, pushes));
+        let mut pushes = found.map_or(List::repeat(T::zero()), |(_, pushes)| pushes);
         let left = kept.rates(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = kept.with(left);
@@ -419,18 +467,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Some(kept.spread(&pushes))
     }
 
-    /// The problem with other rates without impulses.
+    /// Returns the problem with other contact velocities without impulses.
     fn with(&self, free: List<T, NR>) -> Self {
         Self { free, ..*self }
     }
 }
 
-/// An entry of a vector; past the end zero.
+/// Returns an entry of a vector; past the end zero.
 pub(super) fn entry<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
     vector.get(k).copied().unwrap_or(T::zero())
 }
 
-/// Sets an entry of a vector; past the end nothing.
+/// Sets an entry of a vector; past the end it does nothing.
 pub(super) fn put<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
     if let Some(entry) = vector.get_mut(k) {
         *entry = value;

@@ -19,8 +19,8 @@ where
     let jacobian = mechanism.contact_jacobian(t, q);
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
-    let factor =
-        if features.constrained || features.feedback { None } else { factor(mechanism.mass_matrix(t, q)) };
+    let is_plain = !features.constrained && !features.feedback;
+    let factor = if is_plain { Factor::factorise(mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
@@ -29,7 +29,7 @@ where
         let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
         let Some(answer) = velocities.data.0.get_mut(row) else { continue };
         *answer = match &factor {
-            Some(factor) => substitute(factor, p),
+            Some(factor) => factor.solve(p),
             None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(p)) - none).data.0[0],
         };
     }
@@ -45,35 +45,63 @@ where
     Responses { velocities, rates }
 }
 
-/// The factor `L` of `M = L Lᵀ` (Cholesky) by rows, with the reciprocals of its diagonal; `None` where `M` is
-/// not positive definite.
-fn factor<T: Real, const N: usize>(m: SMatrix<T, N, N>) -> Option<[[T; N]; N]> {
-    // Symmetric: columns are rows.
-    let mut m = m.data.0;
-    for j in 0..N {
-        let pivot = (0..j).fold(m[j][j], |pivot, k| pivot - m[j][k] * m[j][k]);
-        // It is not where it is no number, either.
-        let positive = pivot > T::zero();
-        if !positive {
-            return None;
-        }
-        let reciprocal = T::one() / pivot.sqrt();
-        m[j][j] = reciprocal;
-        for i in j + 1..N {
-            let entry = (0..j).fold(m[i][j], |entry, k| entry - m[i][k] * m[j][k]);
-            m[i][j] = entry * reciprocal;
-        }
-    }
-    Some(m)
+/// The factor `L` of `M = L Lᵀ` (Cholesky), whose rows begin at their first entry that is not zero: bodies that
+/// no joint connects have blocks of their own.
+pub(super) struct Factor<T, const N: usize> {
+    /// Rows, with the reciprocals of the diagonal.
+    rows: [[T; N]; N],
+    /// Index of the first entry of each row.
+    starts: [usize; N],
 }
 
-/// `x` of `L Lᵀ x = p`.
-fn substitute<T: Real, const N: usize>(l: &[[T; N]; N], mut x: [T; N]) -> [T; N] {
-    for i in 0..N {
-        x[i] = (0..i).fold(x[i], |sum, k| sum - l[i][k] * x[k]) * l[i][i];
+impl<T: Real, const N: usize> Factor<T, N> {
+    /// Factorises a matrix; `None` where it is not positive definite.
+    pub(super) fn factorise(m: SMatrix<T, N, N>) -> Option<Self> {
+        // Symmetric: columns are rows.
+        let mut m = m.data.0;
+        let mut starts = [0; N];
+        for (i, (start, row)) in starts.iter_mut().zip(&m).enumerate() {
+            *start = first(row).min(i);
+        }
+        for j in 0..N {
+            let pivot = (starts[j]..j).fold(m[j][j], |pivot, k| pivot - m[j][k] * m[j][k]);
+            // It is not where it is no number, either.
+            let positive = pivot > T::zero();
+            if !positive {
+                return None;
+            }
+            let reciprocal = T::one() / pivot.sqrt();
+            m[j][j] = reciprocal;
+            for i in j + 1..N {
+                if starts[i] <= j {
+                    let from = starts[i].max(starts[j]);
+                    let entry = (from..j).fold(m[i][j], |entry, k| entry - m[i][k] * m[j][k]);
+                    m[i][j] = entry * reciprocal;
+                }
+            }
+        }
+        Some(Self { rows: m, starts })
     }
-    for i in (0..N).rev() {
-        x[i] = (i + 1..N).fold(x[i], |sum, k| sum - l[k][i] * x[k]) * l[i][i];
+
+    /// `x` of `L Lᵀ x = p`.
+    pub(super) fn solve(&self, mut x: [T; N]) -> [T; N] {
+        let Self { rows, starts } = self;
+        let start = first(&x);
+        for i in start..N {
+            x[i] = (starts[i].max(start)..i).fold(x[i], |sum, k| sum - rows[i][k] * x[k]) * rows[i][i];
+        }
+        for i in (0..N).rev() {
+            if x[i] != T::zero() {
+                x[i] *= rows[i][i];
+                let value = x[i];
+                (starts[i]..i).for_each(|k| x[k] -= rows[i][k] * value);
+            }
+        }
+        x
     }
-    x
+}
+
+/// Index of the first entry that is not zero.
+fn first<T: Real, const N: usize>(row: &[T; N]) -> usize {
+    row.iter().position(|entry| *entry != T::zero()).unwrap_or(N)
 }

@@ -1,40 +1,45 @@
-//! What contacts make of a step: impulses, and displacements that take overlaps away.
+//! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
+use super::selection::{FEW, Selection};
 use super::total::Total;
-use super::{Acted, Contacts, Rows, Touched, act, near};
+use super::{Acted, Contacts, Law, Rows, Touched, act, near};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, epsilon};
 use core::cell::Cell;
 use nalgebra::SVector;
 
-/// How often the part of a displacement that the energy allows is found anew.
+/// Maximum number of scalings of a displacement by the energy that it may add.
 const PARTS: usize = 4;
-/// How often the part of restitution that the energy allows is halved.
-const PARTS_OF_RESTITUTION: usize = 12;
 
-/// Where a step has come from.
+/// Sizes of the arrays for closed contacts of mechanisms that have more contact velocities.
+const SMALL: usize = FEW;
+const MEDIUM: usize = 72;
+const LARGE: usize = 144;
+
+/// Start of a step.
 pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
     /// The configuration and the velocity.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are
-    /// asked for.
+    /// Contact velocities of its velocity at the end of the step ([`rates_at_end`]), evaluated on demand.
     rates: Cell<Option<SVector<T, NR>>>,
-    /// How long it has taken.
+    /// Duration of the step.
     h: T,
-    /// By how much contacts have been taken to move it.
+    /// Displacement by the contact forces that were assumed.
     held: SVector<T, NV>,
 }
 
 impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T, NQ, NV, NR> {
-    /// From a state in `h` seconds, in which contacts have been taken to move it by `held`.
+    /// Returns the start of a step of `h` seconds from a state, with the displacement `held` by the assumed
+    /// contact forces.
     pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
         Self { start, rates: Cell::new(None), h, held }
     }
 
-    /// The rates at the contacts that the velocity has where the step ends, in the configuration `q`.
+    /// Returns the contact velocities of the initial velocity at the end of the step, in the configuration
+    /// `q`.
     pub(super) fn rates<M, const NU: usize, const NK: usize>(
         &self,
         mechanism: &M,
@@ -159,6 +164,7 @@ where
             q: mechanism.integrate(q, &moved),
             v: mechanism.carry(t, q, &moved, after),
             held: *by_contacts,
+            violation: T::zero(),
         }
     };
     let still = SVector::<T, NV>::zeros();
@@ -166,19 +172,69 @@ where
         let is_led = h != T::zero() && *given != still;
         return Ok(if is_led { led(free, &still) } else { Touched::free(*q, *free) });
     };
-    let mut acted = Acted::nothing();
+    let (rows, _) = mechanism.contact_tables();
+    let rows = rows.iter().zip(&closed).filter(|(_, is_closed)| **is_closed);
+    let rows = rows.fold(0, |sum, (rows, _)| sum + rows.count);
+    let run = (came, (start, v), (q, free), given);
+    // Matrices of few closed contacts are small, however many contacts a mechanism has.
+    if const { NR > SMALL } && rows <= SMALL {
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, t, run, &closed, led)
+    } else if const { NR > MEDIUM } && rows <= MEDIUM {
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(mechanism, t, run, &closed, led)
+    } else if const { NR > LARGE } && rows <= LARGE {
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, t, run, &closed, led)
+    } else {
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, t, run, &closed, led)
+    }
+}
+
+/// Start of a step, its end without contacts, and the change of velocity by the assumed contact forces.
+type Run<'a, T, const NQ: usize, const NV: usize, const NR: usize> = (
+    Came<'a, T, NQ, NV, NR>,
+    (&'a SVector<T, NQ>, &'a SVector<T, NV>),
+    (&'a SVector<T, NQ>, &'a SVector<T, NV>),
+    &'a SVector<T, NV>,
+);
+
+/// Applies the impulses of closed contacts at the end of a step, in arrays for up to `CK` contacts with `CR`
+/// contact velocities.
+#[inline(never)]
+fn act_in_step<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    const CK: usize,
+    const CR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (came, (start, v), (q, free), given): Run<'_, T, NQ, NV, NR>,
+    closed: &[bool; NK],
+    led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
+) -> Result<Touched<T, NQ, NV>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let (h, still) = (came.h, SVector::<T, NV>::zeros());
+    let selection = Selection::<CK, CR>::select(Layout::of(mechanism), closed);
+    let mut acted = Acted::nothing(selection, Problem::of_step());
     let before = || came.rates(mechanism, t, q);
-    // Contact forces on bodies at rest do not rotate.
     let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
     let is_moving = moves(near::<T>() * constant(10.0));
-    let after = act(mechanism, t, (q, free), &closed, (before, is_moving.then_some(given)), &mut acted)?.v;
+    let after = act(mechanism, t, (q, free), closed, (before, Some((given, is_moving))), &mut acted)?.v;
     if h == T::zero() {
-        return Ok(Touched { q: *q, v: after, held: after - free });
+        return Ok(Touched { q: *q, v: after, held: after - free, violation: acted.problem.violation() });
     }
-    let Acted { problem, impulses, free: corrected, responses: Some(responses) } = &mut acted else {
+    let Acted { problem, impulses, free: corrected, responses: Some(responses), .. } = &mut acted else {
         return Ok(led(&after, &still));
     };
     let corrected = *corrected;
+    let own_rates = || selection.rates(&came.rates(mechanism, t, q));
     let mut touched = led(&after, &(after - corrected));
     let responses = &responses.velocities;
     // The energy without what contacts have done: they have worked along the mean of the velocities.
@@ -189,28 +245,30 @@ where
         energy(mechanism, t, &Touched::free(*q, free + given)) - work
     };
     if problem.rebounds() {
-        let led = |impulses: &SVector<T, NR>| {
+        let led = |impulses: &SVector<T, CR>| {
             let by_contacts = responses * impulses;
             led(&(corrected + by_contacts), &by_contacts)
         };
-        let before = came.rates(mechanism, t, q);
-        if let Some(less) = tempered(mechanism, t, problem, &before, &led, (&touched, most())) {
+        let laws = selection.laws(&mechanism.contact_laws());
+        if let Some(less) = tempered(mechanism, t, (problem, &laws, &own_rates()), &led, (&touched, most())) {
             (touched, *impulses) = less;
         }
     }
+    touched.violation = problem.violation();
     if !is_moving && !moves(near::<T>() * constant(1e-3)) {
-        let creep = creep_reversal(mechanism, t, ((start, v), q, &touched, &after), h, problem);
+        let states = ((start, v), q, &touched, &after);
+        let creep = creep_reversal(mechanism, t, states, h, (problem, &selection));
         if let Some(creep) = creep {
             touched.q = mechanism.integrate(&touched.q, &(responses * creep));
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
-    if problem.is_shut(&gaps, near()) {
+    let own = selection.gaps(&gaps);
+    if problem.is_shut(&own, near()) {
         return Ok(touched);
     }
-    let before = came.rates(mechanism, t, q);
-    let speed = before.iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
-    match problem.close(impulses, &gaps, (near(), near::<T>() + speed * h)) {
+    let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
+    match problem.close(impulses, &own, (near(), near::<T>() + speed * h)) {
         Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
         None => Ok(touched),
     }
@@ -220,7 +278,17 @@ where
 /// have crept in a step; `None` if they have not. The forces of a step are constant, and loads that change in
 /// it move what they hold.
 #[allow(clippy::type_complexity, reason = "states at both ends of the step")]
-fn creep_reversal<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn creep_reversal<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    const CK: usize,
+    const CR: usize,
+>(
     mechanism: &M,
     t: T,
     ((start, v), q, touched, after): (
@@ -230,8 +298,8 @@ fn creep_reversal<M, T, const NQ: usize, const NV: usize, const NU: usize, const
         &SVector<T, NV>,
     ),
     h: T,
-    problem: &Problem<T, NK, NR>,
-) -> Option<SVector<T, NR>>
+    (problem, selection): (&Problem<T, CK, CR>, &Selection<CK, CR>),
+) -> Option<SVector<T, CR>>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -245,9 +313,9 @@ where
     let driven = mechanism.contact_rates(t, q, &SVector::zeros());
     let (crept, slip) =
         (mechanism.contact_rates(t, q, &excess) - driven, mechanism.contact_rates(t, q, after));
-    let layout = Layout::of(mechanism);
-    let mut back = SVector::<T, NR>::zeros();
-    for tangents in (0..NK).map(|k| layout.tangents(k)) {
+    let (crept, slip) = (selection.rates(&crept), selection.rates(&slip));
+    let (layout, mut back) = (selection.layout(), SVector::<T, CR>::zeros());
+    for tangents in (0..CK).map(|k| layout.tangents(k)) {
         if tangents.clone().all(|i| entry(&slip, i).abs() <= near::<T>() * near()) {
             tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
         }
@@ -257,14 +325,24 @@ where
 
 /// A state with the largest part of all restitutions after which the energy is no more than `most`, and the
 /// impulses that lead there; `None` where it is no more with all of them.
-fn tempered<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+#[allow(clippy::type_complexity, reason = "sizes of arrays")]
+fn tempered<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    const CK: usize,
+    const CR: usize,
+>(
     mechanism: &M,
     t: T,
-    problem: &mut Problem<T, NK, NR>,
-    before: &SVector<T, NR>,
-    led: &impl Fn(&SVector<T, NR>) -> Touched<T, NQ, NV>,
+    (problem, laws, before): (&mut Problem<T, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
+    led: &impl Fn(&SVector<T, CR>) -> Touched<T, NQ, NV>,
     (all, most): (&Touched<T, NQ, NV>, T),
-) -> Option<(Touched<T, NQ, NV>, Total<T, NR>)>
+) -> Option<(Touched<T, NQ, NV>, Total<T, CR>)>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -273,12 +351,11 @@ where
     if energy(mechanism, t, all) <= most {
         return None;
     }
-    let laws = mechanism.contact_laws();
     let (mut found, mut least, mut step) = (None, T::zero(), T::one());
-    for round in 0..=PARTS_OF_RESTITUTION {
+    for round in 0..=problem.halvings() {
         // None of it, then a bit of the part each.
         let part = if round == 0 { T::zero() } else { least + step };
-        problem.aim(&laws, before, part);
+        problem.aim(laws, before, part);
         if let Ok(impulses) = problem.solve() {
             let touched = led(&problem.spread(&impulses));
             if round == 0 || energy(mechanism, t, &touched) <= most {
@@ -287,11 +364,11 @@ where
         }
         step *= constant(0.5);
     }
-    problem.aim(&laws, before, least);
+    problem.aim(laws, before, least);
     found
 }
 
-/// What rounding leaves of an energy.
+/// Returns the rounding error of an energy.
 fn rounding<T: Real>(energy: T) -> T {
     energy.abs() * epsilon() * constant(8.0)
 }
@@ -330,7 +407,7 @@ where
         let to = Touched {
             q: mechanism.integrate(&from.q, &push),
             v: mechanism.carry(t, &from.q, &push, &from.v),
-            held: from.held,
+            ..*from
         };
         // Without overlaps there is little to be pushed.
         if deepest < -near::<T>()

@@ -327,7 +327,8 @@ where
         let (given, added) = apart::<_, NV, NX, NE>(given);
         let touched = m.contact_step(t, (q, &v), (end, &free), &given, h)?;
         let held = together(&touched.held, &SVector::<_, NX>::zeros());
-        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)), held })
+        let Touched { q, v, violation, .. } = touched;
+        Ok(Touched { q, v: together(&v, &(x + added)), held, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

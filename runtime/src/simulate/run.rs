@@ -268,7 +268,7 @@ where
             run.sample += 1;
             run.shown = true;
             if !run.quiet || self.at_end(run) {
-                return Ok(Some(self.sample(run.node, None)));
+                return Ok(Some(self.sample(run, run.node, None)));
             }
         }
         let stop = self.next_stop(run);
@@ -324,7 +324,7 @@ where
             let theta = constant((due - run.elapsed) / length);
             let state = self.state(run.node.t, step, theta).timed(t);
             let state = self.on_constraints(state)?;
-            return Ok(Some(self.sample(state, None)));
+            return Ok(Some(self.sample(run, state, None)));
         }
         match event {
             Some((hit, elapsed)) => {
@@ -385,7 +385,7 @@ where
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
         if let Some(index) = firing.jump.take() {
-            let sample = self.sample(firing.state, Some(index));
+            let sample = self.sample(run, firing.state, Some(index));
             run.firing = Some(firing);
             return Ok(Some(sample));
         }
@@ -422,10 +422,10 @@ where
             }
         }
         let sample = match firing.state.v == before.v {
-            true => self.sample(firing.state, Some(index)),
+            true => self.sample(run, firing.state, Some(index)),
             false => {
                 firing.jump = Some(index);
-                self.sample(before, None)
+                self.sample(run, before, None)
             }
         };
         firing.next = index + 1;
@@ -443,7 +443,13 @@ where
         }
     }
 
-    fn sample(&mut self, State { t, q, v }: State<T, NQ, NV>, event: Option<usize>) -> Sample<T, NQ, NV, NU> {
-        Sample { t, q, v, u: self.system.inputs.at(t, &q, &v), event }
+    fn sample(
+        &mut self,
+        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        State { t, q, v }: State<T, NQ, NV>,
+        event: Option<usize>,
+    ) -> Sample<T, NQ, NV, NU> {
+        let violation = S::take_violation(&mut run.memory);
+        Sample { t, q, v, u: self.system.inputs.at(t, &q, &v), event, violation }
     }
 }

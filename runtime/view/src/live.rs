@@ -80,6 +80,7 @@ where
             v: linkwork::nalgebra::SVector::repeat(zero),
             u: linkwork::nalgebra::SVector::repeat(zero),
             event: None,
+            violation: zero,
         };
         let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.live();
         let frames = motion.used();

@@ -37,7 +37,14 @@ fn browser() -> Option<PathBuf> {
 
 fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
     let t = f64::from(k) / 60.0;
-    Sample { t: start + t, q: [t, -t].into(), v: [1.0, -1.0].into(), u: [t.sin()].into(), event: None }
+    Sample {
+        t: start + t,
+        q: [t, -t].into(),
+        v: [1.0, -1.0].into(),
+        u: [t.sin()].into(),
+        event: None,
+        violation: 0.0,
+    }
 }
 
 /// Returns the document of a page after 1.5 s, and asserts that the console has no messages. `meanwhile` is

@@ -22,7 +22,14 @@ struct Arm {
 }
 
 fn sample(t: f64) -> Sample<f64, 2, 2, 1> {
-    Sample { t, q: [0.5 + t, -1.0].into(), v: [1.0, 0.0].into(), u: [3.5].into(), event: None }
+    Sample {
+        t,
+        q: [0.5 + t, -1.0].into(),
+        v: [1.0, 0.0].into(),
+        u: [3.5].into(),
+        event: None,
+        violation: 0.0,
+    }
 }
 
 /// Opens a connection and sends a request; `fields` has further header lines.

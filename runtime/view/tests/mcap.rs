@@ -24,7 +24,14 @@ struct Boat {
 fn sample(t: f64) -> Sample<f64, 8, 7, 1> {
     let half = 0.5 * t;
     let q = [t, 2.0, 0.1, half.sin(), 0.0, 0.0, half.cos(), 0.1 + 1.0 / 3.0];
-    Sample { t, q: q.into(), v: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -0.7].into(), u: [4.5].into(), event: None }
+    Sample {
+        t,
+        q: q.into(),
+        v: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -0.7].into(),
+        u: [4.5].into(),
+        event: None,
+        violation: 0.0,
+    }
 }
 
 /// Reader that takes numbers and strings from the front.

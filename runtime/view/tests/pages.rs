@@ -315,7 +315,8 @@ struct Kinematic {
 #[test]
 fn single_precision_and_kinematics_are_drawn_too() {
     let q = [0.3_f32].into();
-    let sample = |t| linkwork::simulate::Sample { t, q, v: [0.0].into(), u: [].into(), event: None };
+    let sample =
+        |t| linkwork::simulate::Sample { t, q, v: [0.0].into(), u: [].into(), event: None, violation: 0.0 };
     let html = page("single", &Single {}, &[sample(0.0_f32), sample(1.0)]).unwrap();
     assert_eq!(motions(&html)[0]["scene"][3], serde_json::json!([0, 1, 0]));
 
@@ -363,7 +364,14 @@ fn what_cannot_be_shown_is_told() {
 fn samples_are_thinned_and_gaps_kept() {
     let sample = |k: i32| {
         let t = f64::from(k) * 1e-3;
-        linkwork::simulate::Sample { t, q: [t].into(), v: [1.0].into(), u: [].into(), event: None }
+        linkwork::simulate::Sample {
+            t,
+            q: [t].into(),
+            v: [1.0].into(),
+            u: [].into(),
+            event: None,
+            violation: 0.0,
+        }
     };
     let samples: Vec<_> = (0..=1000).map(sample).collect();
     let gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };

@@ -21,7 +21,7 @@ struct Ball {
 
 fn sample(t: f64) -> Sample<f64, 7, 6, 0> {
     let q = [0.2 * t, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0];
-    Sample { t, q: q.into(), v: SVector::zeros(), u: [].into(), event: None }
+    Sample { t, q: q.into(), v: SVector::zeros(), u: [].into(), event: None, violation: 0.0 }
 }
 
 fn ball() -> Motion {
@@ -112,7 +112,8 @@ fn a_terrain_may_be_a_table_on_a_body() {
     // The x axis of the tray points down, its z axis along x: the pearl is 2 m along −x and 1 m along y of
     // the tray.
     let q = [turned, 0.7, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0];
-    let sample = Sample { t: 0.0, q: q.into(), v: SVector::zeros(), u: [].into(), event: None };
+    let sample =
+        Sample { t: 0.0, q: q.into(), v: SVector::zeros(), u: [].into(), event: None, violation: 0.0 };
     let motion = data(Motion::of("tray", &tray, &[sample]).unwrap());
     let [surface] = meshes(&motion)[..] else { panic!("the terrain") };
     let size = motion["scene"][0].as_f64().unwrap();

@@ -6,4 +6,5 @@ mod impacts;
 mod laws;
 mod midpoint;
 mod robots;
+mod scenes;
 mod tower;

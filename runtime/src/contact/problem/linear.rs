@@ -12,6 +12,9 @@ use nalgebra::{SMatrix, SVector};
 /// stays little beside them.
 const ALIKE: f64 = 256.0;
 
+/// Length of rows that are subtracted as a whole.
+const SHORT: usize = 36;
+
 /// How often what is left of equations that were told apart by a little is made up for.
 const PASSES: usize = 3;
 
@@ -109,7 +112,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         if known == Content::Weights {
             known = Content::Factors;
-            if !factorise(matrix, size, false) {
+            // More rows than velocities depend on each other.
+            if size > self.velocities || !factorise(matrix, size, false) {
                 self.among(held, size, matrix);
                 known = if factorise(matrix, size, true) { Content::Lifted } else { Content::Other };
             }
@@ -415,9 +419,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if factor == T::zero() {
                     continue;
                 }
-                // Whole rows, whose number of entries is known: what stands before the pivot is not read
-                // again.
-                subtract(row, factor, pivots);
+                // Entries before the pivot are not read again.
+                remove(row, factor, pivots, column + 1..size);
                 subtract(other, factor, value);
             }
         }
@@ -469,7 +472,7 @@ fn factorise<T: Real, const NR: usize>(u: &mut Square<T, NR>, size: usize, is_li
         let Some(row) = done.last() else { break };
         for (below, part) in rows.iter_mut().zip(row.iter().skip(j + 1)).take(size - j - 1) {
             if *part != T::zero() {
-                subtract(below, *part * reciprocal, row);
+                remove(below, *part * reciprocal, row, j + 1..size);
             }
         }
     }
@@ -498,6 +501,12 @@ fn take<T: Real, const N: usize>(from: &mut List<T, N>, factor: T, row: &List<T,
         .iter_mut()
         .zip(row.get(part).unwrap_or_default())
         .for_each(|(from, entry)| *from -= factor * *entry);
+}
+
+/// Subtracts a part of a multiple of a row from another. Short rows are subtracted as a whole, since their
+/// number of entries is known at compile time; the entries outside of the part must not matter.
+fn remove<T: Real, const N: usize>(from: &mut List<T, N>, factor: T, row: &List<T, N>, part: Range<usize>) {
+    if const { N <= SHORT } { subtract(from, factor, row) } else { take(from, factor, row, part) }
 }
 
 /// Takes a multiple of a row from another.

@@ -9,6 +9,10 @@ use crate::private::{constant, epsilon};
 
 /// Steps of Newton's method in a round.
 const NEWTON: usize = 12;
+/// Rows from which on Newton's method ends where a step leaves more than a part of the map, since steps are
+/// expensive, and this part.
+pub(super) const LARGE: usize = 18;
+const SLOW: f64 = 0.25;
 /// The shortest part of such a step.
 const SHORTEST: f64 = 1e-3;
 /// What tells rows apart at first, and then, as a part of them.
@@ -20,8 +24,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// Where several contacts share what one alone could bear, small changes of the equations are large ones
     /// of who bears it, so that rows are told apart by much first.
-    pub(super) fn newton_twice(&self, start: List<T, NR>) -> Trial<T, NK, NR> {
-        let start = self.tried(start);
+    pub(super) fn newton_twice(&self, start: Trial<T, NK, NR>) -> Trial<T, NK, NR> {
         let mut best = start;
         for lift in APART {
             best = self.newton(best, constant(lift));
@@ -38,30 +41,32 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> Trial<T, NK, NR> {
         let mut trial = self.tried(start);
         trial.modes = self.modes(before, &start, &trial.rates);
-        self.newton_twice(self.stepped(&trial, constant(APART[1]), &mut square()))
+        self.newton_twice(self.tried(self.stepped(&trial, constant(APART[1]), &mut square())))
     }
 
-    /// Impulses that fulfil the laws as far as rounding of the fastest rate goes, after one more step if the
-    /// slowest that press need it.
-    pub(super) fn refined(&self, trial: &Trial<T, NK, NR>, lift: T) -> List<T, NR> {
-        let Trial { impulses, left, worst, .. } = trial;
+    /// Impulses after one more step, if the slowest of those that press are not yet exact to rounding of
+    /// their own rate.
+    pub(super) fn refined(&self, trial: Trial<T, NK, NR>, lift: T) -> Trial<T, NK, NR> {
+        let Trial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
         let pressed = (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.of(*k).0] > T::zero());
         if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| worst.0 <= most) {
-            return *impulses;
+            return trial;
         }
-        let next = self.tried(self.stepped(trial, lift, &mut square()));
-        if next.left < *left { next.impulses } else { *impulses }
+        let next = self.tried(self.stepped(&trial, lift, &mut square()));
+        if next.left < *left { next } else { trial }
     }
 
+    /// Newton's method on the natural map, with steps that are halved until less is left of the map.
     pub(super) fn newton(&self, start: Trial<T, NK, NR>, lift: T) -> Trial<T, NK, NR> {
         let mut trial = start;
         let mut system = square();
         // With more left of the map they are no solution.
         let (speed, parts) = (self.speed(), (0..self.count).fold(T::zero(), |sum, _| sum + constant(3.0)));
         let most = speed * speed * epsilon() * parts;
-        for _ in 0..NEWTON {
+        for step in 0..NEWTON {
+            let before = trial.left;
             let change = self.change(&trial, lift, &mut system);
             let mut part = T::one();
             let next = loop {
@@ -76,7 +81,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             };
             let Some(next) = next else { break };
             trial = next;
-            if trial.left <= most && self.solves(&trial) {
+            let is_slow = self.size > LARGE && step > 0 && trial.left > before * constant(SLOW);
+            if is_slow || (trial.left <= most && self.solves(&trial)) {
                 break;
             }
         }

@@ -33,7 +33,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         let found = self.solve();
         self.free = self.given;
-        self.compression = found?;
+        self.compression = self.relaxed(found)?;
         self.is_compressed = true;
         Ok(())
     }

@@ -1,7 +1,8 @@
-//! How impulses are found that fulfil the laws of all contacts.
+//! Search for impulses that satisfy the conditions of all contacts.
 
 use super::super::total::Total;
 use super::linear::Equations;
+use super::newton::LARGE;
 use super::transport::Start;
 use super::trial::Trial;
 use super::{List, Problem};
@@ -9,23 +10,30 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
 
-/// Rounds of sweeps, each followed by Newton's method.
+/// Maximum number of rounds of gradient steps, each followed by Newton's method.
 const ROUNDS: usize = 12;
-/// Sweeps of the first round; of each later one there are one more.
+/// Maximum number of rounds in a step of a simulation.
+const ROUNDS_OF_STEP: usize = 3;
+/// Gradient steps in the first round; each later round has one more.
 const SWEEPS: usize = 21;
-/// Factors of the steps of the natural map, round by round.
+/// Factor of the steps of the natural map in each round.
 const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
-/// Parts in which friction grows where nothing else helps.
+/// Increments in which friction grows if all else fails.
 const DEGREES: u32 = 24;
 /// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors
 /// in the second.
 const STEEP: f64 = 4.0;
-/// Contacts of which all selections are tried where nothing else helps.
+/// Maximum number of contacts whose subsets are all tried if all else fails.
 const GUESSED: usize = 6;
-/// Most contacts of which all pairs are tried then.
+/// Rows up to which Newton's method for the natural map takes less time than a convex problem.
+const DENSE: usize = 36;
+/// Violation of the contact conditions that counts as zero if rows depend on each other, relative to the
+/// largest contact velocity.
+const ENOUGH: f64 = 1e-10;
+/// Maximum number of contacts whose pairs are all tried then.
 const PAIRED: usize = 24;
 
-/// Less friction, by a share of the way from none.
+/// Returns reduced friction, which grows with `share` from zero.
 fn part_of<T: Real>(friction: T, share: T) -> T {
     let (steep, twice) = (constant::<T>(STEEP), share + share);
     if friction <= steep {
@@ -38,23 +46,63 @@ fn part_of<T: Real>(friction: T, share: T) -> T {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// The impulses.
+    /// Returns impulses that satisfy the contact conditions.
     ///
     /// # Errors
     ///
-    /// The contact of the mechanism whose law is fulfilled least, where more is left than half of the digits.
+    /// The contact of the mechanism whose conditions are violated most, if by more than half of the digits;
+    /// [`closest`](Self::closest) then has the impulses that violate them least of all that were found.
     pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
         self.solve_from(None, &mut Equations::of(self))
     }
 
-    /// [`solve`](Self::solve) with given equations, where the impulses are about those of `start`.
+    /// Solves with given equations; the search begins at the impulses of `start`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve`](Self::solve).
     pub(in super::super) fn solve_from(
         &mut self,
         start: Option<&Start<T, NR>>,
         equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
-        let mut impulses = self.search(start, equations).map_err(|k| self.contacts[k].0)?;
-        // Rounding may have left them beside their cones.
+        if const { NR > DENSE } && self.size > DENSE {
+            let groups = self.groups();
+            if groups.1 > 1 {
+                let found = self.tried(self.solve_groups(&groups, start));
+                self.violation = found.worst.0;
+                if found.worst.0 <= self.speed() * epsilon::<T>().sqrt() || self.solves(&found) {
+                    return Ok(found.impulses);
+                }
+                self.closest = found.impulses;
+                return Err(self.contacts[found.worst.1].0);
+            }
+        }
+        let mut found = self.search(start, equations);
+        let is_found = |problem: &Self, found: &Trial<T, NK, NR>| {
+            found.worst.0 <= problem.speed() * epsilon::<T>().sqrt() || problem.solves(found)
+        };
+        if self.is_exhaustive() && !(self.is_relaxed && is_found(self, &found)) && !self.solves(&found) {
+            let other = self.exhaustive(found.impulses);
+            let other = self.tried(other);
+            // What rounding leaves of the map under very different masses says little.
+            let is_better = self.is_smooth() && is_found(self, &other);
+            if is_better || other.worst.0 < found.worst.0 {
+                found = other;
+            }
+        }
+        let (left, worst) = found.worst;
+        let impulses = self.in_cones(found.impulses);
+        self.violation = left;
+        if is_found(self, &found) {
+            return Ok(impulses);
+        }
+        self.closest = impulses;
+        Err(self.contacts[worst].0)
+    }
+
+    /// Projects impulses onto their friction cones, from which rounding may have moved them.
+    fn in_cones(&self, mut impulses: List<T, NR>) -> List<T, NR> {
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
             impulses[n] = impulses[n].max(T::zero());
@@ -64,86 +112,114 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 tangents.for_each(|i| impulses[i] *= most / size);
             }
         }
-        Ok(impulses)
+        impulses
     }
 
-    fn search(
-        &mut self,
-        start: Option<&Start<T, NR>>,
-        equations: &mut Equations<T, NR>,
-    ) -> Result<List<T, NR>, usize> {
-        // Where all stick that approach, there is nothing to search for.
+    /// Returns the impulses that violate the contact conditions least.
+    fn search(&self, start: Option<&Start<T, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
+        // If all approaching contacts stick, the problem is linear.
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
-        let mut impulses = self.together_with(&approach, equations);
-        let stuck = self.tried(impulses);
+        let stuck = self.tried(self.together_with(&approach, equations));
         if self.solves(&stuck) {
-            return Ok(impulses);
+            return stuck;
         }
-        // Mostly few slip or part, or do what they did before.
-        let start = start.filter(|start| start.is_regular).map(|start| {
+        // Mostly few contacts slip or separate, or all keep their modes.
+        let start = start.map(|start| {
             let mut impulses = start.impulses;
             impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-            self.tried(impulses)
+            (self.tried(impulses), start.is_regular)
         });
-        let found = self.newton(start.unwrap_or(stuck), self.lift());
-        if self.solves(&found) {
-            // Beside fast slip little is left of what presses slowly.
-            return Ok(self.refined(&found, self.lift()));
-        }
-        if self.is_smooth() {
-            impulses = self.press_in_turn();
-            if self.is_solved(&impulses) {
-                return Ok(impulses);
-            }
-        }
-        for round in 0..ROUNDS {
-            self.relax(&mut impulses, SWEEPS + round);
-            let relaxed = self.tried(impulses);
-            if self.solves(&relaxed) {
-                return Ok(impulses);
-            }
-            // Which steps of the map lead to the solution differs.
-            let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
+        let regular = start.filter(|(_, is_regular)| *is_regular).map(|(trial, _)| trial);
+        let is_convex = self.is_left_to_convex_problems();
+        if !is_convex {
+            let found = self.newton(regular.unwrap_or(stuck), self.lift());
             if self.solves(&found) {
-                return Ok(found.impulses);
-            }
-            if found.worst.0 < relaxed.worst.0 {
-                impulses = found.impulses;
+                // Compared with fast slip, residuals of slow normal velocities are small.
+                return self.refined(found, self.lift());
             }
         }
-        let (left, worst) = self.tried(impulses).worst;
-        if self.rebounds() {
-            // With less restitution there is an answer.
-            return Err(worst);
+        let start = start.map_or(List::repeat(T::zero()), |(trial, _)| trial.impulses);
+        let convex = self.by_convex_problems(&start);
+        if self.solves(&convex) || (is_convex && convex.worst.0 <= self.speed() * constant(ENOUGH)) {
+            return convex;
         }
-        if let Some(found) = self.by_degrees() {
-            return Ok(found);
+        let found = match self.size > LARGE {
+            true => self.newton(convex, self.lift()),
+            false => self.newton_twice(convex),
+        };
+        match found.worst.0 < convex.worst.0 {
+            true => self.refined(found, self.lift()),
+            false => convex,
         }
-        // Where friction is strong, which contacts stay closed is all there is to find.
-        for kept in 0_u32..1 << self.count.min(GUESSED) {
-            let guess = self.newton_twice(self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1)));
-            if self.solves(&guess) {
-                return Ok(guess.impulses);
-            }
-        }
-        if let Some(found) = self.in_pairs() {
-            return Ok(found);
-        }
-        let size = self.speed() * epsilon::<T>().sqrt();
-        if left <= size { Ok(impulses) } else { Err(worst) }
     }
 
-    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
-        self.solves(&self.tried(*impulses))
+    /// Whether Newton's method for the natural map is left out: its systems are large, with dependent rows.
+    pub(in super::super) fn is_left_to_convex_problems(&self) -> bool {
+        self.size > DENSE && self.size > self.velocities
     }
 
-    /// The contacts of which this is so.
+    /// Returns the contacts that satisfy a condition.
     fn those(&self, is_so: impl Fn(usize) -> bool) -> Total<bool, NK> {
         let mut those = Total::repeat(false);
         for k in 0..self.count {
             those[k] = is_so(k);
         }
         those
+    }
+
+    /// Whether the search goes on after convex problems have failed. For many contacts, and in most steps of
+    /// a simulation, it would take too long. In a step it goes on for few contacts and for strong friction.
+    fn is_exhaustive(&self) -> bool {
+        self.count <= PAIRED && (!self.is_relaxed || self.count <= GUESSED || self.is_steep())
+    }
+
+    /// Whether a coefficient of friction is so large that convex problems seldom find impulses.
+    fn is_steep(&self) -> bool {
+        self.friction.iter().take(self.count).any(|friction| *friction > constant(STEEP))
+    }
+
+    /// Searches impulses by all further methods.
+    fn exhaustive(&mut self, start: List<T, NR>) -> List<T, NR> {
+        let mut impulses = start;
+        if self.is_smooth() {
+            impulses = self.press_in_turn();
+            if self.is_solved(&impulses) {
+                return impulses;
+            }
+        }
+        let is_short = self.is_relaxed && !self.is_steep();
+        let rounds = if is_short { ROUNDS_OF_STEP } else { ROUNDS };
+        for round in 0..rounds {
+            self.relax(&mut impulses, SWEEPS + round);
+            let relaxed = self.tried(impulses);
+            if self.solves(&relaxed) {
+                return impulses;
+            }
+            // The step of the map that leads to the solution differs between problems.
+            let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
+            if self.solves(&found) {
+                return found.impulses;
+            }
+            if found.worst.0 < relaxed.worst.0 {
+                impulses = found.impulses;
+            }
+        }
+        if is_short || self.rebounds() {
+            // With less restitution impulses exist.
+            return impulses;
+        }
+        if let Some(found) = self.by_degrees() {
+            return found;
+        }
+        // With strong friction, only the set of closed contacts is unknown.
+        for kept in 0_u32..1 << self.count.min(GUESSED) {
+            let start = self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1));
+            let guess = self.newton_twice(self.tried(start));
+            if self.solves(&guess) {
+                return guess.impulses;
+            }
+        }
+        self.in_pairs().unwrap_or(impulses)
     }
 
     /// Whether no contact has friction.
@@ -199,10 +275,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         impulses
     }
 
+    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
+        self.solves(&self.tried(*impulses))
+    }
+
     /// Newton's method with steps of the map by this factor.
     fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> Trial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton_twice(impulses).impulses;
+        let found = self.newton_twice(self.tried(impulses)).impulses;
         self.scale = T::one();
         self.tried(found)
     }
@@ -248,7 +328,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut best: Option<(T, List<T, NR>)> = None;
         for one in 0..self.count {
             for other in one..self.count {
-                let found = self.newton_twice(self.together(&self.those(|k| k == one || k == other)));
+                let start = self.together(&self.those(|k| k == one || k == other));
+                let found = self.newton_twice(self.tried(start));
                 if !self.solves(&found) {
                     continue;
                 }

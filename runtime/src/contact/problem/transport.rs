@@ -62,6 +62,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (Start { impulses, is_regular }, correction)
     }
 
+    /// Impulses that change the rates as much as those at the start of a step.
+    pub(in super::super) fn start(
+        &self,
+        rates: &SVector<T, NR>,
+        equations: &mut Equations<T, NR>,
+    ) -> Start<T, NR> {
+        let (impulses, is_regular) = self.impulses_for(rates, equations);
+        Start { impulses, is_regular }
+    }
+
     /// Impulses that change the rates of the mechanism by `changes`.
     pub(in super::super) fn displacements(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
         self.scatter(&self.impulses_for(changes, &mut Equations::of(self)).0)

@@ -1,0 +1,108 @@
+//! Groups of contacts that impulses do not couple, such as those of bodies that do not touch each other.
+
+use super::super::Rows;
+use super::super::total::Total;
+use super::linear::Equations;
+use super::transport::Start;
+use super::{List, Problem};
+use crate::Real;
+
+/// Number of rows up to which a group has small arrays.
+const SMALL: usize = super::super::selection::FEW;
+
+impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+    /// Returns the group of each contact, and the number of groups.
+    pub(super) fn groups(&self) -> (Total<usize, NK>, usize) {
+        let (mut group, mut count) = (Total::repeat(usize::MAX), 0);
+        let mut reached = Total::<usize, NK>::repeat(0);
+        for first in 0..self.count {
+            if group[first] != usize::MAX {
+                continue;
+            }
+            (group[first], reached[0]) = (count, first);
+            let (mut done, mut size) = (0, 1);
+            while done < size {
+                let k = reached[done];
+                done += 1;
+                for other in 0..self.count {
+                    if group[other] == usize::MAX && self.are_coupled(k, other) {
+                        (group[other], reached[size]) = (count, other);
+                        size += 1;
+                    }
+                }
+            }
+            count += 1;
+        }
+        (group, count)
+    }
+
+    /// Whether impulses at one contact change contact velocities of the other, or press its friction.
+    fn are_coupled(&self, k: usize, other: usize) -> bool {
+        self.pressed_by[k] == self.pressed_by[other]
+            || self.all_of(k).any(|i| self.all_of(other).any(|j| self.weights[i][j] != T::zero()))
+    }
+
+    /// Returns the impulses that are found for each group of contacts alone; the search begins at the impulses
+    /// of `start`.
+    pub(super) fn solve_groups(
+        &self,
+        (group, count): &(Total<usize, NK>, usize),
+        start: Option<&Start<T, NR>>,
+    ) -> List<T, NR> {
+        let mut impulses = List::repeat(T::zero());
+        for g in 0..*count {
+            let members = (0..self.count).filter(|k| group[*k] == g);
+            let rows = members.fold(0, |rows, k| rows + self.rows[k].count);
+            match rows <= SMALL {
+                true => self.solve_group::<SMALL, SMALL>((group, g), start, &mut impulses),
+                false => self.solve_group::<NK, NR>((group, g), start, &mut impulses),
+            }
+        }
+        impulses
+    }
+
+    /// Finds the impulses of one group, in arrays for up to `GK` contacts with `GR` rows.
+    #[inline(never)]
+    fn solve_group<const GK: usize, const GR: usize>(
+        &self,
+        (group, g): (&Total<usize, NK>, usize),
+        start: Option<&Start<T, NR>>,
+        impulses: &mut List<T, NR>,
+    ) {
+        let mut own = Problem::<T, GK, GR>::none();
+        own.is_relaxed = self.is_relaxed;
+        for k in (0..self.count).filter(|k| group[*k] == g) {
+            let (c, first, Rows { count, .. }) = (own.count, own.size, self.rows[k]);
+            let by = (0..c).find(|c| own.contacts[*c].0 == self.pressed_by[k]).unwrap_or(c);
+            // Its contacts are those of the whole problem.
+            own.contacts[c] = (k, self.rows[k]);
+            own.rows[c] = Rows { first, count };
+            own.pressed_by[c] = by;
+            (own.least[c], own.floor[c]) = (self.least[k], self.floor[k]);
+            (own.friction[c], own.kinetic[c], own.step[c]) =
+                (self.friction[k], self.kinetic[k], self.step[k]);
+            for (i, row) in self.all_of(k).enumerate() {
+                own.places[first + i] = row;
+                own.free[first + i] = self.free[row];
+                own.given[first + i] = self.given[row];
+                own.base[first + i] = self.base[row];
+            }
+            own.count += 1;
+            own.size += count;
+        }
+        let places = own.places;
+        for (row, i) in own.weights.iter_mut().zip(places.iter()).take(own.size) {
+            row.iter_mut().zip(places.iter()).take(own.size).for_each(|(to, j)| *to = self.weights[*i][*j]);
+        }
+        // A part of the velocities, as an estimate.
+        own.velocities = (self.velocities.saturating_mul(own.size) / self.size.max(1)).max(1);
+        let start = start.map(|start| {
+            let mut impulses = List::repeat(T::zero());
+            (0..own.size).for_each(|i| impulses[i] = start.impulses[places[i]]);
+            Start { impulses, is_regular: start.is_regular }
+        });
+        let found = own.solve_from(start.as_ref(), &mut Equations::of(&own));
+        let found = found.unwrap_or(own.closest);
+        (0..own.size).for_each(|i| impulses[places[i]] = found[i]);
+    }
+}

@@ -1,0 +1,130 @@
+//! Bodies that fall on each other and on the ground: a step always exists, and takes no energy in.
+
+use super::boxes::any_turn;
+use super::laws::Random;
+use linkwork::nalgebra::UnitQuaternion;
+use linkwork::prelude::*;
+use linkwork::simulate::Overlaps;
+
+/// Two bricks on the ground, `ratio` times as heavy as each other.
+#[mechanism(gravity = -9.81 * z)]
+struct Bricks {
+    mass: f64,
+    ratio: f64,
+    a: f64,
+    b: f64,
+    c: f64,
+    friction: f64,
+    restitution: f64,
+    #[body(mass = mass, inertia = cuboid(mass, a, b, c))]
+    one: Body,
+    #[body(mass = mass * ratio, inertia = cuboid(mass * ratio, a, b, c))]
+    other: Body,
+    #[joint(ground -> one)]
+    one_pose: Free,
+    #[joint(ground -> other)]
+    other_pose: Free,
+    #[contact(one.cuboid(a, b, c), ground.plane(z), friction = friction, restitution = restitution)]
+    one_floor: Contact,
+    #[contact(other.cuboid(a, b, c), ground.plane(z), friction = friction, restitution = restitution)]
+    other_floor: Contact,
+    #[contact(one.cuboid(a, b, c), other.cuboid(a, b, c), friction = friction, restitution = restitution)]
+    touch: Contact,
+}
+
+impl Bricks {
+    /// Poses of both bricks: places of their centres, and rotations.
+    fn posed(&self, poses: [([f64; 3], UnitQuaternion<f64>); 2]) -> SVector<f64, 14> {
+        let mut q = self.neutral();
+        for (k, (place, turn)) in poses.into_iter().enumerate() {
+            q.fixed_rows_mut::<3>(7 * k).copy_from_slice(&place);
+            q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&turn.coords);
+        }
+        q
+    }
+
+    /// Advances by so many steps, and checks each: finite, without more energy than `gain` from step to step.
+    /// Returns the end and the largest violation of the contact conditions.
+    fn checked(
+        &self,
+        start: (SVector<f64, 14>, SVector<f64, 12>),
+        method: TimeStepping<f64>,
+        (h, steps, gain): (f64, u32, f64),
+    ) -> (SVector<f64, 14>, f64) {
+        let energy = |q: &_, v: &_| self.kinetic_energy(q, v) + self.potential_energy(q);
+        let run = simulate(self).from(start.0, start.1).overlaps(Overlaps::Part).method(method);
+        let (mut before, mut end, mut worst) = (f64::INFINITY, start.0, 0.0_f64);
+        for sample in run.duration(h * f64::from(steps)) {
+            let sample = sample.expect("a step exists");
+            let now = energy(&sample.q, &sample.v);
+            assert!(now <= before + gain, "{} at {} s in steps of {h}", now - before, sample.t);
+            (before, end, worst) = (now, sample.q, worst.max(sample.violation));
+        }
+        assert!(end.iter().all(|x| x.is_finite()));
+        (end, worst)
+    }
+}
+
+/// Bricks in the air, stacked, or one that falls against the other. `LINKWORK_SCENES` is how many there are.
+#[test]
+fn random_scenes_of_two_bricks_go_on() {
+    let count = std::env::var("LINKWORK_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(12);
+    for seed in 0..count {
+        let mut random = Random(seed);
+        (0..3).for_each(|_| _ = random.next());
+        let mut size = || 0.06 + 0.04 * random.next();
+        let [a, b, c] = [size(), size(), size()];
+        let m = Bricks {
+            mass: 0.5,
+            ratio: 100.0_f64.powf(random.next()),
+            a,
+            b,
+            c,
+            friction: random.one_of([0.0, 0.1, 0.3, 0.5, 1.0, 2.0]),
+            restitution: random.one_of([0.0, 0.0, 0.3, 1.0]),
+        };
+        let far = (a * a + b * b + c * c).sqrt() / 2.0;
+        let level = UnitQuaternion::identity();
+        let mut v = SVector::zeros();
+        let poses = match seed % 3 {
+            0 => {
+                v = random.vector(2.0);
+                [
+                    ([0.0, 0.0, far], any_turn(&mut random)),
+                    ([0.3 * far, 0.0, 3.1 * far], any_turn(&mut random)),
+                ]
+            }
+            1 => [([0.0, 0.0, c / 2.0], level), ([0.3 * a, 0.2 * b, 1.5 * c], level)],
+            _ => {
+                let spin = 3.0 + random.next();
+                (v[0], v[4]) = (spin * c / 2.0, spin);
+                [([0.0, 0.0, c / 2.0], level), ([a + 0.5 * c, 0.0, c / 2.0], level)]
+            }
+        };
+        let h = 5e-3 * 10.0_f64.powf(0.7 * random.next() - 0.7);
+        let step = TimeStepping::step(h);
+        let step = match seed / 3 % 3 {
+            0 => step,
+            1 => step.midpoint(),
+            _ => step.leapfrog(),
+        };
+        let weight = m.mass * (1.0 + m.ratio);
+        m.checked((m.posed(poses), v), step, (h, 60, 100.0 * weight * h * h));
+    }
+}
+
+/// A thin brick falls against another one, which falls as well.
+#[test]
+fn a_brick_knocks_another_over() {
+    let m = Bricks { mass: 0.02, ratio: 1.0, a: 0.008, b: 0.025, c: 0.05, friction: 0.3, restitution: 0.0 };
+    let level = UnitQuaternion::identity();
+    for h in [2e-3, 1e-3] {
+        let steps = if h > 1.5e-3 { 350 } else { 700 };
+        let poses = [([0.0, 0.0, 0.025], level), ([0.025, 0.0, 0.025], level)];
+        let mut v = SVector::zeros();
+        (v[0], v[4]) = (0.075, 3.0);
+        let (end, _) = m.checked((m.posed(poses), v), TimeStepping::step(h), (h, steps, 1e-6));
+        // Neither stands, and the second one lies.
+        assert!(end[2] < 0.024 && end[9] < 0.013, "{end}");
+    }
+}
