@@ -1,6 +1,7 @@
 //! Vector–Jacobian products of functions: programs in reverse order (Griewank and Walther, *Evaluating
 //! Derivatives*, 2008, chapter 3).
 
+use crate::adjoint_steps;
 use crate::error::Error;
 use crate::functions::Plan;
 use crate::robot::{Function, Robot};
@@ -24,11 +25,19 @@ const FIRST: usize = 1 << 16;
 pub struct VectorJacobian {
     shared: Arc<Shared>,
     name: String,
-    routine: Routine,
+    kind: Kind,
     /// Lengths of the arguments.
     arguments: Vec<usize>,
     factors: usize,
     parameters: usize,
+}
+
+/// Computation of the derivatives.
+enum Kind {
+    Reversed(Routine),
+    Integrate,
+    Difference,
+    TangentRate,
 }
 
 impl std::fmt::Debug for VectorJacobian {
@@ -42,10 +51,14 @@ impl Function {
     ///
     /// # Errors
     ///
-    /// The function is itself composed of matrices of derivatives, solves for constraint forces, or moves
-    /// configurations with quaternions.
+    /// The function is composed of matrices of derivatives, or solves for constraint forces; or velocities are
+    /// generalized speeds, and the function moves configurations.
     pub fn vector_jacobian(&self) -> Result<VectorJacobian, Error> {
         let entry = &self.shared().entries[self.index()];
+        let unavailable = || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
+        let parameters = self.shared().parameters.len();
+        let sizes = self.shared().sizes;
+        let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
         let program = match &entry.plan {
             Plan::Program(routine) => routine.program(),
             Plan::Frame(access, frame, routine) => {
@@ -54,24 +67,28 @@ impl Function {
             }
             _ => None,
         };
-        let unavailable = || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
-        let program = program.ok_or_else(unavailable)?;
-        let parameters = self.shared().parameters.len();
-        let sizes = self.shared().sizes;
-        let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
-        let inputs = parameters + arguments.iter().sum::<usize>();
-        let given = Argument::Given(FACTORS, FIRST, entry.length);
-        let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
-        let symbols = entry.arguments.iter().flat_map(|argument| {
-            (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
-        });
-        let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
-        let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
-        let routine = Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?;
+        let kind = match (program, entry.name.as_str()) {
+            (Some(program), _) => {
+                let inputs = parameters + arguments.iter().sum::<usize>();
+                let given = Argument::Given(FACTORS, FIRST, entry.length);
+                let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
+                let symbols = entry.arguments.iter().flat_map(|argument| {
+                    (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
+                });
+                let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
+                let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
+                Kind::Reversed(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?)
+            }
+            (None, _) if self.shared().has_speeds => return Err(unavailable()),
+            (None, "integrate") => Kind::Integrate,
+            (None, "difference") => Kind::Difference,
+            (None, "tangent_rate") => Kind::TangentRate,
+            _ => return Err(unavailable()),
+        };
         Ok(VectorJacobian {
             shared: self.shared().clone(),
             name: entry.name.clone(),
-            routine,
+            kind,
             arguments,
             factors: entry.length,
             parameters,
@@ -126,11 +143,27 @@ impl VectorJacobian {
         }
         robot.check_length(FACTORS, self.factors, factors.len())?;
         robot.check_length("derivatives", self.length(), out.len())?;
-        let mut inputs: Vec<&[f64]> = vec![robot.parameter_values()];
-        inputs.extend(arguments);
-        inputs.push(factors);
-        let tables = robot.table_values();
-        self.routine.run(Values { inputs: &inputs, tables, interpreted: false }, out, &mut []);
+        let charts = &self.shared.charts;
+        match &self.kind {
+            Kind::Reversed(routine) => {
+                let mut inputs: Vec<&[f64]> = vec![robot.parameter_values()];
+                inputs.extend(arguments);
+                inputs.push(factors);
+                let tables = robot.table_values();
+                routine.run(Values { inputs: &inputs, tables, interpreted: false }, out, &mut []);
+            }
+            _ => {
+                out.fill(0.0);
+                let (first, rest) = out.split_at_mut(self.arguments[0]);
+                let second = &mut rest[..self.arguments[1]];
+                let [a, b] = [arguments[0], arguments[1]];
+                match self.kind {
+                    Kind::Integrate => adjoint_steps::integrate(charts, a, b, factors, first, second),
+                    Kind::Difference => adjoint_steps::difference(charts, [a, b], factors, [first, second]),
+                    _ => adjoint_steps::tangent_rate(charts, [a, b], factors, [first, second]),
+                }
+            }
+        }
         Ok(())
     }
 }
@@ -160,9 +193,8 @@ fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> O
         }
     }
     let zero = Operand::Const(0.0);
-    let outputs = inputs.map(|symbol| {
-        symbol.and_then(|symbol| reversed.inputs.get(&symbol).copied()).unwrap_or(zero)
-    });
+    let outputs =
+        inputs.map(|symbol| symbol.and_then(|symbol| reversed.inputs.get(&symbol).copied()).unwrap_or(zero));
     let outputs = outputs.collect();
     let mut program = Program { instructions: reversed.instructions, outputs, ..Program::default() };
     program.sweep();

@@ -83,7 +83,7 @@ impl AdjointStepper {
     /// product.
     pub fn new(robot: &Robot) -> Result<AdjointStepper, Error> {
         let stepper = Stepper::new(robot)?;
-        if robot.shared.index.contains_key("displacement_rate") {
+        if robot.shared.has_speeds {
             let reason = "steps in generalized speeds have no adjoint steps";
             return Err(Error::Value(format!("`{}`: {reason}", robot.name())));
         }
@@ -100,7 +100,8 @@ impl AdjointStepper {
     }
 
     /// Replaces derivatives by the state after a step by derivatives by the state before it, and adds those by
-    /// inputs and parameters. The arguments are those of [`Stepper::step`].
+    /// inputs and parameters. The arguments are those of [`Stepper::step`]. Returns the derivatives by the time at
+    /// the start and by the length of the step.
     ///
     /// # Errors
     ///
@@ -111,14 +112,18 @@ impl AdjointStepper {
         start: [&[f64]; 3],
         h: f64,
         derivatives: &mut Sensitivity<'_>,
-    ) -> Result<(), Error> {
+    ) -> Result<[f64; 2], Error> {
         let [q, v, u] = start;
         self.stepper.evaluate(t, start, h)?;
         let robot = self.stepper.robot.clone();
         robot.check_length("derivatives by q", q.len(), derivatives.q.len())?;
         robot.check_length("derivatives by v", v.len(), derivatives.v.len())?;
         robot.check_length("derivatives by u", u.len(), derivatives.u.len())?;
-        robot.check_length("derivatives by parameters", robot.parameters().len(), derivatives.parameters.len())?;
+        robot.check_length(
+            "derivatives by parameters",
+            robot.parameters().len(),
+            derivatives.parameters.len(),
+        )?;
         let charts = &robot.shared.charts;
         let n = v.len();
         let mut by_q = vec![0.0; q.len()];
@@ -126,9 +131,15 @@ impl AdjointStepper {
         integrate(charts, q, self.stepper.displacement(), derivatives.q, &mut by_q, &mut by_displacement);
         let after_v = derivatives.v.to_vec();
         let mut by_v = after_v.clone();
-        let weighted = |list: &[f64], weight: f64| -> Vec<f64> {
-            list.iter().map(|x| h / 6.0 * weight * x).collect()
-        };
+        let weighted =
+            |list: &[f64], weight: f64| -> Vec<f64> { list.iter().map(|x| h / 6.0 * weight * x).collect() };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        // Displacement and change of the velocity are the length of the step times mean rates.
+        let (mut by_t, mut by_h) = (0.0, 0.0);
+        for (stage, (_, weight)) in self.stepper.stages.iter().zip(STAGES) {
+            let change = dot(&by_displacement, &stage.rate) + dot(&after_v, &stage.acceleration);
+            by_h += weight / 6.0 * change;
+        }
         let mut rates: Vec<Vec<f64>> = STAGES.iter().map(|(_, w)| weighted(&by_displacement, *w)).collect();
         let mut accelerations: Vec<Vec<f64>> = STAGES.iter().map(|(_, w)| weighted(&after_v, *w)).collect();
         for i in (0..STAGES.len()).rev() {
@@ -137,18 +148,23 @@ impl AdjointStepper {
             let time = [t + c];
             let known = [("t", &time[..]), ("q", &stage.q), ("v", &stage.v), ("tau", &stage.tau), ("u", u)];
             let (mut stage_q, mut stage_v, mut tau) = (vec![0.0; q.len()], vec![0.0; n], vec![0.0; n]);
+            let mut by_time = [0.0];
             self.dynamics.evaluate(&robot, &known, &accelerations[i])?;
             self.dynamics.add("q", &mut stage_q);
             self.dynamics.add("v", &mut stage_v);
             self.dynamics.add("tau", &mut tau);
+            self.dynamics.add("t", &mut by_time);
             self.dynamics.add(PARAMETERS, derivatives.parameters);
             if let Some(forces) = &mut self.forces {
                 forces.evaluate(&robot, &known, &tau)?;
                 forces.add("q", &mut stage_q);
                 forces.add("v", &mut stage_v);
                 forces.add("u", derivatives.u);
+                forces.add("t", &mut by_time);
                 forces.add(PARAMETERS, derivatives.parameters);
             }
+            by_t += by_time[0];
+            by_h += STAGES[i].0 * by_time[0];
             if i == 0 {
                 add(&mut by_q, &stage_q);
                 add(&mut by_v, &stage_v);
@@ -161,6 +177,8 @@ impl AdjointStepper {
             add_transposed(&by_own, &rates[i], &mut stage_v);
             integrate(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
             add(&mut by_v, &stage_v);
+            let before = &self.stepper.stages[i - 1];
+            by_h += STAGES[i].0 * (dot(&displacement, &before.rate) + dot(&stage_v, &before.acceleration));
             for k in 0..n {
                 rates[i - 1][k] += c * displacement[k];
                 accelerations[i - 1][k] += c * stage_v[k];
@@ -168,7 +186,7 @@ impl AdjointStepper {
         }
         derivatives.q.copy_from_slice(&by_q);
         derivatives.v.copy_from_slice(&by_v);
-        Ok(())
+        Ok([by_t, by_h])
     }
 }
 
@@ -213,6 +231,11 @@ pub(crate) fn integrate(
     add_transposed(&at_dv, &tangent, by_dv);
     let mut displacement = vec![0.0; dv.len()];
     add_transposed(&at_q, &tangent, &mut displacement);
+    add_configuration_factors(charts, q, &displacement, by_q);
+}
+
+/// Adds the factors of the entries of a configuration for factors of its displacements.
+fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], by_q: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => by_q[q0] += displacement[v0],
@@ -227,6 +250,40 @@ pub(crate) fn integrate(
             }
         }
     }
+}
+
+/// Adds the derivatives of `difference(from, to)` by both configurations to lists.
+pub(crate) fn difference(
+    charts: &[Chart],
+    [from, to]: [&[f64]; 2],
+    factors: &[f64],
+    [by_from, by_to]: [&mut [f64]; 2],
+) {
+    let n = factors.len();
+    let mut dv = vec![0.0; n];
+    crate::space::difference(charts, from, to, &mut dv);
+    // The rate of `dv` is the inverse of the derivative of `integrate` by `dv`, times the velocity.
+    let [_, inverse] = tangent_rate_derivatives(charts, &dv, &vec![0.0; n]);
+    let [by_q, _] = integrate_derivatives(charts, &dv);
+    let mut at_end = vec![0.0; n];
+    add_transposed(&inverse, factors, &mut at_end);
+    add_configuration_factors(charts, to, &at_end, by_to);
+    let mut at_start = vec![0.0; n];
+    add_transposed(&by_q, &at_end, &mut at_start);
+    at_start.iter_mut().for_each(|x| *x = -*x);
+    add_configuration_factors(charts, from, &at_start, by_from);
+}
+
+/// Adds the derivatives of `tangent_rate(dv, v)` by both vectors to lists.
+pub(crate) fn tangent_rate(
+    charts: &[Chart],
+    [dv, v]: [&[f64]; 2],
+    factors: &[f64],
+    [by_dv, by_v]: [&mut [f64]; 2],
+) {
+    let [at_dv, at_v] = tangent_rate_derivatives(charts, dv, v);
+    add_transposed(&at_dv, factors, by_dv);
+    add_transposed(&at_v, factors, by_v);
 }
 
 /// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate is

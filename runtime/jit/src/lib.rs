@@ -33,7 +33,7 @@ mod steps;
 mod table;
 
 pub use adjoint::VectorJacobian;
-pub use adjoint_steps::AdjointStepper;
+pub use adjoint_steps::{AdjointStepper, Sensitivity};
 pub use drawing::Drawing;
 pub use error::Error;
 pub use functions::Matrix;

@@ -232,8 +232,7 @@ impl Loader {
         };
         let notes = one.notes().iter().map(|line| ("note", line));
         let helps = one.helps().iter().map(|line| ("help", line));
-        let lines: String =
-            notes.chain(helps).map(|(kind, line)| format!("\n  = {kind}: {line}")).collect();
+        let lines: String = notes.chain(helps).map(|(kind, line)| format!("\n  = {kind}: {line}")).collect();
         format!("{position}: error: {}{lines}", one.message())
     }
 }

@@ -91,9 +91,8 @@ impl Stepper {
         }
         robot.check_values()?;
         let index = |name: &str| robot.shared.index.get(name).copied();
-        let needed = |name: &str| {
-            index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()))
-        };
+        let needed =
+            |name: &str| index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()));
         let functions = Functions {
             dynamics: needed("forward_dynamics")?,
             forces: if robot.nu() > 0 { Some(needed("generalized_forces")?) } else { None },
@@ -140,7 +139,7 @@ impl Stepper {
             let change: f64 = self.stages.iter().zip(STAGES).map(|(s, (_, w))| w * s.acceleration[k]).sum();
             v_end[k] = v[k] + h / 6.0 * change;
         }
-        let state = State { q, other: [&self.displacement, &[]], ..State::default() };
+        let state = State { q, other: [&self.displacement, &[], &[]], ..State::default() };
         self.robot.state_call_into(self.functions.integrate, state, q_end)?;
         match q_end.iter().chain(&*v_end).all(|x| x.is_finite()) {
             true => Ok(()),
@@ -171,7 +170,7 @@ impl Stepper {
                         stage.v[k] = v[k] + c * last.acceleration[k];
                     }
                     let dv = &stage.displacement;
-                    let state = State { q, v: &stage.v, other: [dv, &[]], ..State::default() };
+                    let state = State { q, v: &stage.v, other: [dv, &[], &[]], ..State::default() };
                     robot.state_call_into(functions.integrate, state, &mut stage.q)?;
                     robot.state_call_into(functions.rate, state, &mut stage.rate)?;
                 }
@@ -211,7 +210,7 @@ impl Stepper {
         let linearize = self.functions.linearize;
         let names = self.robot.shared.names();
         let linearize = linearize.ok_or_else(|| Error::unknown("function", "linearize", names))?;
-        if self.robot.shared.index.contains_key("displacement_rate") {
+        if self.robot.shared.has_speeds {
             let name = self.robot.name();
             let reason = "steps in generalized speeds have no Jacobians";
             return Err(Error::Value(format!("`{name}`: {reason}")));
@@ -395,7 +394,7 @@ impl Robot {
     }
 
     fn check_joint_velocities(&self, dv: &[f64]) -> Result<(), Error> {
-        if self.shared.index.contains_key("displacement_rate") {
+        if self.shared.has_speeds {
             return Err(Error::Value(format!("the velocities of `{}` are generalized speeds", self.name())));
         }
         self.check_length("dv", self.nv(), dv.len())

@@ -1,6 +1,7 @@
 """Methods of mechanisms: conversion of arguments, and documentation."""
 
 import inspect
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -124,7 +125,9 @@ def prepare(function: Function, kind: str, unit: str) -> None:
 
 def documentation(function: Function, unit: str) -> str:
     """Returns the documentation of a method."""
-    text = function.about[1].split("# Errors")[0].strip()
+    # Links of Rust's documentation are the names of functions.
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", function.about[1].split("# Errors")[0]).strip()
+    text = re.sub(r"\[(`[^`]*`)\]", r"\1", text)
     lines = [text, ""]
     if function.arguments:
         lines.append("Args:")

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._equilibrium import Rest, find
 from . import _native
 from ._functions import ENTRIES, marked, prepare, quoted
+from ._linear import at_rest
 from ._names import Error, checked, count, hint, index, number, numbers, safe
 from ._native import Function, Robot
 from ._origin import locate
@@ -487,22 +488,25 @@ class Mechanism(metaclass=_Kind):
         file has an input; the option `inputs` changes this.
 
         Raises:
-            Error: the mechanism was compiled without derivatives, or the configuration violates the
-                constraints; `assemble` returns one that satisfies them.
+            Error: the mechanism was loaded without derivatives, or the configuration violates the constraints
+                (`assemble` returns one that satisfies them), or moves under constraints.
         """
-        self._need("linearize", "derivatives")
+        constrained = bool(self._description["constraints"])
+        self._need("forward_dynamics_derivatives" if constrained else "linearize", "derivatives")
         time = [number(t, "`t`")] if self._description["time"] else []
         at_q = self._vector(q, self.nq, "q")
-        if "constraint_residuals" in self._functions:
-            off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
-            if not off <= 1e-6:
-                raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
         at_v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
-        if self._description["constraints"]:
-            a, b, coordinates, speeds = self._call("linearize", *time, at_q, at_v, u, [])
-            names = [self.velocities[int(k)] for k in coordinates]
-            names += [f"{self.velocities[int(k)]}.rate" for k in speeds]
+        if constrained:
+            if "constraint_residuals" in self._functions:
+                off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
+                if not off <= 1e-6:
+                    raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
+            if at_v.any():
+                raise Error("linear systems of mechanisms with constraints are about states at rest")
+            a, b, coordinates, speeds = at_rest(self, time, at_q, u)
+            names = [self.velocities[k] for k in coordinates]
+            names += [f"{self.velocities[k]}.rate" for k in speeds]
         else:
             a, b = self._call("linearize", *time, at_q, at_v, u)
             names = list(self.velocities) + [f"{name}.rate" for name in self.velocities]
@@ -543,6 +547,7 @@ def _parameter(name: str, value: Any) -> NDArray[Any]:
 _ABSENT = {
     "assemble": "it has no constraints",
     "linearize": "it needs `derivatives=True`, and a mechanism without constraints",
+    "forward_dynamics_derivatives": "it needs `derivatives=True`",
     "transition": "it needs `derivatives=True`, and a mechanism without constraints, contacts and states of first order",
     "step": "steps need a mechanism without constraints, contacts and states of first order",
 }

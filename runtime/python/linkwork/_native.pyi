@@ -55,6 +55,17 @@ class Function:
         threads: int,
     ) -> None: ...
 
+    def pull_back(
+        self,
+        robot: Robot,
+        frame: int,
+        arguments: Sequence[NDArray[Any]],
+        factors: NDArray[Any],
+        out: NDArray[Any],
+        states: int,
+        threads: int,
+    ) -> None: ...
+
 @final
 class BoundFunction:
     """A function of a mechanism with values of its parameters."""
@@ -93,3 +104,17 @@ def simulate(
     inputs: list[float],
     control: Callable[[float, NDArray[Any], NDArray[Any]], list[float]] | None,
 ) -> tuple[NDArray[Any], str | None, BaseException | None]: ...
+def roll_back(
+    robot: Robot,
+    q: NDArray[Any],
+    v: NDArray[Any],
+    inputs: NDArray[Any],
+    by_q: NDArray[Any],
+    by_v: NDArray[Any],
+    by_inputs: NDArray[Any],
+    by_parameters: NDArray[Any],
+    *,
+    start: float,
+    h: float,
+    threads: int,
+) -> None: ...

@@ -13,7 +13,12 @@ pub fn entries<'a>(array: &'a Bound<'_, PyArray1<f64>>) -> Result<&'a [f64], AsS
 }
 
 /// Returns a matrix of values that are stored by columns.
-pub fn matrix<'py>(py: Python<'py>, rows: usize, columns: usize, values: &[f64]) -> Bound<'py, PyArray2<f64>> {
+pub fn matrix<'py>(
+    py: Python<'py>,
+    rows: usize,
+    columns: usize,
+    values: &[f64],
+) -> Bound<'py, PyArray2<f64>> {
     assert_eq!(values.len(), rows * columns, "entries of a matrix");
     // SAFETY: all entries of the new contiguous array, which nothing else refers to, are written before it is
     // returned.

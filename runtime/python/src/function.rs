@@ -4,7 +4,7 @@ use crate::arrays;
 use crate::error::exception;
 use crate::robot::{Robot, set_parameters};
 use crate::shared::{Failed, distribute};
-use linkwork_jit::{Error, Stepper};
+use linkwork_jit::{AdjointStepper, Error, Sensitivity, Stepper, VectorJacobian};
 use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -86,7 +86,7 @@ pub struct Function {
     signature: Arc<Signature>,
 }
 
-/// A function of a mechanism with values of its parameters.
+// A function of a mechanism with values of its parameters. Its documentation is that of the function.
 #[pyclass(frozen, module = "linkwork._native")]
 pub struct BoundFunction {
     signature: Arc<Signature>,
@@ -144,7 +144,13 @@ fn matrix(name: &str, rows: usize, columns: usize) -> Output {
 }
 
 impl Function {
-    fn new(name: &str, documentation: &str, arguments: Vec<Argument>, results: Vec<Output>, kind: Kind) -> Function {
+    fn new(
+        name: &str,
+        documentation: &str,
+        arguments: Vec<Argument>,
+        results: Vec<Output>,
+        kind: Kind,
+    ) -> Function {
         let (name, documentation) = (name.to_string(), documentation.to_string());
         let frames = HashMap::new();
         Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) }
@@ -215,7 +221,9 @@ fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Op
     };
     let frames = names.iter().enumerate().map(|(k, name)| (name.clone(), k)).collect();
     let (name, documentation) = (name.to_string(), documentation.to_string());
-    Some(Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) })
+    Some(Function {
+        signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }),
+    })
 }
 
 /// Returns the functions for steps of the classical Runge–Kutta method.
@@ -397,12 +405,7 @@ fn satisfy(
 }
 
 /// Writes the state after a step, and its Jacobians if they are wanted.
-fn step(
-    stepper: &mut Stepper,
-    jacobians: bool,
-    arguments: &[&[f64]],
-    out: &mut [f64],
-) -> Result<(), Error> {
+fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
     let (t, rest) = match arguments {
         [t, rest @ ..] if rest.len() == 4 => (t[0], rest),
         rest => (0.0, rest),
@@ -428,7 +431,11 @@ thread_local! {
 
 impl BoundFunction {
     /// Evaluates the function for one state whose arrays need no conversion. `None` for all other arguments.
-    fn single<'py>(&self, py: Python<'py>, given: &Bound<'py, PyTuple>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn single<'py>(
+        &self,
+        py: Python<'py>,
+        given: &Bound<'py, PyTuple>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let signature = &*self.signature;
         let robot = &self.robot.get();
         let takes_frame = usize::from(!signature.frames.is_empty());
@@ -556,6 +563,38 @@ impl Function {
         )))
     }
 
+    /// Writes derivatives of the sum of the results, each times a factor: by the arguments of each state, then by
+    /// the parameters. Factors of matrices are stored by columns.
+    #[pyo3(signature = (robot, frame, arguments, factors, out, states, threads))]
+    #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
+    fn pull_back(
+        &self,
+        py: Python<'_>,
+        robot: &Robot,
+        frame: usize,
+        arguments: Vec<PyReadonlyArrayDyn<'_, f64>>,
+        factors: PyReadonlyArrayDyn<'_, f64>,
+        mut out: PyReadwriteArrayDyn<'_, f64>,
+        states: usize,
+        threads: usize,
+    ) -> PyResult<()> {
+        let signature = &*self.signature;
+        let lists = arguments.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
+        let (factors, mut rest) = (factors.as_slice()?, out.as_slice_mut()?);
+        let width = rest.len() / states.max(1);
+        let failed = py.detach(|| {
+            let split = |count: usize| {
+                let (own, others) = std::mem::take(&mut rest).split_at_mut(count * width);
+                rest = others;
+                own
+            };
+            distribute(states, threads, split, |first, count, own| {
+                signature.differentiate(robot, frame, &lists, first..first + count, factors, own)
+            })
+        });
+        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
+    }
+
     /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with the
     /// entries of one state is common to all states. Matrices are stored by columns.
     #[pyo3(signature = (robot, frame, arguments, results, states, threads))]
@@ -592,7 +631,106 @@ impl Function {
     }
 }
 
+/// Derivatives of one state: by the arguments one after the other, then by the parameters.
+enum Adjoint {
+    Product(linkwork_jit::Robot, VectorJacobian),
+    /// With the placement of a frame as a matrix of four rows, whose last row is constant.
+    Placement(linkwork_jit::Robot, VectorJacobian),
+    Step(Box<AdjointStepper>),
+}
+
+impl Adjoint {
+    fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
+        match self {
+            Adjoint::Product(robot, _) | Adjoint::Placement(robot, _) => robot,
+            Adjoint::Step(stepper) => stepper.robot_mut(),
+        }
+    }
+
+    fn evaluate(&mut self, arguments: &[&[f64]], factors: &[f64], out: &mut [f64]) -> Result<(), Error> {
+        match self {
+            Adjoint::Product(robot, product) => product.evaluate_into(robot, arguments, factors, out),
+            Adjoint::Placement(robot, product) => {
+                let mut own = [0.0; 12];
+                for (column, factors) in own.chunks_exact_mut(3).zip(factors.chunks_exact(4)) {
+                    column.copy_from_slice(&factors[..3]);
+                }
+                product.evaluate_into(robot, arguments, &own, out)
+            }
+            Adjoint::Step(stepper) => {
+                let (t, rest, first) = match arguments {
+                    [t, rest @ ..] if rest.len() == 4 => (t[0], rest, 1),
+                    rest => (0.0, rest, 0),
+                };
+                let [q, v, u, h] = rest else {
+                    return Err(Error::Internal("the arguments of a step".to_string()));
+                };
+                out.fill(0.0);
+                let (time, own) = out.split_at_mut(first);
+                let (by_q, rest) = own.split_at_mut(q.len());
+                let (by_v, rest) = rest.split_at_mut(v.len());
+                let (by_u, rest) = rest.split_at_mut(u.len());
+                by_q.copy_from_slice(&factors[..q.len()]);
+                by_v.copy_from_slice(&factors[q.len()..]);
+                let (length, parameters) = rest.split_at_mut(1);
+                let mut derivatives = Sensitivity { q: by_q, v: by_v, u: by_u, parameters };
+                let [by_t, by_h] = stepper.step(t, [q, v, u], h[0], &mut derivatives)?;
+                time.fill(by_t);
+                length.fill(by_h);
+                Ok(())
+            }
+        }
+    }
+}
+
 impl Signature {
+    /// Writes the derivatives of consecutive states.
+    fn differentiate(
+        &self,
+        robot: &Robot,
+        frame: usize,
+        lists: &[&[f64]],
+        states: Range<usize>,
+        factors: &[f64],
+        out: &mut [f64],
+    ) -> Failed {
+        let mut adjoint = match self.adjoint(&robot.robot, frame) {
+            Ok(adjoint) => adjoint,
+            Err(error) => return Some((states.start, error)),
+        };
+        let length = self.length();
+        let width =
+            robot.robot.parameters().len() + self.arguments.iter().map(Argument::length).sum::<usize>();
+        let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
+        let mut failed = None;
+        for (k, state) in states.enumerate() {
+            for ((slice, list), argument) in slices.iter_mut().zip(lists).zip(&self.arguments) {
+                let length = argument.length();
+                let at = if list.len() == length { 0 } else { state * length };
+                *slice = &list[at..at + length];
+            }
+            let own = &mut out[k * width..(k + 1) * width];
+            let set = set_parameters(adjoint.robot_mut(), robot.sets.as_ref(), state);
+            let factors = &factors[state * length..(state + 1) * length];
+            let done = set.and_then(|()| adjoint.evaluate(&slices[..self.arguments.len()], factors, own));
+            if let Err(error) = done {
+                failed.get_or_insert((state, error));
+            }
+        }
+        failed
+    }
+
+    /// Returns the derivatives, for a frame where the function takes one.
+    fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
+        Ok(match &self.kind {
+            Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),
+            Kind::Frames(all) => Adjoint::Product(robot.clone(), all[frame].vector_jacobian()?),
+            Kind::Placements(all) => Adjoint::Placement(robot.clone(), all[frame].vector_jacobian()?),
+            Kind::Step => Adjoint::Step(Box::new(AdjointStepper::new(robot)?)),
+            _ => return Err(Error::Value(format!("`{}` has no vector–Jacobian product", self.name))),
+        })
+    }
+
     /// Evaluates consecutive states.
     fn many(
         &self,
@@ -677,7 +815,9 @@ impl BoundFunction {
         given: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if named.is_none() && let Some(found) = self.single(py, given)? {
+        if named.is_none()
+            && let Some(found) = self.single(py, given)?
+        {
             return Ok(found);
         }
         // The package converts arguments, and calls `evaluate`.

@@ -28,7 +28,7 @@ mod _native {
     #[pymodule_export]
     use super::page::write_page;
     #[pymodule_export]
-    use super::robot::{Robot, load};
+    use super::robot::{Robot, load, roll_back};
 
     /// Returns path and text of the Rust files and of the robot files of the gallery.
     #[pyfunction]

@@ -53,7 +53,9 @@ pub fn write_page(
         let many = times.len() > 1;
         let motion = || -> Result<(), linkwork_view::Error> {
             let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
-            for (title, list, values) in [("Coordinates", robot.configuration(), q), ("Inputs", robot.inputs(), u)] {
+            for (title, list, values) in
+                [("Coordinates", robot.configuration(), q), ("Inputs", robot.inputs(), u)]
+            {
                 if many && list.len() <= PLOTTED {
                     motion = motion.plots(title, curves(list, values))?;
                 }

@@ -4,8 +4,11 @@ use crate::error::{exception, failure};
 use crate::function::Function;
 use crate::shared::{Failed, distribute};
 use linkwork::Table;
-use linkwork_jit::{AnyTable, Error, Loader, Quantity, Stepper};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray3};
+use linkwork_jit::{AdjointStepper, AnyTable, Error, Loader, Quantity, Sensitivity, Stepper};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray2,
+    PyReadwriteArray3,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashMap;
@@ -21,7 +24,13 @@ pub struct Robot {
 }
 
 /// Returns the loader of a file or a text.
-pub fn loader(source: &str, is_file: bool, options: &str, name: Option<&str>, folder: Option<&str>) -> Loader {
+pub fn loader(
+    source: &str,
+    is_file: bool,
+    options: &str,
+    name: Option<&str>,
+    folder: Option<&str>,
+) -> Loader {
     let mut loader = if is_file { Loader::file(source) } else { Loader::text(source) }.options(options);
     if let Some(name) = name {
         loader = loader.name(name);
@@ -115,7 +124,12 @@ impl Robot {
     }
 
     /// Returns the mechanism with values of the parameters: one set, or one for each state.
-    fn with_parameters(&self, py: Python<'_>, sets: PyReadonlyArray2<'_, f64>, many: bool) -> PyResult<Robot> {
+    fn with_parameters(
+        &self,
+        py: Python<'_>,
+        sets: PyReadonlyArray2<'_, f64>,
+        many: bool,
+    ) -> PyResult<Robot> {
         let values = sets.as_slice()?;
         let count = sets.as_array().nrows();
         let mut robot = self.robot.clone();
@@ -211,6 +225,87 @@ impl Robot {
     }
 }
 
+/// Writes derivatives of a function of rollouts by inputs and parameters, and replaces derivatives by the states of
+/// the motions by derivatives by the initial states, in the first rows.
+#[pyfunction]
+#[pyo3(signature = (robot, q, v, inputs, by_q, by_v, by_inputs, by_parameters, *, start, h, threads))]
+#[allow(clippy::too_many_arguments, reason = "arguments of Python")]
+pub fn roll_back(
+    py: Python<'_>,
+    robot: &Robot,
+    q: PyReadonlyArray3<'_, f64>,
+    v: PyReadonlyArray3<'_, f64>,
+    inputs: PyReadonlyArray3<'_, f64>,
+    mut by_q: PyReadwriteArray3<'_, f64>,
+    mut by_v: PyReadwriteArray3<'_, f64>,
+    mut by_inputs: PyReadwriteArray3<'_, f64>,
+    mut by_parameters: PyReadwriteArray2<'_, f64>,
+    start: f64,
+    h: f64,
+    threads: usize,
+) -> PyResult<()> {
+    let jit = &robot.robot;
+    let (nq, nv, nu, np) = (jit.nq(), jit.nv(), jit.nu(), jit.parameters().len());
+    let (states, rows) = (q.as_array().shape()[0], q.as_array().shape()[1]);
+    let steps = rows - 1;
+    let (q, v, inputs) = (q.as_slice()?, v.as_slice()?, inputs.as_slice()?);
+    let mut rest = (
+        by_q.as_slice_mut()?,
+        by_v.as_slice_mut()?,
+        by_inputs.as_slice_mut()?,
+        by_parameters.as_slice_mut()?,
+    );
+    type Share<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64], &'a mut [f64]);
+    let work = |first: usize, count: usize, (by_q, by_v, by_u, by_p): Share<'_>| -> Failed {
+        let mut stepper = match AdjointStepper::new(jit) {
+            Ok(stepper) => stepper,
+            Err(error) => return Some((first, error)),
+        };
+        for k in 0..count {
+            let state = first + k;
+            let own_q = &mut by_q[k * rows * nq..(k + 1) * rows * nq];
+            let own_v = &mut by_v[k * rows * nv..(k + 1) * rows * nv];
+            let own_p = &mut by_p[k * np..(k + 1) * np];
+            let mut done = set_parameters(stepper.robot_mut(), robot.sets.as_ref(), state);
+            let (mut at_q, mut at_v) = (own_q[steps * nq..].to_vec(), own_v[steps * nv..].to_vec());
+            for step in (0..steps).rev() {
+                let row = state * rows + step;
+                let u = (k * steps + step) * nu;
+                let at = (state * steps + step) * nu;
+                let start_of_step =
+                    [&q[row * nq..(row + 1) * nq], &v[row * nv..(row + 1) * nv], &inputs[at..at + nu]];
+                let mut derivatives =
+                    Sensitivity { q: &mut at_q, v: &mut at_v, u: &mut by_u[u..u + nu], parameters: own_p };
+                done = done.and_then(|()| {
+                    let t = start + step as f64 * h;
+                    stepper.step(t, start_of_step, h, &mut derivatives).map(|_| ())
+                });
+                let add = |to: &mut [f64], more: &[f64]| to.iter_mut().zip(more).for_each(|(a, b)| *a += b);
+                add(&mut at_q, &own_q[step * nq..(step + 1) * nq]);
+                add(&mut at_v, &own_v[step * nv..(step + 1) * nv]);
+            }
+            own_q[..nq].copy_from_slice(&at_q);
+            own_v[..nv].copy_from_slice(&at_v);
+            if let Err(error) = done {
+                return Some((state, error));
+            }
+        }
+        None
+    };
+    let failed = py.detach(|| {
+        let split = |count: usize| {
+            let (q, other_q) = std::mem::take(&mut rest.0).split_at_mut(count * rows * nq);
+            let (v, other_v) = std::mem::take(&mut rest.1).split_at_mut(count * rows * nv);
+            let (u, other_u) = std::mem::take(&mut rest.2).split_at_mut(count * steps * nu);
+            let (p, other_p) = std::mem::take(&mut rest.3).split_at_mut(count * np);
+            rest = (other_q, other_v, other_u, other_p);
+            (q, v, u, p)
+        };
+        distribute(states, threads, split, work)
+    });
+    failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
+}
+
 /// Sets the parameters of a state, if each state has its own.
 pub fn set_parameters(
     robot: &mut linkwork_jit::Robot,
@@ -251,7 +346,8 @@ fn keep(list: &[f64]) -> &'static [f64] {
     list.iter().for_each(|x| x.to_bits().hash(&mut hasher));
     let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let lists = lists.get_or_insert_default().entry(hasher.finish()).or_default();
-    let equal = |known: &&&'static [f64]| known.iter().map(|x| x.to_bits()).eq(list.iter().map(|x| x.to_bits()));
+    let equal =
+        |known: &&&'static [f64]| known.iter().map(|x| x.to_bits()).eq(list.iter().map(|x| x.to_bits()));
     if let Some(known) = lists.iter().find(equal) {
         return known;
     }

@@ -35,11 +35,13 @@ pub fn distribute<P: Send>(
     }
     let work = &work;
     std::thread::scope(|scope| {
-        let all: Vec<_> =
-            shares.into_iter().map(|(first, count, own)| scope.spawn(move || work(first, count, own))).collect();
-        let ends = all.into_iter().map(|thread| {
-            thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(message(&*panic)))))
-        });
+        let all: Vec<_> = shares
+            .into_iter()
+            .map(|(first, count, own)| scope.spawn(move || work(first, count, own)))
+            .collect();
+        let ends = all
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(message(&*panic))))));
         ends.collect::<Vec<_>>().into_iter().flatten().min_by_key(|(state, _)| *state)
     })
 }

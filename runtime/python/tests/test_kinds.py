@@ -56,27 +56,38 @@ class UnderConstraints(unittest.TestCase):
         jacobian = self.m.constraint_jacobian([0.0, -1.0])
         np.testing.assert_allclose(jacobian.T @ multipliers, [0.0, 3.0 * 9.81], rtol=1e-12, atol=1e-12)
 
-    def test_accelerations_of_many_states(self):
-        q = np.array([[0.0, -1.0], [0.6, -0.8]])
-        found = self.m.forward_dynamics(q, np.zeros((2, 2)), np.zeros((2, 2)))
-        # At rest, the acceleration is the component of gravity along the wire.
-        np.testing.assert_allclose(found, [[0.0, 0.0], [-0.8 * 0.6 * 9.81, -0.6 * 0.6 * 9.81]], atol=1e-12)
+    def test_assembling(self):
+        q = self.m.assemble([0.6, -0.7], ["plane.x"])
+        np.testing.assert_allclose(q, [0.6, -0.8], rtol=1e-12)
+        with self.assertRaises(linkwork.Error):
+            self.m.assemble([1.5, 0.0], ["plane.x"])
+        named = self.m.assemble({"plane.x": 0.6, "plane.y": -0.7}, "plane.x")
+        np.testing.assert_array_equal(named, q)
+        for held, kind in [("plane.z", KeyError), ([2], IndexError), ([-1], IndexError), ([0.5], IndexError)]:
+            with self.assertRaises(kind):
+                self.m.assemble(q, held)
 
-    def test_functions_that_do_not_exist(self):
-        with self.assertRaisesRegex(AttributeError, "Bead has no function 'assemble'"):
-            self.m.assemble([0.6, -0.7], ["plane.x"])
-        with self.assertRaisesRegex(AttributeError, "Bead has no function 'step': steps need"):
-            self.m.step
-        with self.assertRaisesRegex(linkwork.Error, "`Bead` has no steps: it has constraints"):
-            self.m.roll_out([[0.0, -1.0]], [[0.0, 0.0]], steps=1, h=0.1)
-        with self.assertRaisesRegex(linkwork.Error, "this needs the function `linearize`"):
-            self.m.linear_system([0.0, -1.0])
-        with self.assertRaisesRegex(linkwork.Error, "cannot be integrated: it has constraints"):
-            self.m.simulate([1.0, 0.0], duration=5.0)
+    def test_documentation_is_for_python(self):
+        text = self.m.assemble.__doc__
+        self.assertIn("    q: shape (2,), or values by name\n    held: names of velocities, or their indices\n", text)
+        for name in self.m._functions:
+            text = getattr(self.m, name).__doc__
+            self.assertNotRegex(text, r"\]\(|\[`|::|# Errors|None\b", name)
 
     def test_what_has_no_inputs_has_no_controller(self):
         with self.assertRaisesRegex(TypeError, "Bead has no inputs that `control` could give"):
             self.m.simulate([1.0, 0.0], duration=1.0, control=lambda t, q, v: [])
+
+    def test_a_failure_in_a_batch_names_its_state(self):
+        q = np.array([[0.6, -0.7], [1.5, 0.0], [0.0, -0.9]])
+        with self.assertRaisesRegex(linkwork.Error, "state 1"):
+            self.m.assemble(q, [0])
+
+    def test_it_swings_on_the_wire(self):
+        run = self.m.simulate([1.0, 0.0], duration=5.0, every=0.05, tolerance=1e-11)
+        np.testing.assert_allclose(np.hypot(*run.q.T), 1.0, rtol=1e-12)
+        energy = self.m.kinetic_energy(run.q, run.v) + self.m.potential_energy(run.q)
+        self.assertLess(np.ptp(energy), 1e-7)
 
     def test_its_equilibria(self):
         np.testing.assert_allclose(self.m.equilibrium([0.3, -0.8]), [0.0, -1.0], atol=1e-9)
@@ -86,15 +97,33 @@ class UnderConstraints(unittest.TestCase):
         # Held in x, the bead is supported by the holding force and the wire.
         np.testing.assert_allclose(self.m.equilibrium([0.6, -0.7], held=["plane.x"]), [0.6, -0.8], atol=1e-9)
 
+    def test_its_linear_system(self):
+        system = self.m.linear_system([0.0, -1.0])
+        np.testing.assert_allclose(np.linalg.eigvals(system.a).imag, [np.sqrt(9.81), -np.sqrt(9.81)], rtol=1e-10)
+        self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
+        with self.assertRaisesRegex(linkwork.Error, "about states at rest"):
+            self.m.linear_system([0.0, -1.0], [1.0, 0.0])
+        with self.assertRaisesRegex(linkwork.Error, "off the constraints by 0.1"):
+            self.m.linear_system([0.0, -0.9])
+
 
 class WithContacts(unittest.TestCase):
     """Bouncing ball."""
 
-    def test_functions_without_contact_forces(self):
+    def test_it_comes_to_rest_and_rises_half_as_fast(self):
         m = compiled(BALL)()
-        np.testing.assert_allclose(m.forward_dynamics([1.0], [0.0], [0.0]), [-9.81])
-        with self.assertRaisesRegex(linkwork.Error, "cannot be integrated: it has contacts"):
-            m.simulate([1.0], duration=1.2)
+        run = m.simulate([1.0], duration=1.2, every=0.001)
+        landing = np.sqrt(2 / 9.81)
+        self.assertGreaterEqual(run.q.min(), -1e-12)
+        top = run.q[run.t > landing].max()
+        self.assertAlmostEqual(top, 0.25, places=5)
+        rest = m.simulate([1.0], duration=4.0)
+        np.testing.assert_allclose([rest.q[-1, 0], rest.v[-1, 0]], [0.0, 0.0], atol=1e-9)
+        for method in ["time_stepping", "time_stepping_midpoint"]:
+            stepped = m.simulate([1.0], duration=4.0, method=method, step=1e-3)
+            self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
+        with self.assertRaisesRegex(linkwork.Error, "has contacts"):
+            m.simulate([1.0], duration=1.0, method="rk4", step=1e-3)
 
 
 class OfRobots(unittest.TestCase):

@@ -268,7 +268,6 @@ class OfAPendulum(unittest.TestCase):
             ({"duration": 1.0, "every": 0.0}, ValueError, "every"),
             ({"duration": 1.0, "method": "rk4"}, TypeError, "needs a step"),
             ({"duration": 1.0, "method": "rodass"}, linkwork.Error, "no method 'rodass': did you mean 'rodas'"),
-            ({"duration": 1.0, "method": "time_stepping", "step": 0.1}, linkwork.Error, "no contacts"),
             ({"duration": 1.0, "step": -0.1}, ValueError, "step"),
             ({"duration": 1.0, "step": 0}, ValueError, "`step` is a positive number"),
             ({"duration": "1"}, TypeError, "`duration` is a number, found '1'"),
