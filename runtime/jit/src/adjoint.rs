@@ -20,12 +20,12 @@ const FACTORS: &str = "factors";
 const FIRST: usize = 1 << 16;
 
 /// Vector–Jacobian product of a function: derivatives of the sum of its results, each times a factor, by all
-/// arguments and parameters. They are derivatives of the function of all entries, those of quaternions included,
-/// and are exact to rounding.
+/// arguments and parameters. They are derivatives of the function of all entries, those of quaternions
+/// included, and are exact to rounding.
 pub struct VectorJacobian {
     shared: Arc<Shared>,
     name: String,
-    kind: Kind,
+    kind: Product,
     /// Lengths of the arguments.
     arguments: Vec<usize>,
     factors: usize,
@@ -33,7 +33,7 @@ pub struct VectorJacobian {
 }
 
 /// Computation of the derivatives.
-enum Kind {
+enum Product {
     Reversed(Routine),
     Integrate,
     Difference,
@@ -51,8 +51,8 @@ impl Function {
     ///
     /// # Errors
     ///
-    /// The function is composed of matrices of derivatives, or solves for constraint forces; or velocities are
-    /// generalized speeds, and the function moves configurations.
+    /// The function is composed of matrices of derivatives, or solves for constraint forces; or velocities
+    /// are generalized speeds, and the function moves configurations.
     pub fn vector_jacobian(&self) -> Result<VectorJacobian, Error> {
         let entry = &self.shared().entries[self.index()];
         let unavailable = || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
@@ -77,12 +77,12 @@ impl Function {
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
                 let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
-                Kind::Reversed(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?)
+                Product::Reversed(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?)
             }
             (None, _) if self.shared().has_speeds => return Err(unavailable()),
-            (None, "integrate") => Kind::Integrate,
-            (None, "difference") => Kind::Difference,
-            (None, "tangent_rate") => Kind::TangentRate,
+            (None, "integrate") => Product::Integrate,
+            (None, "difference") => Product::Difference,
+            (None, "tangent_rate") => Product::TangentRate,
             _ => return Err(unavailable()),
         };
         Ok(VectorJacobian {
@@ -145,7 +145,7 @@ impl VectorJacobian {
         robot.check_length("derivatives", self.length(), out.len())?;
         let charts = &self.shared.charts;
         match &self.kind {
-            Kind::Reversed(routine) => {
+            Product::Reversed(routine) => {
                 let mut inputs: Vec<&[f64]> = vec![robot.parameter_values()];
                 inputs.extend(arguments);
                 inputs.push(factors);
@@ -158,8 +158,10 @@ impl VectorJacobian {
                 let second = &mut rest[..self.arguments[1]];
                 let [a, b] = [arguments[0], arguments[1]];
                 match self.kind {
-                    Kind::Integrate => adjoint_steps::integrate(charts, a, b, factors, first, second),
-                    Kind::Difference => adjoint_steps::difference(charts, [a, b], factors, [first, second]),
+                    Product::Integrate => adjoint_steps::integrate(charts, a, b, factors, first, second),
+                    Product::Difference => {
+                        adjoint_steps::difference(charts, [a, b], factors, [first, second])
+                    }
                     _ => adjoint_steps::tangent_rate(charts, [a, b], factors, [first, second]),
                 }
             }
@@ -207,7 +209,7 @@ impl Reversed {
         Operand::Value(self.instructions.len() - 1)
     }
 
-    fn known(&mut self, operand: Operand) -> Option<&mut Option<Operand>> {
+    fn value_derivative(&mut self, operand: Operand) -> Option<&mut Option<Operand>> {
         match operand {
             Operand::Value(k) => self.values.get_mut(k),
             _ => None,
@@ -218,7 +220,7 @@ impl Reversed {
     fn derivative(&mut self, operand: Operand) -> Option<Operand> {
         match operand {
             Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
-            operand => self.known(operand).and_then(|known| *known),
+            operand => self.value_derivative(operand).and_then(|known| *known),
         }
     }
 
@@ -228,7 +230,7 @@ impl Reversed {
                 self.inputs.insert(symbol, derivative);
             }
             operand => {
-                if let Some(known) = self.known(operand) {
+                if let Some(known) = self.value_derivative(operand) {
                     *known = Some(derivative);
                 }
             }

@@ -99,9 +99,9 @@ impl AdjointStepper {
         self.stepper.robot_mut()
     }
 
-    /// Replaces derivatives by the state after a step by derivatives by the state before it, and adds those by
-    /// inputs and parameters. The arguments are those of [`Stepper::step`]. Returns the derivatives by the time at
-    /// the start and by the length of the step.
+    /// Replaces derivatives by the state after a step by derivatives by the state before it, and adds those
+    /// by inputs and parameters. The arguments are those of [`Stepper::step`]. Returns the derivatives by the
+    /// time at the start and by the length of the step.
     ///
     /// # Errors
     ///
@@ -286,14 +286,15 @@ pub(crate) fn tangent_rate(
     add_transposed(&at_v, factors, by_v);
 }
 
-/// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate is
-/// half the product of the quaternion with the angular velocity.
+/// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate
+/// is half the product of the quaternion with the angular velocity.
 fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let product = quaternion(q).conjugate() * quaternion(factors);
     to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);
 }
 
-/// Adds the factors of the entries of a quaternion of any norm for factors of the rotation that it represents.
+/// Adds the factors of the entries of a quaternion of any norm for factors of the rotation that it
+/// represents.
 fn add_quaternion_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let q = quaternion(q);
     let product = q * Quaternion::new(0.0, factors[0], factors[1], factors[2]) * (2.0 / q.norm_squared());

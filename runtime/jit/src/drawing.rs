@@ -42,7 +42,7 @@ impl Loader {
         let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
-            let (name, kind) = (kept(&piece.name), kind(&piece.kind));
+            let (name, kind) = (interned(&piece.name), kind(&piece.kind));
             pieces.push(Piece {
                 name,
                 role: role(piece.role),
@@ -93,7 +93,7 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
 }
 
 /// Returns a text that lives as long as the process; equal texts are one.
-fn kept(text: &str) -> &'static str {
+fn interned(text: &str) -> &'static str {
     static TEXTS: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut texts = TEXTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let texts = texts.get_or_insert_default();
@@ -149,6 +149,6 @@ fn kind(kind: &PieceKind) -> Kind {
         PieceKind::Torque(k) => Kind::Torque(*k),
         PieceKind::Gravity => Kind::Gravity,
         PieceKind::Terrain(k) => Kind::Terrain(*k),
-        PieceKind::Mesh(path) => Kind::Mesh(kept(path)),
+        PieceKind::Mesh(path) => Kind::Mesh(interned(path)),
     }
 }

@@ -84,7 +84,8 @@ impl Stepper {
     ///
     /// # Errors
     ///
-    /// The robot has constraints, contacts, states of first order or no dynamics, or a parameter has no value.
+    /// The robot has constraints, contacts, states of first order or no dynamics, or a parameter has no
+    /// value.
     pub fn new(robot: &Robot) -> Result<Stepper, Error> {
         if let Some(reason) = robot.shared.step_obstacle() {
             return Err(Error::Value(format!("`{}` has no steps: {reason}", robot.name())));
@@ -119,8 +120,8 @@ impl Stepper {
         &mut self.robot
     }
 
-    /// Writes configuration and velocity after a step of `h` seconds from the time `t`, the configuration, the
-    /// velocity and the inputs at its start.
+    /// Writes configuration and velocity after a step of `h` seconds from the time `t`, the configuration,
+    /// the velocity and the inputs at its start.
     ///
     /// # Errors
     ///
@@ -195,7 +196,8 @@ impl Stepper {
         &self.displacement
     }
 
-    /// Writes configuration and velocity after a step, and returns its Jacobian matrices (option `derivatives`).
+    /// Writes configuration and velocity after a step, and returns its Jacobian matrices (option
+    /// `derivatives`).
     ///
     /// # Errors
     ///
@@ -239,7 +241,7 @@ impl Stepper {
             };
             let motion = match i {
                 0 => displacement,
-                _ => moved(&charts, &stage.displacement, &displacement),
+                _ => end_derivatives(&charts, &stage.displacement, &displacement),
             };
             self.robot.set_time(t + c);
             let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
@@ -258,7 +260,7 @@ impl Stepper {
             }
             all
         };
-        let motion = moved(&charts, &self.displacement, &sum(0));
+        let motion = end_derivatives(&charts, &self.displacement, &sum(0));
         let v = Sensitive::velocity(n, m).plus(1.0, &sum(1));
         Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
     }
@@ -306,7 +308,7 @@ impl Sensitive {
 }
 
 /// Returns the derivatives of the motion of the configuration that a displacement from the start leads to.
-fn moved(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
+fn end_derivatives(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
     let [by_q, by_dv] = integrate_derivatives(charts, displacement);
     let mut motion = derivatives.led(&by_dv);
     motion.by_q += by_q;

@@ -30,7 +30,7 @@ def marked(chosen: str | int | Iterable[str | int], velocities: Sequence[str]) -
 
 def call(function: Function, mechanism: Any, given: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
     """Calls a function with arguments of any type that can be converted."""
-    name, arguments = function.about[0], function.arguments
+    name, arguments = function.name_and_documentation[0], function.arguments
     names = [safe(argument) for argument, _ in arguments]
     threads, out = None, None
     for key, value in (named or {}).items():
@@ -113,7 +113,7 @@ def _placed(name: str, out: Any, stored: list[tuple[int, ...]], function: Functi
 def prepare(function: Function, kind: str, unit: str) -> None:
     """Sets names, signature and documentation of a function of a class."""
     own: Any = function
-    name = function.about[0]
+    name = function.name_and_documentation[0]
     own.__name__, own.__qualname__, own.__module__ = name, f"{kind}.{name}", "linkwork"
     parameter = inspect.Parameter
     parameters = [parameter("self", parameter.POSITIONAL_ONLY)]
@@ -126,7 +126,7 @@ def prepare(function: Function, kind: str, unit: str) -> None:
 def documentation(function: Function, unit: str) -> str:
     """Returns the documentation of a method."""
     # Links of Rust's documentation are the names of functions.
-    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", function.about[1].split("# Errors")[0]).strip()
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", function.name_and_documentation[1].split("# Errors")[0]).strip()
     text = re.sub(r"\[(`[^`]*`)\]", r"\1", text)
     lines = [text, ""]
     if function.arguments:

@@ -630,7 +630,7 @@ def kind(robot: Robot, origin: dict[str, Any]) -> "type[Compiled]":
     d = robot.describe()
     names: Callable[[str], list[str]] = lambda key: [name for name, _ in d[key]]
     units: Callable[[str], list[str]] = lambda key: [unit for _, unit in d[key]]
-    functions = {function.about[0]: function for function in robot.functions()}
+    functions = {function.name_and_documentation[0]: function for function in robot.functions()}
     members = {
         "__doc__": _documentation(d, robot),
         "__module__": "linkwork",

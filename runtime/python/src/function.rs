@@ -517,7 +517,7 @@ fn object<'py>(py: Python<'py>, shape: &[usize], values: &[f64]) -> Bound<'py, P
 impl Function {
     /// Returns the name, and the documentation.
     #[getter]
-    fn about(&self) -> (&str, &str) {
+    fn name_and_documentation(&self) -> (&str, &str) {
         (&self.signature.name, &self.signature.documentation)
     }
 
@@ -563,8 +563,8 @@ impl Function {
         )))
     }
 
-    /// Writes derivatives of the sum of the results, each times a factor: by the arguments of each state, then by
-    /// the parameters. Factors of matrices are stored by columns.
+    /// Writes derivatives of the sum of the results, each times a factor: by the arguments of each state,
+    /// then by the parameters. Factors of matrices are stored by columns.
     #[pyo3(signature = (robot, frame, arguments, factors, out, states, threads))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
     fn pull_back(
@@ -595,8 +595,8 @@ impl Function {
         failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
     }
 
-    /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with the
-    /// entries of one state is common to all states. Matrices are stored by columns.
+    /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with
+    /// the entries of one state is common to all states. Matrices are stored by columns.
     #[pyo3(signature = (robot, frame, arguments, results, states, threads))]
     fn evaluate(
         &self,

@@ -1,5 +1,5 @@
-//! The extension module `linkwork._native`: mechanisms that `linkwork-jit` loads, and their functions on NumPy
-//! arrays. The package in Python has the classes, the conversion of arguments and the messages.
+//! The extension module `linkwork._native`: mechanisms that `linkwork-jit` loads, and their functions on
+//! NumPy arrays. The package in Python has the classes, the conversion of arguments and the messages.
 
 mod arrays;
 mod error;

@@ -8,8 +8,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use std::sync::Mutex;
 
-/// Simulates a motion; returns samples, the reason why they end, and the exception of the controller. Rows of the
-/// samples are time, configuration, velocity, states of first order, and inputs.
+/// Simulates a motion; returns samples, the reason why they end, and the exception of the controller. Rows of
+/// the samples are time, configuration, velocity, states of first order, and inputs.
 #[pyfunction]
 #[pyo3(signature = (robot, q, v, *, start, duration, every, method, setting, period, inputs, control))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]

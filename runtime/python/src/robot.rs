@@ -62,7 +62,7 @@ pub fn load(
 }
 
 /// Names and units of a list of quantities.
-fn named(list: &[Quantity]) -> Vec<(&str, &str)> {
+fn names_and_units(list: &[Quantity]) -> Vec<(&str, &str)> {
     list.iter().map(|entry| (entry.name.as_str(), entry.unit.as_str())).collect()
 }
 
@@ -73,11 +73,11 @@ impl Robot {
         let (robot, about) = (&self.robot, PyDict::new(py));
         about.set_item("name", robot.name())?;
         about.set_item("documentation", robot.documentation())?;
-        about.set_item("configuration", named(robot.configuration()))?;
-        about.set_item("velocities", named(robot.velocities()))?;
-        about.set_item("inputs", named(robot.inputs()))?;
-        about.set_item("parameters", named(robot.parameters()))?;
-        about.set_item("outputs", named(robot.outputs()))?;
+        about.set_item("configuration", names_and_units(robot.configuration()))?;
+        about.set_item("velocities", names_and_units(robot.velocities()))?;
+        about.set_item("inputs", names_and_units(robot.inputs()))?;
+        about.set_item("parameters", names_and_units(robot.parameters()))?;
+        about.set_item("outputs", names_and_units(robot.outputs()))?;
         about.set_item("tables", robot.tables().to_vec())?;
         about.set_item("frames", robot.frames())?;
         about.set_item("time", robot.depends_on_time())?;
@@ -143,8 +143,8 @@ impl Robot {
         Ok(Robot { robot, sets })
     }
 
-    /// Returns the mechanism with a table: grid points of each axis, and values of which those of the last axis
-    /// are next to each other.
+    /// Returns the mechanism with a table: grid points of each axis, and values of which those of the last
+    /// axis are next to each other.
     fn with_table(
         &self,
         py: Python<'_>,
@@ -161,8 +161,8 @@ impl Robot {
         Ok(Robot { robot, sets: self.sets.clone() })
     }
 
-    /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and velocities
-    /// contain the initial ones.
+    /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and
+    /// velocities contain the initial ones.
     #[pyo3(signature = (q, v, inputs, *, start, h, threads))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn roll_out(
@@ -225,8 +225,8 @@ impl Robot {
     }
 }
 
-/// Writes derivatives of a function of rollouts by inputs and parameters, and replaces derivatives by the states of
-/// the motions by derivatives by the initial states, in the first rows.
+/// Writes derivatives of a function of rollouts by inputs and parameters, and replaces derivatives by the
+/// states of the motions by derivatives by the initial states, in the first rows.
 #[pyfunction]
 #[pyo3(signature = (robot, q, v, inputs, by_q, by_v, by_inputs, by_parameters, *, start, h, threads))]
 #[allow(clippy::too_many_arguments, reason = "arguments of Python")]

@@ -6,16 +6,16 @@ use std::any::Any;
 /// Index of the first state that failed, and its error.
 pub type Failed = Option<(usize, Error)>;
 
-/// Returns the number of states per thread: all for one thread, and equal shares else. Zero threads are as many
-/// as the machine has processors.
+/// Returns the number of states per thread: all for one thread, and equal shares else. Zero threads are as
+/// many as the machine has processors.
 fn share(states: usize, threads: usize) -> usize {
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = if threads == 0 { processors() } else { threads };
     states.div_ceil(threads.clamp(1, states.max(1))).max(1)
 }
 
-/// Splits states into shares with `split`, which takes the number of states of a share, and works on the shares
-/// in parallel: `work` takes the index of the first state, the number of states, and the share.
+/// Splits states into shares with `split`, which takes the number of states of a share, and works on the
+/// shares in parallel: `work` takes the index of the first state, the number of states, and the share.
 pub fn distribute<P: Send>(
     states: usize,
     threads: usize,
