@@ -95,7 +95,6 @@ fn export() -> Command {
         .arg_required_else_help(true)
         .subcommand(export_c())
         .subcommand(export_library())
-        .subcommand(export_python())
         .subcommand(
             with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
         )
@@ -121,19 +120,6 @@ fn export_c() -> Command {
                 .action(ArgAction::Append)
                 .requires("casadi"),
         )
-}
-
-fn export_python() -> Command {
-    with_tables(with_input(
-        Command::new("python")
-            .about("A package for Python: a module, its library and its stubs, for machines without Rust"),
-    ))
-    .arg(switch("native", "Compiles for this computer's processor only"))
-    .arg(
-        text("out", "FOLDER", "Output folder of the package [default: .]")
-            .short('o')
-            .value_parser(value_parser!(PathBuf)),
-    )
 }
 
 fn export_library() -> Command {

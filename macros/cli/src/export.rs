@@ -1,5 +1,5 @@
-//! `linkwork export`: exports a mechanism's functions to C99, to a library with a C interface, to Python, and
-//! to readable Rust.
+//! `linkwork export`: exports a mechanism's functions to C99, to a library with a C interface, and to readable
+//! Rust.
 
 use crate::Stop;
 use crate::commands::given;
@@ -11,9 +11,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
 use linkwork_compiler::syntax::{Inertias, ScalarType};
 use linkwork_compiler::{expand, export_c};
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Writes a C source file and a header.
 pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
@@ -69,40 +67,6 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
         crate::note!("linkwork: not in the library: {name}");
     }
     Ok(())
-}
-
-/// Writes a Python package. The work is done by the Python package `linkwork`, which generates classes, stubs
-/// and documentation.
-pub fn python(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
-    let interpreter = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
-    let shown = Path::new(&interpreter).display().to_string();
-    let mut command = Command::new(&interpreter);
-    command.args(["-m", "linkwork", "export", "python"]).arg(&input.file);
-    for name in ["struct", "with"] {
-        command.args(given(matches, name).map(|text| format!("--{name}={text}")));
-    }
-    let tables = matches.get_many::<String>("table").into_iter().flatten();
-    command.args(tables.map(|table| format!("--table={table}")));
-    if let Some(folder) = matches.get_one::<PathBuf>("out") {
-        command.arg("--out").arg(folder);
-    }
-    command.args(matches.get_flag("native").then_some("--native"));
-    let needed = "the package `linkwork` for Python, which is installed by `pip install runtime/python` in its repository (`PYTHON` names another interpreter)";
-    let status = command
-        .status()
-        .map_err(|error| Stop::Failure(format!("cannot run {shown}: {error}; this needs {needed}")))?;
-    match status.code() {
-        Some(0) => Ok(()),
-        Some(1) if has_linkwork(&interpreter) => Err(Stop::Mistakes),
-        Some(1) => Err(Stop::Failure(format!("{shown} does not have {needed}"))),
-        _ => Err(Stop::Failure(format!("{shown} did not write the package"))),
-    }
-}
-
-fn has_linkwork(interpreter: &OsStr) -> bool {
-    let words = ["-c", "import importlib.util as u, sys; sys.exit(u.find_spec('linkwork') is None)"];
-    Command::new(interpreter).args(words).status().is_ok_and(|status| status.success())
 }
 
 /// Writes the generated Rust code, formatted.

@@ -78,9 +78,8 @@ fn main() -> ExitCode {
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c99(given),
             Some(("library", given)) => export::library(given),
-            Some(("python", given)) => export::python(given),
             Some(("rust", given)) => export::rust(given),
-            _ => Err(Stop::Failure("expected `c`, `library`, `python` or `rust`".to_string())),
+            _ => Err(Stop::Failure("expected `c`, `library` or `rust`".to_string())),
         },
         _ => Err(Stop::Failure("expected a command".to_string())),
     };

@@ -321,8 +321,6 @@ fn documented_commands_run() {
     let commands = commands.lines().map(|line| line.split(['#', '>']).next().unwrap());
     let commands: Vec<Vec<&str>> = commands
         .filter_map(|line| line.strip_prefix("linkwork "))
-        // The export for Python needs the Python package.
-        .filter(|line| !line.contains("python"))
         .map(|line| line.split_whitespace().collect())
         .collect();
     assert!(commands.len() >= 10, "{commands:?}");

@@ -105,13 +105,9 @@ impl Frames {
                 let name = &self.names[frame];
                 let plan = Plan::Frame(access, frame, routine);
                 let documentation = access.documentation(name);
-                Some(Entry::new(
-                    &format!("{}({name})", access.name()),
-                    documentation,
-                    arguments,
-                    results,
-                    plan,
-                ))
+                let rank = if matches!(access, Access::Placement | Access::Jacobian) { 2 } else { 1 };
+                let name = format!("{}({name})", access.name());
+                Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
         };
         (0..self.names.len()).flat_map(each).collect()

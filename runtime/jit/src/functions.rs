@@ -41,6 +41,8 @@ pub(crate) struct Entry {
     pub hidden: bool,
     pub arguments: Vec<Argument>,
     pub results: Vec<Matrix>,
+    /// Number of dimensions of the results: zero for a number, one for vectors, two for matrices.
+    pub rank: usize,
     /// Number of values of all results.
     pub length: usize,
     /// Number of values of work space.
@@ -349,7 +351,8 @@ impl Maker<'_, '_> {
         };
         let results = results(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
-        Some(Entry { hidden, work, ..Entry::new(name, documentation, arguments, results, plan) })
+        let rank = rank(f.shape);
+        Some(Entry { hidden, work, rank, ..Entry::new(name, documentation, arguments, results, plan) })
     }
 
     /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse.
@@ -406,12 +409,14 @@ impl Maker<'_, '_> {
         let length = outputs.len();
         let routine = Routine::new(merged.finish(outputs), &arguments, length)?;
         let documentation = format!("Output `{name}` of the motion that state and inputs determine.");
-        Some(Entry::new(name, documentation, arguments, results(f.shape, length), Plan::Program(routine)))
+        let entry =
+            Entry::new(name, documentation, arguments, results(f.shape, length), Plan::Program(routine));
+        Some(Entry { rank: rank(f.shape), ..entry })
     }
 }
 
 impl Entry {
-    /// Returns a public function without work space.
+    /// Returns a public function without work space, whose results are vectors.
     pub fn new(
         name: &str,
         documentation: String,
@@ -426,6 +431,7 @@ impl Entry {
             hidden: false,
             arguments,
             results,
+            rank: 1,
             length,
             work: 0,
             plan,
@@ -460,6 +466,17 @@ fn is_internal(id: Id) -> bool {
             | Id::Turning
             | Id::Heights
     )
+}
+
+/// Returns the number of dimensions of the results.
+fn rank(shape: Shape) -> usize {
+    match shape {
+        Shape::Scalar => 0,
+        Shape::Vector(_) | Shape::Array(_) => 1,
+        Shape::Record(Record::InputDerivatives(..)) => 2,
+        Shape::Record(_) => 1,
+        _ => 2,
+    }
 }
 
 /// Whether callers pass the argument.

@@ -1,5 +1,8 @@
 #![doc = include_str!("../README.md")]
 
+mod about;
+mod adjoint;
+mod adjoint_steps;
 mod assemble;
 mod capacity;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
@@ -8,6 +11,7 @@ mod code;
 #[path = "no_code.rs"]
 mod code;
 mod constrained;
+mod drawing;
 mod error;
 mod frames;
 mod functions;
@@ -25,8 +29,12 @@ mod routine;
 mod shared;
 mod simulate;
 mod space;
+mod steps;
 mod table;
 
+pub use adjoint::VectorJacobian;
+pub use adjoint_steps::{AdjointStepper, Sensitivity};
+pub use drawing::Drawing;
 pub use error::Error;
 pub use functions::Matrix;
 pub use load::{Loader, declare, load};
@@ -36,4 +44,5 @@ pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;
 pub use simulate::{Controller, Inputs, Method, Run, Sample, Simulation};
+pub use steps::{Jacobians, Stepper};
 pub use table::AnyTable;

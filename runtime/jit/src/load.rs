@@ -1,5 +1,6 @@
 //! Files and texts to mechanisms.
 
+use crate::about::About;
 use crate::constrained;
 use crate::error::Error;
 use crate::frames::Frames;
@@ -10,7 +11,7 @@ use crate::robot::Robot;
 use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
 use crate::space::Space;
 use linkwork::__private::Rule;
-use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
@@ -54,6 +55,7 @@ pub struct Loader {
     options: String,
     name: Option<String>,
     folder: Option<PathBuf>,
+    readable_equations: bool,
     interpreted: bool,
 }
 
@@ -73,7 +75,8 @@ impl Loader {
     }
 
     fn new(origin: Origin) -> Loader {
-        Loader { origin, options: String::new(), name: None, folder: None, interpreted: false }
+        let (options, name, folder) = (String::new(), None, None);
+        Loader { origin, options, name, folder, readable_equations: false, interpreted: false }
     }
 
     /// Adds options of the attribute, in the same syntax: `base = free, derivatives`.
@@ -98,6 +101,13 @@ impl Loader {
         self
     }
 
+    /// Prints the equations of motion if they are short enough to be read, as the attribute does.
+    #[must_use]
+    pub fn readable_equations(mut self) -> Loader {
+        self.readable_equations = true;
+        self
+    }
+
     /// Interprets the functions instead of generating machine code: slow, for tests.
     #[must_use]
     pub fn interpreted(mut self) -> Loader {
@@ -112,15 +122,36 @@ impl Loader {
     /// The file cannot be read, or its mechanism is wrong.
     pub fn load(self) -> Result<Robot, Error> {
         let interpreted = self.interpreted;
-        // Positions of tokens stay in the memory of the thread that reads them.
-        let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
-        let thread =
-            thread.spawn(move || self.compile()).map_err(|error| Error::Internal(error.to_string()))?;
-        let shared = thread.join().map_err(|panic| Error::Internal(message(&*panic)))??;
+        let shared = Loader::on_thread(move || self.compile())?;
         Ok(Robot::new(Arc::new(shared), interpreted))
     }
 
+    /// Runs the compiler on a thread of its own: positions of tokens stay in the memory of their thread.
+    pub(crate) fn on_thread<T: Send + 'static>(
+        run: impl FnOnce() -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
+        let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
+        let thread = thread.spawn(run).map_err(|error| Error::Internal(error.to_string()))?;
+        thread.join().map_err(|panic| Error::Internal(message(&*panic)))?
+    }
+
     fn compile(self) -> Result<Shared, Error> {
+        let mut source = self.source()?;
+        without_rust(&mut source);
+        let requests = &mut source.mechanism.requests;
+        requests.drawing = false;
+        if requests.equations == Printed::Readable && !self.readable_equations {
+            requests.equations = Printed::Structure;
+        }
+        let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
+        let passes = Passes { lanes: false, ..Passes::default() };
+        let compiled = compile_with(&source, &graph, passes, cx);
+        let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
+        Ok(shared(&source, &model, output))
+    }
+
+    /// Reads the declaration with the further options.
+    pub(crate) fn source(&self) -> Result<Source, Error> {
         let (mut declaration, folder) = self.declaration()?;
         let options: TokenStream = self
             .options
@@ -133,18 +164,7 @@ impl Loader {
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
         let source = read(arguments, item, &folder, cx);
-        let Some(mut source) = source.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
-        without_rust(&mut source);
-        let requests = &mut source.mechanism.requests;
-        requests.drawing = false;
-        if requests.equations == Printed::Readable {
-            requests.equations = Printed::Structure;
-        }
-        let graph = Graph::new();
-        let passes = Passes { lanes: false, ..Passes::default() };
-        let compiled = compile_with(&source, &graph, passes, cx);
-        let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
-        Ok(shared(&source, &model, output))
+        source.filter(|_| cx.is_empty()).ok_or_else(|| self.report(cx))
     }
 
     /// Returns the declaration, and the folder of the files that it names.
@@ -158,8 +178,7 @@ impl Loader {
             Origin::Text(text) => Ok((self.chosen(text, "the text")?, current()?)),
             Origin::File(path) => {
                 let text = text_of(path)?;
-                let is_rust = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
-                if !is_rust {
+                if !is_rust(path) {
                     return Ok((DeclaredStruct::of_file(path, &text), current()?));
                 }
                 let folder = match &self.folder {
@@ -192,15 +211,34 @@ impl Loader {
             ))),
         }
     }
+
+    /// Returns the errors of a mechanism with their positions, as compilers print them.
+    pub(crate) fn report(&self, cx: &Diagnostics) -> Error {
+        let messages: Vec<String> = cx.distinct().map(|one| self.message(one)).collect();
+        match messages.is_empty() {
+            true => Error::Internal("the mechanism could not be compiled".to_string()),
+            false => Error::Mechanism(messages),
+        }
+    }
+
+    fn message(&self, one: &Diagnostic) -> String {
+        let start = one.place().span.start();
+        let here = format!("{}:{}", start.line, start.column + 1);
+        let position = match (&one.place().file, &self.origin) {
+            (Some(at), _) => format!("{}:{}:{}", at.file, at.line, at.column),
+            (None, Origin::Text(_)) => format!("declaration:{here}"),
+            (None, Origin::File(path)) if is_rust(path) => format!("{}:{here}", path.display()),
+            (None, Origin::File(path)) => path.display().to_string(),
+        };
+        let notes = one.notes().iter().map(|line| ("note", line));
+        let helps = one.helps().iter().map(|line| ("help", line));
+        let lines: String = notes.chain(helps).map(|(kind, line)| format!("\n  = {kind}: {line}")).collect();
+        format!("{position}: error: {}{lines}", one.message())
+    }
 }
 
-/// Returns the errors of a mechanism.
-fn wrong(cx: &Diagnostics) -> Error {
-    let messages = cx.messages();
-    match messages.is_empty() {
-        true => Error::Internal("the mechanism could not be compiled".to_string()),
-        false => Error::Mechanism(messages),
-    }
+fn is_rust(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"))
 }
 
 /// Returns the text of a panic.
@@ -296,6 +334,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         index,
         methods,
         internal,
+        about: About::new(source, model),
     }
 }
 

@@ -48,6 +48,14 @@ impl fmt::Debug for Function {
 }
 
 impl Function {
+    pub(crate) fn shared(&self) -> &Arc<Shared> {
+        &self.shared
+    }
+
+    pub(crate) fn index(&self) -> usize {
+        self.index
+    }
+
     /// Returns the name of the function.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -71,6 +79,12 @@ impl Function {
     #[must_use]
     pub fn results(&self) -> &[Matrix] {
         &self.shared.entries[self.index].results
+    }
+
+    /// Returns the number of dimensions of the results: zero for a number, one for vectors, two for matrices.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.shared.entries[self.index].rank
     }
 
     /// Returns the number of values of all results.
@@ -186,6 +200,11 @@ impl Robot {
     #[must_use]
     pub fn parameter_values(&self) -> &[f64] {
         &self.parameters
+    }
+
+    /// Returns the tables, in their order.
+    pub(crate) fn table_values(&self) -> &[AnyTable] {
+        &self.tables
     }
 
     /// Returns name and number of variables of each table.
@@ -517,7 +536,7 @@ impl Robot {
         }
     }
 
-    fn check_values(&self) -> Result<(), Error> {
+    pub(crate) fn check_values(&self) -> Result<(), Error> {
         if self.missing == 0 {
             return Ok(());
         }

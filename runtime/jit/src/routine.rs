@@ -47,6 +47,11 @@ impl Routine {
         self.program.get_or_init(make);
     }
 
+    /// Returns the program, if it was made.
+    pub fn program(&self) -> Option<&Program> {
+        self.program.get()
+    }
+
     /// Generates machine code at the first call. Returns false if the program is interpreted.
     pub fn prepare(&self) -> bool {
         let compile = || Code::compile(self.program.get()?, &self.layout, self.results).ok();

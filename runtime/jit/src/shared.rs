@@ -1,5 +1,6 @@
 //! Data that all robots of one loaded mechanism share: functions and names.
 
+use crate::about::About;
 use crate::frames::Frames;
 use crate::functions::Entry;
 use crate::layout::Layout;
@@ -117,6 +118,7 @@ pub(crate) struct Shared {
     pub methods: Vec<Option<usize>>,
     /// Indices of the functions that the runtime calls.
     pub internal: Vec<Option<usize>>,
+    pub about: About,
 }
 
 impl Shared {

@@ -46,7 +46,7 @@ pub(crate) fn integrate(charts: &[Chart], q: &[f64], dv: &[f64], out: &mut [f64]
     }
 }
 
-fn difference(charts: &[Chart], from: &[f64], to: &[f64], out: &mut [f64]) {
+pub(crate) fn difference(charts: &[Chart], from: &[f64], to: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => out[v0] = to[q0] - from[q0],

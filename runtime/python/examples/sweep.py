@@ -1,8 +1,8 @@
 """Sweep on Ray: simulates a million double pendulums for two seconds, in chunks, with progress.
 
-    pip install runtime/python ray
+    pip install ./runtime/python ray
     python runtime/python/examples/sweep.py                     # all processors of this machine
-    python runtime/python/examples/sweep.py --address auto      # a cluster of Ray whose machines have the package and Rust
+    python runtime/python/examples/sweep.py --address auto      # a cluster of Ray whose machines have the package
 
 The random initial angles of a chunk depend on its index only, so that results depend neither on the number of
 workers nor on their order. A chunk whose worker is lost is computed again.
@@ -41,8 +41,7 @@ def chunk(number, size, lose=None):
     if lose is not None and not os.path.exists(lose):
         open(lose, "w").close()
         os._exit(1)
-    # One process per machine builds the library; the others load it.
-    pendulum = linkwork.compile(PENDULUM, quiet=True)()
+    pendulum = linkwork.compile(PENDULUM)()
     rng = np.random.default_rng([7, number])
     q, v = rng.uniform(-np.pi, np.pi, (size, 2)), np.zeros((size, 2))
     all_q, all_v = pendulum.roll_out(q, v, steps=STEPS, h=STEP, threads=1)
@@ -82,8 +81,6 @@ def main():
     options.add_argument("--chunk", type=int, default=2000)
     options.add_argument("--address", default=None)
     given = options.parse_args()
-    # Shows the progress of the build; workers on other machines compile the mechanism themselves.
-    linkwork.compile(PENDULUM)
     ray.init(address=given.address, log_to_driver=False)
     start = time.perf_counter()
     over, error = sweep(given.rollouts, given.chunk, bar)

@@ -1,11 +1,11 @@
-"""Linkwork for Python: mechanisms compiled to native functions on NumPy arrays.
+"""Linkwork for Python: robots and mechanisms with native functions on NumPy arrays.
 
-A robot file (URDF, MJCF, SDF) or the declaration of a mechanism becomes a class. Its methods are the
-functions that Linkwork generates in Rust, with the same names:
+A robot file (URDF, MJCF, SDF) or the declaration of a mechanism becomes a class, in milliseconds and without a
+compiler. Its methods are the functions that Linkwork derives, with the same names as in Rust:
 
 >>> import linkwork
 >>> Pendulum = linkwork.compile('''
-...     #[mechanism(gravity = -9.81 * y, derivatives)]
+...     #[mechanism(gravity = -9.81 * y)]
 ...     pub struct Pendulum {
 ...         pub mass: f64,
 ...         pub length: f64,
@@ -22,23 +22,10 @@ functions that Linkwork generates in Rust, with the same names:
 All quantities are in SI units, angles in radians.
 """
 
-from ._build import command, compile, gallery, toolchain
-from ._cache import ToolchainError
+from ._load import compile, gallery
 from ._mechanism import Mechanism
 from ._names import Error, UnknownName
 from ._results import LinearSystem, Page, Run
 
-__all__ = [
-    "Error",
-    "LinearSystem",
-    "Mechanism",
-    "Page",
-    "Run",
-    "ToolchainError",
-    "UnknownName",
-    "command",
-    "compile",
-    "gallery",
-    "toolchain",
-]
+__all__ = ["Error", "LinearSystem", "Mechanism", "Page", "Run", "UnknownName", "compile", "gallery"]
 __version__ = "0.1.0"

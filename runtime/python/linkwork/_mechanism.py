@@ -1,21 +1,20 @@
 """Python classes of compiled mechanisms."""
 
 import copyreg
-import ctypes
-import importlib
-import json
 import keyword
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._equilibrium import Rest, find
-from ._functions import ENTRIES, Library, address, function, marked, quoted
+from . import _native
+from ._functions import ENTRIES, marked, prepare, quoted
+from ._linear import at_rest
 from ._names import Error, checked, count, hint, index, number, numbers, safe
+from ._native import Function, Robot
+from ._origin import locate
 from ._results import LinearSystem, Run, Units
 
 #: Type variable of mechanism classes.
@@ -24,19 +23,32 @@ M = TypeVar("M", bound="Mechanism")
 Entries = ArrayLike | Mapping[str, float]
 #: Integration methods, with the setting that determines their accuracy.
 _METHODS = {
+    "automatic": "tolerance",
     "dormand_prince": "tolerance",
     "dormand_prince8": "tolerance",
     "rodas": "tolerance",
     "event_driven": "tolerance",
     "rk4": "step",
     "implicit_midpoint": "step",
+    "rosenbrock": "step",
+    "semi_implicit_euler": "step",
     "time_stepping": "step",
     "time_stepping_midpoint": "step",
 }
 
 
 class _Kind(type):
-    """Metaclass of mechanisms, whose classes are pickled by the paths of their libraries."""
+    """Metaclass of mechanisms, whose classes are pickled as their sources."""
+
+
+class _Equations:
+    """Equations of motion as text, which are derived when they are first read."""
+
+    def __get__(self, instance: object, owner: Any) -> str:
+        if "_printed" not in owner.__dict__:
+            owner._printed = _native.load(**locate(owner._origin), equations=True).equations if owner._origin else ""
+        printed: str = owner._printed
+        return printed
 
 
 class Mechanism(metaclass=_Kind):
@@ -59,40 +71,61 @@ class Mechanism(metaclass=_Kind):
     nv: ClassVar[int] = 0
     nu: ClassVar[int] = 0
     #: Equations of motion as text; empty if they are too long to be readable.
-    equations: ClassVar[str] = ""
-    #: Names of generated functions that Python cannot call.
-    left_out: ClassVar[Sequence[str]] = ()
-    _library: ClassVar[Any] = None
+    equations: ClassVar[_Equations] = _Equations()
+    #: Loaded mechanism without values of its parameters.
+    _loaded: ClassVar[Robot | None] = None
     _description: ClassVar[dict[str, Any]] = {}
-    _functions: ClassVar[dict[str, Any]] = {}
-    _path: ClassVar[Path] = Path()
-    #: Source, if the class was compiled in this process.
-    _source: ClassVar[dict[str, Any] | None] = None
+    _functions: ClassVar[dict[str, Function]] = {}
+    #: Source of the class.
+    _origin: ClassVar[dict[str, Any]] = {}
+    #: Loaded mechanism with values of its parameters.
+    _robot: Robot
 
-    def __init__(self, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> None:
-        if self._library is None:
+    def __init__(self, parameters: Mapping[str, Any] | None = None, /, *others: Any, **named: Any) -> None:
+        if self._loaded is None:
             raise TypeError("mechanisms are made by `linkwork.compile`")
-        values = np.zeros(len(self.parameter_names), self._library.dtype)
-        if self._library.defaults is not None:
-            self._library.defaults(ctypes.c_void_p(address(values)))
         given = self._given(parameters, others, named)
+        values: list[Any] = self._loaded.parameters()[0].tolist()
+        states = None
         for name, value in given.items():
-            values[index(self.parameter_names, name, "parameter")] = number(value, f"the parameter {name!r}")
-        missing = [n for n, v in zip(self.parameter_names, values) if np.isnan(v) and n not in given]
+            k = index(self.parameter_names, name, "parameter")
+            values[k] = _parameter(name, value)
+            if values[k].ndim:
+                if states is not None and states != len(values[k]):
+                    raise ValueError(f"parameters of {states} and of {len(values[k])} states")
+                states = len(values[k])
+        missing = [n for n, v in zip(self.parameter_names, values) if n not in given and np.isnan(v)]
         if missing:
             raise TypeError(f"{self.name} needs the parameters {', '.join(missing)}")
-        values.flags.writeable = False
-        self._values = values
-        self._own = address(values) if len(values) else None
-        if len(values) and self._library.validate(self._own) != 0:
-            raise Error(self._library.why())
+        sets = np.empty((1 if states is None else states, len(values)))
+        for k, value in enumerate(values):
+            sets[:, k] = value
+        self._robot = self._loaded.with_parameters(sets, states is not None)
+
+    @classmethod
+    def _of(cls: type[M], robot: Robot) -> M:
+        """Returns a mechanism with the values of the parameters of a loaded one."""
+        made = object.__new__(cls)
+        made._robot = robot
+        return made
 
     @property
-    def parameters(self) -> dict[str, float]:
-        """Returns the values of the parameters by name."""
-        return dict(zip(self.parameter_names, self._values.tolist()))
+    def _sets(self) -> int | None:
+        return self._robot.sets
 
-    def replace(self: M, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> M:
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Returns the values of the parameters by name: numbers, or arrays with one value for each state."""
+        values = self._robot.parameters()
+        if self._sets is None:
+            return dict(zip(self.parameter_names, values[0].tolist()))
+        is_common = [(column == column[0]).all() if len(column) else False for column in values.T]
+        # One array at least says how many states there are.
+        is_common[:1] = [is_common[0] and not all(is_common)] if is_common else []
+        columns = zip(values.T, is_common)
+        return dict(zip(self.parameter_names, [column[0].item() if common else column for column, common in columns]))
+
+    def replace(self: M, parameters: Mapping[str, Any] | None = None, /, *others: Any, **named: Any) -> M:
         """Returns a copy of the mechanism with other values for some parameters."""
         return type(self)({**self.parameters, **self._given(parameters, others, named)})
 
@@ -112,19 +145,21 @@ class Mechanism(metaclass=_Kind):
         raise TypeError(f"{cls.name} takes {expected}; found {found}")
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
+        shown: Callable[[Any], str] = lambda value: f"<{len(value)} values>" if isinstance(value, np.ndarray) else repr(value)
+        values = ", ".join(f"{name}={shown(value)}" for name, value in self.parameters.items())
         return f"{self.name}({values if len(values) < 200 else '…'})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restore, (str(self._path), self.parameters)
+        return _restore, (self._origin, self.parameters)
 
-    @classmethod
-    def _origin(cls) -> dict[str, Any]:
-        """Returns the source of the class."""
-        if cls._source is not None:
-            return cls._source
-        found: dict[str, Any] = json.loads(Path(cls._path).with_suffix(".json").read_text(encoding="utf-8"))
-        return found
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            if name in _ABSENT:
+                raise AttributeError(f"{self.name} has no function {name!r}: {_ABSENT[name]}")
+            raise AttributeError(f"{self.name} has no function {name!r}{hint(name, list(self._functions))}")
 
     @classmethod
     def stub(cls) -> str:
@@ -141,42 +176,19 @@ class Mechanism(metaclass=_Kind):
             f"class {cls.name}(linkwork.Mechanism):",
             f"    {quoted(cls.__doc__ or '')}",
         ]
-        values = ", ".join(f"{name}: float = ..." for name in cls.parameter_names if name.isidentifier() and not keyword.iskeyword(name))
+        values = ", ".join(f"{name}: ArrayLike = ..." for name in cls.parameter_names if name.isidentifier() and not keyword.iskeyword(name))
         star = f", *, {values}" if values else ""
-        lines.append(f"    def __init__(self, parameters: Mapping[str, float] | None = None, /{star}) -> None: ...")
-        kinds = {"frame": "str | int", "velocities": "str | int | Iterable[str | int]"}
-        for name, about in cls._functions.items():
+        lines.append(f"    def __init__(self, parameters: Mapping[str, Any] | None = None, /{star}) -> None: ...")
+        for name, function in cls._functions.items():
             if name not in cls.__dict__:
                 continue
-            arguments = "".join(f", {safe(a['name'])}: {_stub_type(a, kinds)}" for a in about["arguments"])
+            arguments = "".join(f", {safe(a)}: {_stub_type(a, shape)}" for a, shape in function.arguments)
             position = f"{arguments}, /" if arguments else ""
-            results = ["NDArray[Any]" if r["shape"] else "Any" for r in about["results"]]
+            results = ["NDArray[Any]" if shape else "Any" for _, shape in function.results]
             result = results[0] if len(results) == 1 else f"tuple[{', '.join(results)}]"
             lines.append(f"    def {name}(self{position}, *, threads: int | None = None, out: Any = None) -> {result}:")
             lines.append(f"        {quoted(getattr(cls, name).__doc__, 8)}")
         return "\n".join(lines) + "\n"
-
-    @classmethod
-    @checked
-    def save(cls, folder: str | os.PathLike[str] = ".") -> Path:
-        """Writes the class as a package to a folder: a module with its library and stubs, which depends only
-        on NumPy. The package can be copied to machines without Linkwork and Rust that have the same operating
-        system and the same kind of processor; compile with `native=False` for older processors.
-
-        Returns:
-            The folder of the package. Its name is that of the class in snake case: `CartPole` is imported
-            from `cart_pole`.
-
-        Raises:
-            FileExistsError: a folder of this name exists that is not the package of a mechanism.
-        """
-        try:
-            package = importlib.import_module("._package", __package__)
-        except ImportError:
-            raise Error("this is such a package already: copy its folder") from None
-
-        written: Path = package.save(cls, folder)
-        return written
 
     # Indices
 
@@ -192,18 +204,62 @@ class Mechanism(metaclass=_Kind):
         """Returns the index of an entry of `u`, by its name."""
         return index(self.inputs, name, "input")
 
+    # Limits
+
+    def lower_limits(self) -> NDArray[Any]:
+        """Returns the lower bounds of the coordinates, in the order of `v`; minus infinity without a bound."""
+        return self._limits(1, -np.inf)
+
+    def upper_limits(self) -> NDArray[Any]:
+        """Returns the upper bounds of the coordinates, in the order of `v`; infinity without a bound."""
+        return self._limits(2, np.inf)
+
+    def velocity_limits(self) -> NDArray[Any]:
+        """Returns the maximum velocities in both directions; infinity without a bound."""
+        return self._limits(3, np.inf)
+
+    def effort_limits(self) -> NDArray[Any]:
+        """Returns the maximum forces and torques in both directions; infinity without a bound."""
+        return self._limits(4, np.inf)
+
+    def clamp_configuration(self, q: ArrayLike) -> NDArray[Any]:
+        """Returns configurations within their bounds."""
+        found = np.array(numbers(q, np.float64, "q"))
+        bounds = zip(self.velocities, self.lower_limits(), self.upper_limits())
+        for name, lower, upper in bounds:
+            if name in self.configuration:
+                k = self.index_q(name)
+                found[..., k] = found[..., k].clip(lower, upper)
+        return found
+
+    def clamp_velocity(self, v: ArrayLike) -> NDArray[Any]:
+        """Returns velocities within their bounds."""
+        found: NDArray[Any] = np.clip(numbers(v, np.float64, "v"), -self.velocity_limits(), self.velocity_limits())
+        return found
+
+    def clamp_effort(self, tau: ArrayLike) -> NDArray[Any]:
+        """Returns forces and torques within their bounds."""
+        found: NDArray[Any] = np.clip(numbers(tau, np.float64, "tau"), -self.effort_limits(), self.effort_limits())
+        return found
+
+    def _limits(self, which: int, default: float) -> NDArray[Any]:
+        values = np.full(self.nv, default)
+        for limit in self._robot.limits():
+            values[limit[0]] = limit[which]
+        return values
+
     # Motions
 
     def _vector(self, value: Any, length: int, what: str) -> NDArray[Any]:
         if isinstance(value, Mapping):
             entries = ENTRIES[what]
             names = {"q": self.configuration, "v": self.velocities, "u": self.inputs}[entries]
-            vector: NDArray[Any] = self._neutral() if entries == "q" else np.zeros(length, self._library.dtype)
+            vector: NDArray[Any] = self._neutral() if entries == "q" else np.zeros(length)
             kind = {"q": "coordinate", "v": "velocity", "u": "input"}[entries]
             for name, entry in value.items():
                 vector[index(names, name, kind)] = number(entry, f"the {kind} {name!r}")
             return vector
-        vector = np.ascontiguousarray(numbers(value, self._library.dtype, what))
+        vector = np.ascontiguousarray(numbers(value, np.float64, what))
         if vector.shape != (length,):
             raise ValueError(f"{what} has {length} entries, found an array of shape {vector.shape}")
         return vector
@@ -258,8 +314,9 @@ class Mechanism(metaclass=_Kind):
             period: time between calls of `control`, s; the inputs are constant in between. Without it,
                 `control` is called at every evaluation of the dynamics, and must be continuous.
             method: integration method. Methods with a `tolerance` are `"dormand_prince"`,
-                `"dormand_prince8"`, `"rodas"` (for stiff equations) and, with contacts, `"event_driven"`.
-                Methods with a `step` are `"rk4"`, `"implicit_midpoint"` and, with contacts,
+                `"dormand_prince8"`, `"rodas"` (for stiff equations), `"automatic"` (Dormand–Prince, and Rodas
+                from where the motion is stiff) and, with contacts, `"event_driven"`. Methods with a `step` are
+                `"rk4"`, `"implicit_midpoint"`, `"rosenbrock"`, `"semi_implicit_euler"` and, with contacts,
                 `"time_stepping"` and `"time_stepping_midpoint"`; the latter needs two evaluations of the
                 dynamics per step instead of four. The default is `"dormand_prince"`, or `"event_driven"`
                 with contacts; if `step` is specified, it is `"rk4"`, or `"time_stepping"` with contacts.
@@ -269,9 +326,10 @@ class Mechanism(metaclass=_Kind):
         Raises:
             Error: the motion cannot be continued; the attribute `run` has the samples so far.
         """
-        library = self._library
+        if self._sets is not None:
+            raise TypeError("a simulation has one value of each parameter; `roll_out` takes one for each state")
         first_q = self._neutral() if q is None else self._vector(q, self.nq, "q")
-        first_v = np.zeros(self.nv, library.dtype) if v is None else self._vector(v, self.nv, "v")
+        first_v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         duration = number(duration, "`duration`")
         if not (duration >= 0 and np.isfinite(duration)):
             raise ValueError(f"the duration is a time in seconds, found {duration!r}")
@@ -290,51 +348,36 @@ class Mechanism(metaclass=_Kind):
         if period is not None and control is None:
             raise TypeError("`period` is the time between calls of `control`, and there is none; samples stand `every` so often")
         method, setting = self._method(method, tolerance, step)
-        if inputs is not None:
-            constant = self._vector(inputs, self.nu, "u")
-            control, period = (lambda t, q, v: constant), every
-        raised: list[BaseException] = []
-        size = library.dtype.itemsize
+        constant = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
 
-        def asked(_user: Any, t: float, q: int, v: int, u: int) -> int:
-            try:
-                assert control is not None
-                own_q, own_v = np.empty(self.nq, library.dtype), np.empty(self.nv, library.dtype)
-                ctypes.memmove(address(own_q), q, self.nq * size)
-                ctypes.memmove(address(own_v), v, self.nv * size)
-                returned = control(t, own_q, own_v)
-                if returned is None:
-                    raise TypeError("`control` returned nothing")
-                found = self._vector(returned, self.nu, "u")
-                ctypes.memmove(u, address(found), self.nu * size)
-                return 0
-            except BaseException as error:  # Cannot pass the library; raised again below.
-                raised.append(error)
-                return 1
+        def inputs_at(t: float, q: NDArray[Any], v: NDArray[Any]) -> list[float]:
+            assert control is not None
+            returned = control(t, q, v)
+            if returned is None:
+                raise TypeError("`control` returned nothing")
+            found: list[float] = self._vector(returned, self.nu, "u").tolist()
+            return found
 
-        pointer: Any = library.Control(asked) if control is not None else None
-        settings = library.Settings(
-            number(start, "`start`"), duration, every, method.encode(), setting, period or 0.0, ctypes.cast(pointer, ctypes.c_void_p), None
+        samples, reason, raised = _native.simulate(
+            self._robot,
+            first_q.tolist(),
+            first_v.tolist(),
+            start=number(start, "`start`"),
+            duration=duration,
+            every=every,
+            method=method,
+            setting=setting,
+            period=period,
+            inputs=constant.tolist(),
+            control=None if control is None else inputs_at,
         )
-        rows = int(np.floor(duration / every * (1 + 1e-9))) + 3
-        samples = np.empty((rows, 1 + self.nq + self.nv + self.nu), library.dtype)
-        count = ctypes.c_size_t()
-        code = library.simulate(
-            self._own,
-            address(first_q),
-            address(first_v),
-            ctypes.addressof(settings),
-            address(samples),
-            rows,
-            ctypes.addressof(count),
-        )
-        done = samples[: count.value]
-        at = np.cumsum([1, self.nq, self.nv])
-        run = Run(self, done[:, 0], done[:, 1 : at[1]], done[:, at[1] : at[2]], done[:, at[2] :])
-        if raised:
-            raise raised[0]
-        if code != 0:
-            error = Error(library.why())
+        at = np.cumsum([1, self.nq, self.nv, self._description["states"]])
+        parts = np.split(samples, at, axis=1)
+        run = Run(self, parts[0][:, 0], parts[1], parts[2], parts[4], parts[3])
+        if raised is not None:
+            raise raised
+        if reason is not None:
+            error = Error(reason)
             error.run = run
             raise error
         return run
@@ -351,8 +394,8 @@ class Mechanism(metaclass=_Kind):
         start: float = 0.0,
         threads: int = 0,
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Simulates many motions by steps of the classical Runge–Kutta method, eight states at a time and on
-        all processors. Other threads of Python continue meanwhile.
+        """Simulates many motions by steps of the classical Runge–Kutta method on all processors. Other threads of
+        Python continue meanwhile. If the mechanism has arrays of parameters, each state has its own values.
 
         Args:
             q: initial configurations, (N, nq).
@@ -367,39 +410,36 @@ class Mechanism(metaclass=_Kind):
         Returns:
             Configurations (N, steps + 1, nq) and velocities (N, steps + 1, nv), including the initial ones.
         """
-        library = self._library
-        first_q, first_v = numbers(q, library.dtype, "q"), numbers(v, library.dtype, "v")
+        first_q, first_v = numbers(q, np.float64, "q"), numbers(v, np.float64, "v")
         if first_q.ndim != 2 or first_q.shape[1] != self.nq or first_v.shape != (len(first_q), self.nv):
             raise ValueError(
                 f"expected arrays of shapes (N, {self.nq}) and (N, {self.nv}), found {first_q.shape} and {first_v.shape}"
             )
-        n, kind, held = len(first_q), 0, None
+        n, held = len(first_q), None
         steps = None if steps is None else count(steps, "steps")
         threads = count(threads, "threads")
+        if self._sets is not None and self._sets != n:
+            raise ValueError(f"parameters of {self._sets} states, but {n} states")
         if inputs is not None:
-            held = np.ascontiguousarray(numbers(inputs, library.dtype, "inputs"))
+            held = np.ascontiguousarray(numbers(inputs, np.float64, "inputs"))
             found = held.shape[-2] if held.ndim >= 2 else None
             if steps is not None and found is not None and steps != found:
                 raise ValueError(f"there are inputs of {found} steps, not of {steps}")
             steps = found
-            if held.shape == (steps, self.nu):
-                kind = 1
-            elif held.shape == (n, steps, self.nu):
-                kind = 2
-            else:
+            if held.shape not in [(steps, self.nu), (n, steps, self.nu)]:
                 raise ValueError(f"inputs have the shape (steps, {self.nu}) or ({n}, steps, {self.nu}), not {held.shape}")
+            held = held if held.ndim == 3 else held[np.newaxis]
         if steps is None:
             raise TypeError("give the number of `steps`, or `inputs` for each of them")
-        all_q = np.empty((n, steps + 1, self.nq), library.dtype)
-        all_v = np.empty((n, steps + 1, self.nv), library.dtype)
+        all_q, all_v = np.empty((n, steps + 1, self.nq)), np.empty((n, steps + 1, self.nv))
         all_q[:, 0], all_v[:, 0] = first_q, first_v
-        settings = library.Rollout(number(start, "`start`"), number(h, "`h`"), steps, n, threads, kind)
-        given = address(held) if held is not None else None
-        code = library.roll_out(self._own, ctypes.addressof(settings), given, address(all_q), address(all_v))
-        if code != 0:
-            error = Error(library.why())
+        try:
+            self._robot.roll_out(
+                all_q, all_v, held, start=number(start, "`start`"), h=number(h, "`h`"), threads=threads
+            )
+        except Error as error:
             error.q, error.v = all_q, all_v
-            raise error
+            raise
         return all_q, all_v
 
     # Steady states and linear systems
@@ -435,7 +475,7 @@ class Mechanism(metaclass=_Kind):
         self._need("inverse_dynamics_derivatives", "derivatives")
         first = self._neutral() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
-        free = marked(held, self.velocities, self._library.dtype) == 0
+        free = marked(held, self.velocities) == 0
         tolerance, iterations = number(tolerance, "`tolerance`"), count(iterations, "iterations")
         return find(Rest(self, u, free), first, tolerance, iterations) if free.any() else first
 
@@ -448,22 +488,25 @@ class Mechanism(metaclass=_Kind):
         file has an input; the option `inputs` changes this.
 
         Raises:
-            Error: the mechanism was compiled without derivatives, or the configuration violates the
-                constraints; `assemble` returns one that satisfies them.
+            Error: the mechanism was loaded without derivatives, or the configuration violates the constraints
+                (`assemble` returns one that satisfies them), or moves under constraints.
         """
-        self._need("linearize", "derivatives")
+        constrained = bool(self._description["constraints"])
+        self._need("forward_dynamics_derivatives" if constrained else "linearize", "derivatives")
         time = [number(t, "`t`")] if self._description["time"] else []
         at_q = self._vector(q, self.nq, "q")
-        if "constraint_residuals" in self._functions:
-            off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
-            if not off <= 1e-6:
-                raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
         at_v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
-        if self._description["constraints"]:
-            a, b, coordinates, speeds = self._call("linearize", *time, at_q, at_v, u, [])
-            names = [self.velocities[int(k)] for k in coordinates]
-            names += [f"{self.velocities[int(k)]}.rate" for k in speeds]
+        if constrained:
+            if "constraint_residuals" in self._functions:
+                off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
+                if not off <= 1e-6:
+                    raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
+            if at_v.any():
+                raise Error("linear systems of mechanisms with constraints are about states at rest")
+            a, b, coordinates, speeds = at_rest(self, time, at_q, u)
+            names = [self.velocities[k] for k in coordinates]
+            names += [f"{self.velocities[k]}.rate" for k in speeds]
         else:
             a, b = self._call("linearize", *time, at_q, at_v, u)
             names = list(self.velocities) + [f"{name}.rate" for name in self.velocities]
@@ -484,31 +527,53 @@ class Mechanism(metaclass=_Kind):
         return self._call("generalized_forces", *time, *given)
 
     def _takes(self, function: str, argument: str) -> bool:
-        return any(a["name"] == argument for a in self._functions[function]["arguments"])
+        return any(name == argument for name, _ in self._functions[function].arguments)
 
     def _need(self, function: str, word: str) -> None:
         if function not in self._functions:
-            raise Error(f"this needs the function `{function}`: compile with `{word}=True`")
+            raise Error(f"this needs the function `{function}`: {_ABSENT.get(function, f'compile with `{word}=True`')}")
 
 
-def _stub_type(argument: dict[str, Any], kinds: dict[str, str]) -> str:
+def _parameter(name: str, value: Any) -> NDArray[Any]:
+    """Converts the value of a parameter to an array: a number, or one value for each state."""
+    if np.ndim(value) == 1 and not isinstance(value, (str, bytes)):
+        array = numbers(value, np.float64, f"the parameter {name!r}")
+        if np.shape(value)[0] != 1 or isinstance(value, np.ndarray):
+            return array
+    return np.array(number(value, f"the parameter {name!r}"))
+
+
+#: Functions of mechanisms in Rust that loaded mechanisms lack.
+_ABSENT = {
+    "assemble": "it has no constraints",
+    "linearize": "it needs `derivatives=True`, and a mechanism without constraints",
+    "forward_dynamics_derivatives": "it needs `derivatives=True`",
+    "transition": "it needs `derivatives=True`, and a mechanism without constraints, contacts and states of first order",
+    "step": "steps need a mechanism without constraints, contacts and states of first order",
+}
+
+
+def _stub_type(argument: str, shape: list[int] | None) -> str:
     """Returns the type of an argument in a stub."""
-    by_name = argument["kind"] == "array" and argument["name"] in ENTRIES
-    return "ArrayLike | Mapping[str, float]" if by_name else kinds.get(argument["kind"], "ArrayLike")
+    if argument == "held":
+        return "str | int | Iterable[str | int]"
+    return "str | int" if shape is None else "ArrayLike | Mapping[str, float]" if argument in ENTRIES else "ArrayLike"
 
 
-def _documentation(description: dict[str, Any]) -> str:
+def _documentation(description: dict[str, Any], robot: Robot) -> str:
     """Returns the documentation of a class: the documentation of the struct, then tables of the coordinates,
     inputs, parameters and outputs."""
-    limits = {limit["index"]: limit for limit in description["limits"]}
-    shown: Callable[[Any], str] = lambda value: "" if value is None else value if isinstance(value, str) else f"{value:g}"
+    try:
+        limits = {index: bounds for index, *bounds in robot.limits()}
+    except Error:
+        # They depend on parameters.
+        limits = {}
+    shown: Callable[[float], str] = lambda value: f"{value:g}" if np.isfinite(value) else ""
     velocities = []
-    for k, entry in enumerate(description["velocities"]):
-        limit = limits.get(k, {})
-        bounds = [shown(limit.get(key)) for key in ("lower", "upper", "velocity", "effort")]
-        velocities.append([entry["name"], entry["unit"], *bounds])
+    for k, (name, unit) in enumerate(description["velocities"]):
+        velocities.append([name, unit, *map(shown, limits.get(k, [np.inf] * 4))])
     head = ["name", "unit", "lower limit", "upper limit", "velocity limit", "effort limit"]
-    named: Callable[[str], list[list[str]]] = lambda key: [[entry["name"], entry["unit"]] for entry in description[key]]
+    named: Callable[[str], list[list[str]]] = lambda key: [list(entry) for entry in description[key]]
     tables = [
         ("Configuration `q`", ["name", "unit"], named("configuration")),
         ("Velocities `v`, with the limits of the joints in SI units", head, velocities),
@@ -531,13 +596,20 @@ def _align_columns(rows: list[list[str]]) -> str:
     return "\n".join(f"    {line}" for line in lines)
 
 
-def _restore(path: str, parameters: dict[str, float]) -> "Mechanism":
+def _class(origin: dict[str, Any]) -> "type[Compiled]":
+    """Returns an unpickled class."""
+    from ._load import restore
+
+    return restore(origin)
+
+
+def _restore(origin: dict[str, Any], parameters: dict[str, Any]) -> "Mechanism":
     """Returns an unpickled mechanism."""
-    return load(Path(path))(parameters)
+    return _class(origin)(parameters)
 
 
 def _reduce_class(kind: Any) -> Any:
-    return (load, (kind._path,)) if kind._library is not None else kind.__qualname__
+    return (_class, (kind._origin,)) if kind._loaded is not None else kind.__qualname__
 
 
 copyreg.pickle(_Kind, _reduce_class)
@@ -545,7 +617,7 @@ copyreg.pickle(_Kind, _reduce_class)
 if TYPE_CHECKING:
 
     class Compiled(Mechanism):
-        """Mechanism with generated functions, whose names type checkers cannot know."""
+        """Mechanism with its functions, whose names type checkers cannot know."""
 
         def __getattr__(self, name: str) -> Any: ...
 
@@ -553,14 +625,14 @@ else:
     Compiled = Mechanism
 
 
-def load(path: Path) -> type[Compiled]:
-    """Returns the class of a compiled library."""
-    library = Library(path)
-    d = library.description
-    names: Callable[[str], list[str]] = lambda key: [entry["name"] for entry in d[key]]
-    units: Callable[[str], list[str]] = lambda key: [entry["unit"] for entry in d[key]]
+def kind(robot: Robot, origin: dict[str, Any]) -> "type[Compiled]":
+    """Returns the class of a loaded mechanism."""
+    d = robot.describe()
+    names: Callable[[str], list[str]] = lambda key: [name for name, _ in d[key]]
+    units: Callable[[str], list[str]] = lambda key: [unit for _, unit in d[key]]
+    functions = {function.name_and_documentation[0]: function for function in robot.functions()}
     members = {
-        "__doc__": _documentation(d),
+        "__doc__": _documentation(d, robot),
         "__module__": "linkwork",
         "name": d["name"],
         "configuration": names("configuration"),
@@ -573,16 +645,16 @@ def load(path: Path) -> type[Compiled]:
         "nq": len(d["configuration"]),
         "nv": len(d["velocities"]),
         "nu": len(d["inputs"]),
-        "equations": d["equations"],
-        "left_out": d["left_out"],
-        "_library": library,
+        "_loaded": robot,
         "_description": d,
-        "_path": path,
-        "_functions": {f["name"]: f for f in d["functions"]},
+        "_origin": origin,
+        "_functions": functions,
     }
-    for k, about in enumerate(d["functions"]):
-        if about["name"] not in members and not hasattr(Mechanism, about["name"]):
-            members[about["name"]] = function(library, k, about, d["name"])
-    kind: Any = _Kind(d["name"], (Compiled,), members)
-    made: type[Compiled] = kind
-    return made
+    outputs = dict(d["outputs"])
+    for name, function in functions.items():
+        prepare(function, d["name"], outputs.get(name, ""))
+        if name not in members and not hasattr(Mechanism, name):
+            members[name] = function
+    made: Any = _Kind(d["name"], (Compiled,), members)
+    result: type[Compiled] = made
+    return result

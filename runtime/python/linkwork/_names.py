@@ -18,9 +18,6 @@ R = TypeVar("R")
 class Error(Exception):
     """Error of Linkwork: in a declaration, in a file, or in a call that has no result."""
 
-    #: Error messages and exit status of the command that reported the error.
-    complaints: str | None = None
-    status = 1
     #: Samples before the error, for a simulation.
     run: Any = None
     #: Configurations and velocities before the error, for a rollout.

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._names import Error, checked, index
+from . import _native
+from ._names import checked, index
+from ._origin import locate
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -47,6 +49,8 @@ class Run:
     v: NDArray[Any]
     #: Inputs, one row per time.
     u: NDArray[Any]
+    #: States of first order, one row per time.
+    x: NDArray[Any]
 
     def __len__(self) -> int:
         return len(self.t)
@@ -68,16 +72,17 @@ class Run:
             writer.writerows(np.column_stack([self.t, self.q, self.v, self.u]).tolist())
 
     @checked
-    def view(self, path: str | os.PathLike[str] | None = None) -> Page:
+    def view(self, path: str | os.PathLike[str] | None = None, *, meshes: str | os.PathLike[str] | None = None) -> Page:
         """Writes an HTML page that shows the motion and opens offline, to `path` or by default to a file with
-        the mechanism's name and the extension `.html`."""
-        try:
-            build = importlib.import_module("._build", __package__)
-        except ImportError:
-            raise Error("pages are made by the package `linkwork`, which this package does not need otherwise") from None
-
-        path = Path(path if path is not None else f"{self.mechanism.name}.html")
-        build.view(self.mechanism._origin(), self, path)
+        the mechanism's name and the extension `.html`. The meshes of a robot file are read from the folder
+        `meshes`, by default from that of the file."""
+        m = self.mechanism
+        path = Path(path if path is not None else f"{m.name}.html")
+        source = locate(m._origin)
+        if meshes is None and source["is_file"]:
+            meshes = Path(source["source"]).parent
+        times, q, u = self.t.tolist(), np.ascontiguousarray(self.q), np.ascontiguousarray(self.u)
+        _native.write_page(m._robot, **source, meshes=meshes, times=times, q=q, u=u, path=path)
         return Page(path)
 
     @checked

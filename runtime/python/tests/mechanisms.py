@@ -67,4 +67,4 @@ ROBOT = """<robot name="two links">
 
 
 def compiled(declaration, **settings):
-    return linkwork.compile(declaration, quiet=True, **settings)
+    return linkwork.compile(declaration, **settings)

@@ -32,10 +32,10 @@ class WithTables(unittest.TestCase):
 
     def test_what_is_no_table_is_told(self):
         for tables, kind, words in [
-            ({}, linkwork.Error, "tables without figures"),
-            ({"enrgy": ([[0, 1]], [0, 1])}, linkwork.Error, "there is no table `enrgy`, but energy"),
+            ({}, linkwork.Error, "tables without values"),
+            ({"enrgy": ([[0, 1]], [0, 1])}, KeyError, "there is no table 'enrgy': did you mean 'energy'"),
             ({"energy": ([[0, 1]], [0, 1, 2])}, ValueError, "the axes have"),
-            ({"energy": ([[0, 0]], [0, 1])}, linkwork.Error, "stands there twice"),
+            ({"energy": ([[0, 0]], [0, 1])}, linkwork.Error, "does not increase strictly"),
             ({"energy": 3.0}, TypeError, "expected a path"),
             ({"energy": "nowhere.csv"}, FileNotFoundError, "nowhere.csv"),
         ]:
@@ -69,7 +69,6 @@ class UnderConstraints(unittest.TestCase):
 
     def test_documentation_is_for_python(self):
         text = self.m.assemble.__doc__
-        self.assertIn("\nRaises:\n    Error: where none is found, for an index that is none.\n", text)
         self.assertIn("    q: shape (2,), or values by name\n    held: names of velocities, or their indices\n", text)
         for name in self.m._functions:
             text = getattr(self.m, name).__doc__
@@ -102,6 +101,8 @@ class UnderConstraints(unittest.TestCase):
         system = self.m.linear_system([0.0, -1.0])
         np.testing.assert_allclose(np.linalg.eigvals(system.a).imag, [np.sqrt(9.81), -np.sqrt(9.81)], rtol=1e-10)
         self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
+        with self.assertRaisesRegex(linkwork.Error, "about states at rest"):
+            self.m.linear_system([0.0, -1.0], [1.0, 0.0])
         with self.assertRaisesRegex(linkwork.Error, "off the constraints by 0.1"):
             self.m.linear_system([0.0, -0.9])
 
@@ -132,12 +133,12 @@ class OfRobots(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "two-links.urdf"
             path.write_text(ROBOT)
-            arm = linkwork.compile(path, quiet=True)()
-            heavy = linkwork.compile(str(path), options="parameters = inertial(\"upper\")", quiet=True)
+            arm = linkwork.compile(path)()
+            heavy = linkwork.compile(str(path), options="parameters = inertial(\"upper\")")
             broken = Path(folder) / "broken.urdf"
             broken.write_text(ROBOT.replace('link="upper"/><axis', 'link="uper"/><axis'))
             with self.assertRaisesRegex(linkwork.Error, r"broken\.urdf:6.*uper"):
-                linkwork.compile(broken, quiet=True)
+                linkwork.compile(broken)
         self.assertEqual(arm.frames, ["base", "upper", "tool"])
         placement = arm.frame_placement("tool", [np.pi / 2])
         np.testing.assert_allclose(placement @ [0, 0, 0, 1], [-1, 0, 0, 1], atol=1e-15)
@@ -162,7 +163,7 @@ class OfRobots(unittest.TestCase):
             for mass in (2.0, 3.0, 2.0):
                 (Path(folder) / "part.xml").write_text(part.format(mass=mass))
                 for _ in range(2):
-                    slider = linkwork.compile(path, quiet=True, batch=False, derivatives=False)()
+                    slider = linkwork.compile(path, derivatives=False)()
                     np.testing.assert_allclose(slider.mass_matrix([0.0]), [[mass]])
 
     def test_names_and_folders_of_all_scripts(self):
@@ -170,14 +171,12 @@ class OfRobots(unittest.TestCase):
             path = Path(folder) / "gelenk-größe 手 'x' \"y\"" / "zwei räder.urdf"
             path.parent.mkdir()
             path.write_text(ROBOT.replace("shoulder", "Schulter größe 手").replace('"upper"', '"Oberarm ß"'), encoding="utf-8")
-            arm = linkwork.compile(path, quiet=True, batch=False, derivatives=False)()
+            arm = linkwork.compile(path, derivatives=False)()
             self.assertEqual(arm.configuration, ["Schulter größe 手"])
             np.testing.assert_allclose(arm.mass_matrix({"Schulter größe 手": 0.3}), [[0.1 + 2 * 0.25]])
             self.assertIn("Schulter größe 手", type(arm).__doc__)
             self.assertEqual(pickle.loads(pickle.dumps(arm)).configuration, arm.configuration)
-            package = type(arm).save(Path(folder) / "pakete ü")
-            self.assertTrue(package.name.isidentifier(), package)
-            compile((package / "__init__.pyi").read_text(encoding="utf-8"), "stub.pyi", "exec")
+            compile(type(arm).stub(), "stub.pyi", "exec")
             run = arm.simulate(duration=0.1)
             self.assertTrue(run.view(Path(folder) / "bewegung ß.html").path.is_file())
 
@@ -187,23 +186,23 @@ class OfRobots(unittest.TestCase):
             # Moments of inertia that violate the triangle inequality: 1 + 0.1 < 2.
             path.write_text(ROBOT.replace('ixx="0.1"', 'ixx="2"').replace('iyy="0.1"', 'iyy="1"').replace('izz="0.01"', 'izz="0.1"'))
             with self.assertRaisesRegex(linkwork.Error, "`options='inertia = trust'`") as caught:
-                linkwork.compile(path, quiet=True)
+                linkwork.compile(path)
             self.assertNotRegex(str(caught.exception), r"#\[mechanism|--with")
             # The option in the message makes the file acceptable.
-            arm = linkwork.compile(path, options="inertia = trust", quiet=True)()
+            arm = linkwork.compile(path, options="inertia = trust")()
             np.testing.assert_allclose(arm.mass_matrix([0.0]), [[1 + 2 * 0.25]])
             for options, words in [("base = fre", "base"), ("inertia =", "inertia"), ("(", r"`options=`")]:
                 with self.assertRaisesRegex(linkwork.Error, words) as caught:
-                    linkwork.compile(path, options=options, quiet=True)
+                    linkwork.compile(path, options=options)
                 self.assertNotIn("--with", str(caught.exception))
         with self.assertRaisesRegex(linkwork.Error, r"tables=\{'energy': …\}") as caught:
             compiled(SLIDER)
         self.assertNotIn("--table", str(caught.exception))
 
     def test_mistakes_have_their_places(self):
-        with self.assertRaisesRegex(linkwork.Error, r"^mechanism\.rs:\d+:\d+: error: .*massa"):
+        with self.assertRaisesRegex(linkwork.Error, r"^declaration:\d+:\d+: error: .*massa"):
             compiled(PENDULUM.replace("mass = mass, com", "massa = mass, com"))
-        with self.assertRaisesRegex(linkwork.Error, "choose one with `name=`: Pendulum, Bead"):
+        with self.assertRaisesRegex(linkwork.Error, "choose one of Pendulum, Bead with `name=`"):
             compiled(PENDULUM + BEAD)
         with self.assertRaisesRegex(linkwork.Error, "expected a path, or a declaration"):
             linkwork.compile("#[nothing]")

@@ -56,15 +56,19 @@ pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
     item.fields.iter().filter_map(note).collect()
 }
 
-fn first_paragraph(attributes: &[Attribute]) -> String {
-    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+/// Returns the texts of documentation comments.
+pub fn doc_lines(attributes: &[Attribute]) -> impl Iterator<Item = String> {
+    attributes.iter().filter_map(|attribute| match &attribute.meta {
         Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
             Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) => Some(text.value()),
             _ => None,
         },
         _ => None,
-    });
-    let all = lines.collect::<Vec<_>>().join("\n");
+    })
+}
+
+fn first_paragraph(attributes: &[Attribute]) -> String {
+    let all = doc_lines(attributes).collect::<Vec<_>>().join("\n");
     let lines = all.lines().map(str::trim).skip_while(|line| line.is_empty());
     lines.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }

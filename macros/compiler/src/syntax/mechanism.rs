@@ -1,5 +1,6 @@
 //! Result of parsing `#[mechanism]`: the description, the options, and the remaining struct.
 
+use super::declaration::doc_lines;
 use super::file_parameters::{FileField, FileParameters};
 use super::readable::Reading;
 use super::request::Requests;
@@ -50,6 +51,12 @@ impl Shell {
     /// Whether the generated code is not generic.
     pub fn is_concrete(&self) -> bool {
         self.generics.params.is_empty()
+    }
+
+    /// Returns the lines of the documentation comments.
+    pub fn documentation(&self) -> String {
+        let lines: Vec<String> = doc_lines(&self.attributes).map(|line| line.trim().to_string()).collect();
+        lines.join("\n").trim().to_string()
     }
 
     /// Returns the names of all tables.

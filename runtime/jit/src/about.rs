@@ -1,0 +1,72 @@
+//! Data about a loaded mechanism that none of its functions needs.
+
+use crate::robot::Robot;
+use crate::shared::{Quantity, Shared};
+use linkwork_compiler::Source;
+use linkwork_compiler::export::without_links;
+use linkwork_compiler::mechanism::Model;
+
+/// Documentation and outputs.
+pub(crate) struct About {
+    documentation: String,
+    outputs: Vec<Quantity>,
+}
+
+impl About {
+    /// Returns the data of a mechanism.
+    pub fn new(source: &Source, model: &Model<'_>) -> About {
+        let outputs = model.outputs.iter().enumerate().map(|(k, output)| Quantity {
+            name: output.name.clone(),
+            unit: model.units.outputs.get(k).cloned().unwrap_or_default(),
+        });
+        About {
+            documentation: without_links(&source.mechanism.shell.documentation()),
+            outputs: outputs.collect(),
+        }
+    }
+}
+
+impl Shared {
+    /// Returns the reason why a step of a method needs more than the accelerations, if there is one.
+    pub fn step_obstacle(&self) -> Option<&'static str> {
+        let reasons = [
+            (self.kinematic, "it has no inertia"),
+            (!self.constraints.names.is_empty(), "it has constraints"),
+            (!self.contacts.is_empty(), "it has contacts"),
+            (!self.states.is_empty(), "it has states of first order"),
+        ];
+        reasons.into_iter().find_map(|(is_so, reason)| is_so.then_some(reason))
+    }
+}
+
+impl Robot {
+    /// Returns the documentation of the declaration, empty for a robot file.
+    #[must_use]
+    pub fn documentation(&self) -> &str {
+        &self.shared.about.documentation
+    }
+
+    /// Returns name and unit of each output. The functions of the outputs have these names.
+    #[must_use]
+    pub fn outputs(&self) -> &[Quantity] {
+        &self.shared.about.outputs
+    }
+
+    /// Returns the number of scalar constraints.
+    #[must_use]
+    pub fn constraints(&self) -> usize {
+        self.shared.constraints.names.len()
+    }
+
+    /// Returns the number of unilateral contacts.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.shared.contacts.len()
+    }
+
+    /// Returns the number of states of first order.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        self.shared.states.len()
+    }
+}

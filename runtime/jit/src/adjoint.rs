@@ -1,0 +1,420 @@
+//! Vector–Jacobian products of functions: programs in reverse order (Griewank and Walther, *Evaluating
+//! Derivatives*, 2008, chapter 3).
+
+use crate::adjoint_steps;
+use crate::error::Error;
+use crate::functions::Plan;
+use crate::robot::{Function, Robot};
+use crate::routine::{Routine, Values};
+use crate::shared::Shared;
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::expr::{Extreme, Function as Elementary, Symbol, air};
+use linkwork_compiler::lower::{Op, Operand, Program};
+use linkwork_compiler::mechanism::Quantity;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Name of the argument with the factors of the results.
+const FACTORS: &str = "factors";
+/// First given value of the factors: functions have fewer given values.
+const FIRST: usize = 1 << 16;
+
+/// Vector–Jacobian product of a function: derivatives of the sum of its results, each times a factor, by all
+/// arguments and parameters. They are derivatives of the function of all entries, those of quaternions
+/// included, and are exact to rounding.
+pub struct VectorJacobian {
+    shared: Arc<Shared>,
+    name: String,
+    kind: Product,
+    /// Lengths of the arguments.
+    arguments: Vec<usize>,
+    factors: usize,
+    parameters: usize,
+}
+
+/// Computation of the derivatives.
+enum Product {
+    Reversed(Routine),
+    Integrate,
+    Difference,
+    TangentRate,
+}
+
+impl std::fmt::Debug for VectorJacobian {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "VectorJacobian({})", self.name)
+    }
+}
+
+impl Function {
+    /// Returns the vector–Jacobian product of the function.
+    ///
+    /// # Errors
+    ///
+    /// The function is composed of matrices of derivatives, or solves for constraint forces; or velocities
+    /// are generalized speeds, and the function moves configurations.
+    pub fn vector_jacobian(&self) -> Result<VectorJacobian, Error> {
+        let entry = &self.shared().entries[self.index()];
+        let unavailable = || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
+        let parameters = self.shared().parameters.len();
+        let sizes = self.shared().sizes;
+        let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
+        let program = match &entry.plan {
+            Plan::Program(routine) => routine.program(),
+            Plan::Frame(access, frame, routine) => {
+                routine.ensure(|| self.shared().frames.program(*access, *frame));
+                routine.program()
+            }
+            _ => None,
+        };
+        let kind = match (program, entry.name.as_str()) {
+            (Some(program), _) => {
+                let inputs = parameters + arguments.iter().sum::<usize>();
+                let given = Argument::Given(FACTORS, FIRST, entry.length);
+                let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
+                let symbols = entry.arguments.iter().flat_map(|argument| {
+                    (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
+                });
+                let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
+                let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
+                Product::Reversed(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?)
+            }
+            (None, _) if self.shared().has_speeds => return Err(unavailable()),
+            (None, "integrate") => Product::Integrate,
+            (None, "difference") => Product::Difference,
+            (None, "tangent_rate") => Product::TangentRate,
+            _ => return Err(unavailable()),
+        };
+        Ok(VectorJacobian {
+            shared: self.shared().clone(),
+            name: entry.name.clone(),
+            kind,
+            arguments,
+            factors: entry.length,
+            parameters,
+        })
+    }
+}
+
+/// Returns the symbol of an entry of an argument.
+fn symbol(argument: Argument, k: usize) -> Option<Symbol> {
+    let quantity = match argument {
+        Argument::T => Quantity::Time,
+        Argument::Q => Quantity::Configuration(k),
+        Argument::V => Quantity::Velocity(k),
+        Argument::A => Quantity::Acceleration(k),
+        Argument::Tau => Quantity::Force(k),
+        Argument::U => Quantity::Input(k),
+        Argument::Given(_, first, _) => Quantity::Given(first + k),
+        Argument::Standard(_) | Argument::Factors(_) => Quantity::Given(k),
+        Argument::Momenta(_) => Quantity::Momentum(k),
+        Argument::Into(..) | Argument::Called(_) => return None,
+    };
+    Some(quantity.symbol())
+}
+
+impl VectorJacobian {
+    /// Returns the number of derivatives: by the arguments one after the other, then by the parameters.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.arguments.iter().sum::<usize>() + self.parameters
+    }
+
+    /// Writes the derivatives, by the arguments one after the other, then by the parameters. The factors are
+    /// those of all results, in the order of the results of the function.
+    ///
+    /// # Errors
+    ///
+    /// A slice has the wrong length, or the robot belongs to another mechanism.
+    pub fn evaluate_into(
+        &self,
+        robot: &Robot,
+        arguments: &[&[f64]],
+        factors: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        robot.check_values()?;
+        if !Arc::ptr_eq(&self.shared, &robot.shared) {
+            return Err(Error::OtherMechanism(self.name.clone()));
+        }
+        robot.check_length("arguments", self.arguments.len(), arguments.len())?;
+        for (list, length) in arguments.iter().zip(&self.arguments) {
+            robot.check_length("argument", *length, list.len())?;
+        }
+        robot.check_length(FACTORS, self.factors, factors.len())?;
+        robot.check_length("derivatives", self.length(), out.len())?;
+        let charts = &self.shared.charts;
+        match &self.kind {
+            Product::Reversed(routine) => {
+                let mut inputs: Vec<&[f64]> = vec![robot.parameter_values()];
+                inputs.extend(arguments);
+                inputs.push(factors);
+                let tables = robot.table_values();
+                routine.run(Values { inputs: &inputs, tables, interpreted: false }, out, &mut []);
+            }
+            _ => {
+                out.fill(0.0);
+                let (first, rest) = out.split_at_mut(self.arguments[0]);
+                let second = &mut rest[..self.arguments[1]];
+                let [a, b] = [arguments[0], arguments[1]];
+                match self.kind {
+                    Product::Integrate => adjoint_steps::integrate(charts, a, b, factors, first, second),
+                    Product::Difference => {
+                        adjoint_steps::difference(charts, [a, b], factors, [first, second])
+                    }
+                    _ => adjoint_steps::tangent_rate(charts, [a, b], factors, [first, second]),
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A program with the instructions in reverse order behind its own.
+struct Reversed {
+    instructions: Vec<Op>,
+    /// Derivative by each value, and by each input.
+    values: Vec<Option<Operand>>,
+    inputs: HashMap<Symbol, Operand>,
+}
+
+/// Returns the program of the derivatives by inputs; `None` if an instruction has no derivative.
+fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> Option<Program> {
+    let count = program.instructions.len();
+    let mut reversed = Reversed {
+        instructions: program.instructions.clone(),
+        values: vec![None; count],
+        inputs: HashMap::new(),
+    };
+    for (k, output) in program.outputs.iter().enumerate() {
+        reversed.add(*output, Operand::Symbol(Quantity::Given(FIRST + k).symbol()));
+    }
+    for k in (0..count).rev() {
+        if let Some(factor) = reversed.values[k] {
+            reversed.pass(program.instructions[k], Operand::Value(k), factor)?;
+        }
+    }
+    let zero = Operand::Const(0.0);
+    let outputs =
+        inputs.map(|symbol| symbol.and_then(|symbol| reversed.inputs.get(&symbol).copied()).unwrap_or(zero));
+    let outputs = outputs.collect();
+    let mut program = Program { instructions: reversed.instructions, outputs, ..Program::default() };
+    program.sweep();
+    Some(program)
+}
+
+impl Reversed {
+    fn push(&mut self, op: Op) -> Operand {
+        self.instructions.push(op);
+        Operand::Value(self.instructions.len() - 1)
+    }
+
+    fn value_derivative(&mut self, operand: Operand) -> Option<&mut Option<Operand>> {
+        match operand {
+            Operand::Value(k) => self.values.get_mut(k),
+            _ => None,
+        }
+    }
+
+    /// Returns the derivative by an operand so far.
+    fn derivative(&mut self, operand: Operand) -> Option<Operand> {
+        match operand {
+            Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
+            operand => self.value_derivative(operand).and_then(|known| *known),
+        }
+    }
+
+    fn set(&mut self, operand: Operand, derivative: Operand) {
+        match operand {
+            Operand::Symbol(symbol) => {
+                self.inputs.insert(symbol, derivative);
+            }
+            operand => {
+                if let Some(known) = self.value_derivative(operand) {
+                    *known = Some(derivative);
+                }
+            }
+        }
+    }
+
+    /// Adds to the derivative by an operand.
+    fn add(&mut self, operand: Operand, term: Operand) {
+        if matches!(operand, Operand::Const(_)) {
+            return;
+        }
+        let sum = match self.derivative(operand) {
+            None => term,
+            Some(before) => self.push(Op::Add(before, term)),
+        };
+        self.set(operand, sum);
+    }
+
+    /// Subtracts from the derivative by an operand.
+    fn subtract(&mut self, operand: Operand, term: Operand) {
+        if matches!(operand, Operand::Const(_)) {
+            return;
+        }
+        let sum = match self.derivative(operand) {
+            None => self.push(Op::Neg(term)),
+            Some(before) => self.push(Op::Sub(before, term)),
+        };
+        self.set(operand, sum);
+    }
+
+    /// Adds a product to the derivative by an operand.
+    fn add_product(&mut self, operand: Operand, a: Operand, b: Operand) {
+        if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
+            return;
+        }
+        let sum = match self.derivative(operand) {
+            None => self.push(Op::Mul(a, b)),
+            Some(before) => self.push(Op::MulAdd(a, b, before)),
+        };
+        self.set(operand, sum);
+    }
+
+    /// Subtracts a product from the derivative by an operand.
+    fn subtract_product(&mut self, operand: Operand, a: Operand, b: Operand) {
+        if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
+            return;
+        }
+        let sum = match self.derivative(operand) {
+            None => {
+                let product = self.push(Op::Mul(a, b));
+                self.push(Op::Neg(product))
+            }
+            Some(before) => self.push(Op::NegMulAdd(a, b, before)),
+        };
+        self.set(operand, sum);
+    }
+
+    fn call(&mut self, f: Elementary, x: Operand) -> Operand {
+        // Sines and cosines of one angle are computed once.
+        let op = Op::Call(f, x);
+        match self.instructions.iter().position(|known| *known == op) {
+            Some(k) => Operand::Value(k),
+            None => self.push(op),
+        }
+    }
+
+    /// Passes the derivative by the value of an instruction on to its operands.
+    fn pass(&mut self, op: Op, value: Operand, factor: Operand) -> Option<()> {
+        match op {
+            Op::Neg(a) => self.subtract(a, factor),
+            Op::Add(a, b) => {
+                self.add(a, factor);
+                self.add(b, factor);
+            }
+            Op::Sub(a, b) => {
+                self.add(a, factor);
+                self.subtract(b, factor);
+            }
+            Op::Mul(a, b) => {
+                self.add_product(a, factor, b);
+                self.add_product(b, factor, a);
+            }
+            Op::Div(a, b) => {
+                let over = self.push(Op::Div(factor, b));
+                self.add(a, over);
+                self.subtract_product(b, over, value);
+            }
+            Op::MulAdd(a, b, c) => {
+                self.add_product(a, factor, b);
+                self.add_product(b, factor, a);
+                self.add(c, factor);
+            }
+            Op::MulSub(a, b, c) => {
+                self.add_product(a, factor, b);
+                self.add_product(b, factor, a);
+                self.subtract(c, factor);
+            }
+            Op::NegMulAdd(a, b, c) => {
+                self.subtract_product(a, factor, b);
+                self.subtract_product(b, factor, a);
+                self.add(c, factor);
+            }
+            Op::Call(f, x) => {
+                let slope = self.slope(f, x, value);
+                self.add_product(x, factor, slope);
+            }
+            Op::Atan2(y, x) => {
+                let square = self.push(Op::Mul(y, y));
+                let square = self.push(Op::MulAdd(x, x, square));
+                let over = self.push(Op::Div(factor, square));
+                self.add_product(y, over, x);
+                self.subtract_product(x, over, y);
+            }
+            Op::Pow(a, b) => {
+                // b aᵇ⁻¹ and aᵇ ln a.
+                let less = self.push(Op::Sub(b, Operand::Const(1.0)));
+                let power = self.push(Op::Pow(a, less));
+                let slope = self.push(Op::Mul(b, power));
+                self.add_product(a, factor, slope);
+                if !matches!(b, Operand::Const(_)) {
+                    let logarithm = self.call(Elementary::Ln, a);
+                    let slope = self.push(Op::Mul(value, logarithm));
+                    self.add_product(b, factor, slope);
+                }
+            }
+            Op::Extreme(which, a, b) => {
+                let difference = match which {
+                    Extreme::Max => self.push(Op::Sub(a, b)),
+                    Extreme::Min => self.push(Op::Sub(b, a)),
+                };
+                let sign = self.call(Elementary::Signum, difference);
+                let half = Operand::Const(0.5);
+                let of_a = self.push(Op::MulAdd(half, sign, half));
+                let of_b = self.push(Op::NegMulAdd(half, sign, half));
+                self.add_product(a, factor, of_a);
+                self.add_product(b, factor, of_b);
+            }
+            Op::Table(lookup, a, b, c) => {
+                for (k, x) in [a, b, c].into_iter().take(lookup.variables()).enumerate() {
+                    if let Some(slope) = lookup.slope(k) {
+                        let slope = self.push(Op::Table(slope, a, b, c));
+                        self.add_product(x, factor, slope);
+                    }
+                }
+            }
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => return None,
+        }
+        Some(())
+    }
+
+    /// Returns the derivative of an elementary function.
+    fn slope(&mut self, f: Elementary, x: Operand, value: Operand) -> Operand {
+        let one = Operand::Const(1.0);
+        match f {
+            Elementary::Sin => self.call(Elementary::Cos, x),
+            Elementary::Cos => {
+                let sine = self.call(Elementary::Sin, x);
+                self.push(Op::Neg(sine))
+            }
+            Elementary::Tan => self.push(Op::MulAdd(value, value, one)),
+            Elementary::Asin | Elementary::Acos => {
+                let square = self.push(Op::NegMulAdd(x, x, one));
+                let root = self.call(Elementary::Sqrt, square);
+                let sign = if f == Elementary::Asin { 1.0 } else { -1.0 };
+                self.push(Op::Div(Operand::Const(sign), root))
+            }
+            Elementary::Atan => {
+                let square = self.push(Op::MulAdd(x, x, one));
+                self.push(Op::Div(one, square))
+            }
+            Elementary::Sinh => self.call(Elementary::Cosh, x),
+            Elementary::Cosh => self.call(Elementary::Sinh, x),
+            Elementary::Tanh => self.push(Op::NegMulAdd(value, value, one)),
+            Elementary::Exp => value,
+            Elementary::Ln => self.push(Op::Div(one, x)),
+            Elementary::Sqrt => self.push(Op::Div(Operand::Const(0.5), value)),
+            Elementary::Abs => self.call(Elementary::Signum, x),
+            Elementary::Signum | Elementary::IsaLapseRate => Operand::Const(0.0),
+            Elementary::IsaTemperature => self.call(Elementary::IsaLapseRate, x),
+            Elementary::IsaPressure => {
+                let temperature = self.call(Elementary::IsaTemperature, x);
+                let over = self.push(Op::Div(value, temperature));
+                self.push(Op::Mul(Operand::Const(-air::FALL_OVER_GAS), over))
+            }
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! Adjoint steps: derivatives by the state before a step from derivatives by the state after it.
+
+use crate::adjoint::VectorJacobian;
+use crate::error::Error;
+use crate::robot::Robot;
+use crate::steps::{STAGES, Stepper, integrate_derivatives, tangent_rate_derivatives};
+use linkwork_compiler::mechanism::{Chart, InQ, InV};
+use nalgebra::{DMatrix, Quaternion, UnitQuaternion, Vector3};
+
+/// Adjoint steps of the classical Runge–Kutta method: derivatives of a function of a motion by initial state,
+/// inputs and parameters, step by step from its end to its start.
+#[derive(Debug)]
+pub struct AdjointStepper {
+    stepper: Stepper,
+    dynamics: Gradient,
+    forces: Option<Gradient>,
+}
+
+/// A vector–Jacobian product with its results.
+#[derive(Debug)]
+struct Gradient {
+    product: VectorJacobian,
+    /// Names of the arguments.
+    arguments: Vec<(&'static str, usize)>,
+    found: Vec<f64>,
+}
+
+impl Gradient {
+    fn new(robot: &Robot, name: &str) -> Result<Gradient, Error> {
+        let function = robot.function(name)?;
+        let product = function.vector_jacobian()?;
+        let found = vec![0.0; product.length()];
+        Ok(Gradient { product, arguments: function.arguments(), found })
+    }
+
+    /// Evaluates the derivatives for arguments by name.
+    fn evaluate(&mut self, robot: &Robot, known: &[(&str, &[f64])], factors: &[f64]) -> Result<(), Error> {
+        let list = |name: &str| known.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, list)| list);
+        let arguments: Vec<&[f64]> = self.arguments.iter().map(|(name, _)| list(name)).collect();
+        self.product.evaluate_into(robot, &arguments, factors, &mut self.found)
+    }
+
+    /// Adds the derivatives by an argument, or by the parameters, to a list.
+    fn add(&self, name: &str, to: &mut [f64]) {
+        let mut first = 0;
+        for (own, length) in &self.arguments {
+            if *own == name {
+                add(to, &self.found[first..first + length]);
+            }
+            first += length;
+        }
+        if name == PARAMETERS {
+            add(to, &self.found[first..]);
+        }
+    }
+}
+
+const PARAMETERS: &str = "parameters";
+
+fn add(to: &mut [f64], terms: &[f64]) {
+    to.iter_mut().zip(terms).for_each(|(to, term)| *to += term);
+}
+
+/// Derivatives of a function of a motion.
+#[derive(Debug)]
+pub struct Sensitivity<'a> {
+    /// By the configuration: after the step, and before it once the step is done.
+    pub q: &'a mut [f64],
+    /// By the velocity: after the step, and before it once the step is done.
+    pub v: &'a mut [f64],
+    /// By the inputs during the step, to which those of the step are added.
+    pub u: &'a mut [f64],
+    /// By the parameters, to which those of the step are added.
+    pub parameters: &'a mut [f64],
+}
+
+impl AdjointStepper {
+    /// Returns adjoint steps of a robot with the present values of its parameters.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::new`]; the mechanism has generalized speeds, or its dynamics have no vector–Jacobian
+    /// product.
+    pub fn new(robot: &Robot) -> Result<AdjointStepper, Error> {
+        let stepper = Stepper::new(robot)?;
+        if robot.shared.has_speeds {
+            let reason = "steps in generalized speeds have no adjoint steps";
+            return Err(Error::Value(format!("`{}`: {reason}", robot.name())));
+        }
+        let forces = match robot.nu() {
+            0 => None,
+            _ => Some(Gradient::new(robot, "generalized_forces")?),
+        };
+        Ok(AdjointStepper { stepper, dynamics: Gradient::new(robot, "forward_dynamics")?, forces })
+    }
+
+    /// Returns the robot, whose parameters may be changed.
+    pub fn robot_mut(&mut self) -> &mut Robot {
+        self.stepper.robot_mut()
+    }
+
+    /// Replaces derivatives by the state after a step by derivatives by the state before it, and adds those
+    /// by inputs and parameters. The arguments are those of [`Stepper::step`]. Returns the derivatives by the
+    /// time at the start and by the length of the step.
+    ///
+    /// # Errors
+    ///
+    /// A slice has the wrong length.
+    pub fn step(
+        &mut self,
+        t: f64,
+        start: [&[f64]; 3],
+        h: f64,
+        derivatives: &mut Sensitivity<'_>,
+    ) -> Result<[f64; 2], Error> {
+        let [q, v, u] = start;
+        self.stepper.evaluate(t, start, h)?;
+        let robot = self.stepper.robot.clone();
+        robot.check_length("derivatives by q", q.len(), derivatives.q.len())?;
+        robot.check_length("derivatives by v", v.len(), derivatives.v.len())?;
+        robot.check_length("derivatives by u", u.len(), derivatives.u.len())?;
+        robot.check_length(
+            "derivatives by parameters",
+            robot.parameters().len(),
+            derivatives.parameters.len(),
+        )?;
+        let charts = &robot.shared.charts;
+        let n = v.len();
+        let mut by_q = vec![0.0; q.len()];
+        let mut by_displacement = vec![0.0; n];
+        integrate(charts, q, self.stepper.displacement(), derivatives.q, &mut by_q, &mut by_displacement);
+        let after_v = derivatives.v.to_vec();
+        let mut by_v = after_v.clone();
+        let weighted =
+            |list: &[f64], weight: f64| -> Vec<f64> { list.iter().map(|x| h / 6.0 * weight * x).collect() };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        // Displacement and change of the velocity are the length of the step times mean rates.
+        let (mut by_t, mut by_h) = (0.0, 0.0);
+        for (stage, (_, weight)) in self.stepper.stages.iter().zip(STAGES) {
+            let change = dot(&by_displacement, &stage.rate) + dot(&after_v, &stage.acceleration);
+            by_h += weight / 6.0 * change;
+        }
+        let mut rates: Vec<Vec<f64>> = STAGES.iter().map(|(_, w)| weighted(&by_displacement, *w)).collect();
+        let mut accelerations: Vec<Vec<f64>> = STAGES.iter().map(|(_, w)| weighted(&after_v, *w)).collect();
+        for i in (0..STAGES.len()).rev() {
+            let stage = &self.stepper.stages[i];
+            let c = h * STAGES[i].0;
+            let time = [t + c];
+            let known = [("t", &time[..]), ("q", &stage.q), ("v", &stage.v), ("tau", &stage.tau), ("u", u)];
+            let (mut stage_q, mut stage_v, mut tau) = (vec![0.0; q.len()], vec![0.0; n], vec![0.0; n]);
+            let mut by_time = [0.0];
+            self.dynamics.evaluate(&robot, &known, &accelerations[i])?;
+            self.dynamics.add("q", &mut stage_q);
+            self.dynamics.add("v", &mut stage_v);
+            self.dynamics.add("tau", &mut tau);
+            self.dynamics.add("t", &mut by_time);
+            self.dynamics.add(PARAMETERS, derivatives.parameters);
+            if let Some(forces) = &mut self.forces {
+                forces.evaluate(&robot, &known, &tau)?;
+                forces.add("q", &mut stage_q);
+                forces.add("v", &mut stage_v);
+                forces.add("u", derivatives.u);
+                forces.add("t", &mut by_time);
+                forces.add(PARAMETERS, derivatives.parameters);
+            }
+            by_t += by_time[0];
+            by_h += STAGES[i].0 * by_time[0];
+            if i == 0 {
+                add(&mut by_q, &stage_q);
+                add(&mut by_v, &stage_v);
+                add(&mut by_v, &rates[0]);
+                continue;
+            }
+            let mut displacement = vec![0.0; n];
+            let [by_dv, by_own] = tangent_rate_derivatives(charts, &stage.displacement, &stage.v);
+            add_transposed(&by_dv, &rates[i], &mut displacement);
+            add_transposed(&by_own, &rates[i], &mut stage_v);
+            integrate(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
+            add(&mut by_v, &stage_v);
+            let before = &self.stepper.stages[i - 1];
+            by_h += STAGES[i].0 * (dot(&displacement, &before.rate) + dot(&stage_v, &before.acceleration));
+            for k in 0..n {
+                rates[i - 1][k] += c * displacement[k];
+                accelerations[i - 1][k] += c * stage_v[k];
+            }
+        }
+        derivatives.q.copy_from_slice(&by_q);
+        derivatives.v.copy_from_slice(&by_v);
+        Ok([by_t, by_h])
+    }
+}
+
+/// Adds the product of the transpose of a matrix with a vector.
+fn add_transposed(matrix: &DMatrix<f64>, factors: &[f64], to: &mut [f64]) {
+    for (j, to) in to.iter_mut().enumerate() {
+        *to += matrix.column(j).iter().zip(factors).map(|(a, b)| a * b).sum::<f64>();
+    }
+}
+
+fn quaternion(list: &[f64]) -> Quaternion<f64> {
+    Quaternion::new(list[3], list[0], list[1], list[2])
+}
+
+/// Adds the derivatives of `integrate(q, dv)` by the entries of `q` and by `dv` to lists, for factors of the
+/// entries of the result.
+pub(crate) fn integrate(
+    charts: &[Chart],
+    q: &[f64],
+    dv: &[f64],
+    factors: &[f64],
+    by_q: &mut [f64],
+    by_dv: &mut [f64],
+) {
+    let mut end = vec![0.0; q.len()];
+    crate::space::integrate(charts, q, dv, &mut end);
+    // Factors of displacements of the result.
+    let mut tangent = vec![0.0; dv.len()];
+    for chart in charts {
+        match *chart {
+            Chart::Plain(InQ(q0), InV(v0)) => tangent[v0] = factors[q0],
+            Chart::Ball(InQ(q0), InV(v0)) => rotation_factors(&end[q0..], &factors[q0..], &mut tangent[v0..]),
+            Chart::Free(InQ(q0), InV(v0)) => {
+                let rotation = UnitQuaternion::from_quaternion(quaternion(&end[q0 + 3..]));
+                let force = rotation.inverse() * Vector3::from_column_slice(&factors[q0..q0 + 3]);
+                tangent[v0..v0 + 3].copy_from_slice(force.as_slice());
+                rotation_factors(&end[q0 + 3..], &factors[q0 + 3..], &mut tangent[v0 + 3..]);
+            }
+        }
+    }
+    let [at_q, at_dv] = integrate_derivatives(charts, dv);
+    add_transposed(&at_dv, &tangent, by_dv);
+    let mut displacement = vec![0.0; dv.len()];
+    add_transposed(&at_q, &tangent, &mut displacement);
+    add_configuration_factors(charts, q, &displacement, by_q);
+}
+
+/// Adds the factors of the entries of a configuration for factors of its displacements.
+fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], by_q: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(InQ(q0), InV(v0)) => by_q[q0] += displacement[v0],
+            Chart::Ball(InQ(q0), InV(v0)) => {
+                add_quaternion_factors(&q[q0..], &displacement[v0..], &mut by_q[q0..]);
+            }
+            Chart::Free(InQ(q0), InV(v0)) => {
+                let rotation = UnitQuaternion::from_quaternion(quaternion(&q[q0 + 3..]));
+                let force = rotation * Vector3::from_column_slice(&displacement[v0..v0 + 3]);
+                add(&mut by_q[q0..q0 + 3], force.as_slice());
+                add_quaternion_factors(&q[q0 + 3..], &displacement[v0 + 3..], &mut by_q[q0 + 3..]);
+            }
+        }
+    }
+}
+
+/// Adds the derivatives of `difference(from, to)` by both configurations to lists.
+pub(crate) fn difference(
+    charts: &[Chart],
+    [from, to]: [&[f64]; 2],
+    factors: &[f64],
+    [by_from, by_to]: [&mut [f64]; 2],
+) {
+    let n = factors.len();
+    let mut dv = vec![0.0; n];
+    crate::space::difference(charts, from, to, &mut dv);
+    // The rate of `dv` is the inverse of the derivative of `integrate` by `dv`, times the velocity.
+    let [_, inverse] = tangent_rate_derivatives(charts, &dv, &vec![0.0; n]);
+    let [by_q, _] = integrate_derivatives(charts, &dv);
+    let mut at_end = vec![0.0; n];
+    add_transposed(&inverse, factors, &mut at_end);
+    add_configuration_factors(charts, to, &at_end, by_to);
+    let mut at_start = vec![0.0; n];
+    add_transposed(&by_q, &at_end, &mut at_start);
+    at_start.iter_mut().for_each(|x| *x = -*x);
+    add_configuration_factors(charts, from, &at_start, by_from);
+}
+
+/// Adds the derivatives of `tangent_rate(dv, v)` by both vectors to lists.
+pub(crate) fn tangent_rate(
+    charts: &[Chart],
+    [dv, v]: [&[f64]; 2],
+    factors: &[f64],
+    [by_dv, by_v]: [&mut [f64]; 2],
+) {
+    let [at_dv, at_v] = tangent_rate_derivatives(charts, dv, v);
+    add_transposed(&at_dv, factors, by_dv);
+    add_transposed(&at_v, factors, by_v);
+}
+
+/// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate
+/// is half the product of the quaternion with the angular velocity.
+fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
+    let product = quaternion(q).conjugate() * quaternion(factors);
+    to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);
+}
+
+/// Adds the factors of the entries of a quaternion of any norm for factors of the rotation that it
+/// represents.
+fn add_quaternion_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
+    let q = quaternion(q);
+    let product = q * Quaternion::new(0.0, factors[0], factors[1], factors[2]) * (2.0 / q.norm_squared());
+    add(&mut to[..4], &[product.i, product.j, product.k, product.w]);
+}

@@ -1,0 +1,154 @@
+//! Drawings of loaded mechanisms, as data.
+
+use crate::error::Error;
+use crate::load::Loader;
+use crate::robot::Robot;
+use linkwork::drawing::{Kind, Piece, Role};
+use linkwork_compiler::compile_with;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::{Graph, Lookup, Symbol};
+use linkwork_compiler::lower::{Program, lower};
+use linkwork_compiler::mechanism::{self, PieceKind, Quantity};
+use linkwork_compiler::passes::Passes;
+use std::collections::HashSet;
+use std::sync::Mutex;
+
+/// Drawing of a mechanism. Its frames are those of the robot.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    pieces: Vec<Piece>,
+    numbers: Program,
+    heights: Program,
+}
+
+impl Loader {
+    /// Returns the drawing of the mechanism, which [`load`](Self::load) leaves out.
+    ///
+    /// # Errors
+    ///
+    /// As [`load`](Self::load).
+    pub fn drawing(self) -> Result<Drawing, Error> {
+        Loader::on_thread(move || self.draw())
+    }
+
+    fn draw(&self) -> Result<Drawing, Error> {
+        let mut source = self.source()?;
+        let requests = &mut source.mechanism.requests;
+        (requests.prepare, requests.batch, requests.packed) = (false, false, false);
+        (requests.drawing, requests.derivatives) = (true, false);
+        let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
+        let passes = Passes { lanes: false, ..Passes::default() };
+        let compiled = compile_with(&source, &graph, passes, cx);
+        let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
+        let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
+        for piece in &model.drawing {
+            let (name, kind) = (interned(&piece.name), kind(&piece.kind));
+            pieces.push(Piece {
+                name,
+                role: role(piece.role),
+                kind,
+                frames: piece.frames,
+                first: numbers.len(),
+            });
+            numbers.extend(piece.numbers.iter().copied());
+        }
+        Ok(Drawing { pieces, numbers: lower(&numbers), heights: lower(&model.heights) })
+    }
+}
+
+impl Drawing {
+    /// Returns the pieces.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Returns the numbers of all pieces for the values of the parameters of a robot.
+    #[must_use]
+    pub fn numbers(&self, robot: &Robot) -> Vec<f64> {
+        evaluate(&self.numbers, robot, [f64::NAN; 2])
+    }
+
+    /// Returns the height of each terrain at a position along its first two axes.
+    #[must_use]
+    pub fn heights(&self, robot: &Robot, position: [f64; 2]) -> Vec<f64> {
+        evaluate(&self.heights, robot, position)
+    }
+}
+
+fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
+    let symbol = |symbol: Symbol| {
+        let value = match Quantity::of(symbol) {
+            Quantity::Parameter(k) => robot.parameter_values().get(k),
+            Quantity::Given(k) => given.get(k),
+            _ => None,
+        };
+        value.copied().unwrap_or(f64::NAN)
+    };
+    let table = |lookup: Lookup, x| {
+        let orders = [0, 1, 2].map(|k| lookup.order(k) as u8);
+        robot.table_values().get(lookup.table()).map_or(f64::NAN, |table| table.value(x, orders))
+    };
+    program.run_with(&symbol, &table)
+}
+
+/// Returns a text that lives as long as the process; equal texts are one.
+fn interned(text: &str) -> &'static str {
+    static TEXTS: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
+    let mut texts = TEXTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let texts = texts.get_or_insert_default();
+    if let Some(known) = texts.get(text) {
+        return known;
+    }
+    let new: &'static str = String::leak(text.to_string());
+    texts.insert(new);
+    new
+}
+
+fn role(role: mechanism::Role) -> Role {
+    match role {
+        mechanism::Role::Body => Role::Body,
+        mechanism::Role::Link => Role::Link,
+        mechanism::Role::Visual => Role::Visual,
+        mechanism::Role::Joint => Role::Joint,
+        mechanism::Role::Surface => Role::Surface,
+        mechanism::Role::Element => Role::Element,
+        mechanism::Role::Input => Role::Input,
+        mechanism::Role::Gravity => Role::Gravity,
+    }
+}
+
+fn kind(kind: &PieceKind) -> Kind {
+    match kind {
+        PieceKind::Rod => Kind::Rod,
+        PieceKind::Ring => Kind::Ring,
+        PieceKind::Disk => Kind::Disk,
+        PieceKind::Cylinder => Kind::Cylinder,
+        PieceKind::Tube => Kind::Tube,
+        PieceKind::Cone => Kind::Cone,
+        PieceKind::Capsule => Kind::Capsule,
+        PieceKind::Sphere => Kind::Sphere,
+        PieceKind::Cuboid => Kind::Cuboid,
+        PieceKind::Ellipsoid => Kind::Ellipsoid,
+        PieceKind::Inertia => Kind::Inertia,
+        PieceKind::Plane => Kind::Plane,
+        PieceKind::Funnel => Kind::Funnel,
+        PieceKind::Pipe => Kind::Pipe,
+        PieceKind::Torus => Kind::Torus,
+        PieceKind::Bowl => Kind::Bowl,
+        PieceKind::Point => Kind::Point,
+        PieceKind::Bar => Kind::Bar,
+        PieceKind::Hinge => Kind::Hinge,
+        PieceKind::Slide => Kind::Slide,
+        PieceKind::Ball => Kind::Ball,
+        PieceKind::Coil => Kind::Coil,
+        PieceKind::Spiral => Kind::Spiral,
+        PieceKind::Damper => Kind::Damper,
+        PieceKind::Brake => Kind::Brake,
+        PieceKind::Force(k) => Kind::Force(*k),
+        PieceKind::Torque(k) => Kind::Torque(*k),
+        PieceKind::Gravity => Kind::Gravity,
+        PieceKind::Terrain(k) => Kind::Terrain(*k),
+        PieceKind::Mesh(path) => Kind::Mesh(interned(path)),
+    }
+}

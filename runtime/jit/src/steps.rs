@@ -1,0 +1,404 @@
+//! Steps of the classical Runge–Kutta method with their Jacobians, for mechanisms without constraints and
+//! contacts.
+
+use crate::error::Error;
+use crate::robot::{Robot, State};
+use linkwork::__private::{
+    ball_integrate_derivatives, ball_tangent_rate_derivatives, free_integrate_derivatives,
+    free_tangent_rate_derivatives,
+};
+use linkwork_compiler::mechanism::{Chart, InV};
+use nalgebra::DMatrix;
+
+/// Coefficients of the stages: fraction of the step at which a stage is evaluated, and weight of its rates.
+pub(crate) const STAGES: [(f64, f64); 4] = [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)];
+
+/// Steps of the classical Runge–Kutta method of one robot, with inputs that are constant during a step.
+///
+/// ```
+/// use linkwork_jit::{Stepper, declare};
+///
+/// # fn main() -> Result<(), linkwork_jit::Error> {
+/// let pendulum = declare(
+///     "#[mechanism(gravity = -9.81 * y)]
+///     struct Pendulum {
+///         #[body(mass = 2, com = -0.5 * y, inertia = rod(2, 1, y))]
+///         rod: Body,
+///         #[joint(ground -> rod, about = z)]
+///         hinge: Pin,
+///     }",
+/// )?;
+/// let mut stepper = Stepper::new(&pendulum)?;
+/// let (mut q, mut v) = ([0.01], [0.0]);
+/// for _ in 0..1000 {
+///     let (mut next_q, mut next_v) = ([0.0], [0.0]);
+///     stepper.step(0.0, [&q, &v, &[]], 1e-3, [&mut next_q, &mut next_v])?;
+///     (q, v) = (next_q, next_v);
+/// }
+/// let frequency = (1.5_f64 * 9.81).sqrt();
+/// assert!((q[0] - 0.01 * frequency.cos()).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stepper {
+    pub(crate) robot: Robot,
+    pub(crate) functions: Functions,
+    pub(crate) stages: [Stage; 4],
+    displacement: Vec<f64>,
+}
+
+/// Indices of the functions that a step calls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Functions {
+    pub dynamics: usize,
+    /// Forces of the inputs; `None` without inputs.
+    pub forces: Option<usize>,
+    integrate: usize,
+    rate: usize,
+    linearize: Option<usize>,
+}
+
+/// State at which a stage is evaluated, and its rates.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stage {
+    pub displacement: Vec<f64>,
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub tau: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub acceleration: Vec<f64>,
+}
+
+/// Jacobian matrices of a step, by displacements of the configuration, velocities and inputs at its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jacobians {
+    /// Derivatives of the displacement of the configuration at the end by configuration, velocity and inputs.
+    pub q: [DMatrix<f64>; 3],
+    /// Derivatives of the velocity at the end.
+    pub v: [DMatrix<f64>; 3],
+}
+
+impl Stepper {
+    /// Returns steps of a robot with the present values of its parameters.
+    ///
+    /// # Errors
+    ///
+    /// The robot has constraints, contacts, states of first order or no dynamics, or a parameter has no
+    /// value.
+    pub fn new(robot: &Robot) -> Result<Stepper, Error> {
+        if let Some(reason) = robot.shared.step_obstacle() {
+            return Err(Error::Value(format!("`{}` has no steps: {reason}", robot.name())));
+        }
+        robot.check_values()?;
+        let index = |name: &str| robot.shared.index.get(name).copied();
+        let needed =
+            |name: &str| index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()));
+        let functions = Functions {
+            dynamics: needed("forward_dynamics")?,
+            forces: if robot.nu() > 0 { Some(needed("generalized_forces")?) } else { None },
+            integrate: needed("integrate")?,
+            rate: index("tangent_rate").map_or_else(|| needed("displacement_rate"), Ok)?,
+            linearize: index("linearize"),
+        };
+        let (nq, nv) = (robot.nq(), robot.nv());
+        let zeros = |n: usize| vec![0.0; n];
+        let stage = Stage {
+            displacement: zeros(nv),
+            q: zeros(nq),
+            v: zeros(nv),
+            tau: zeros(nv),
+            rate: zeros(nv),
+            acceleration: zeros(nv),
+        };
+        let stages = [stage.clone(), stage.clone(), stage.clone(), stage];
+        Ok(Stepper { robot: robot.clone(), functions, stages, displacement: zeros(nv) })
+    }
+
+    /// Returns the robot, whose parameters may be changed.
+    pub fn robot_mut(&mut self) -> &mut Robot {
+        &mut self.robot
+    }
+
+    /// Writes configuration and velocity after a step of `h` seconds from the time `t`, the configuration,
+    /// the velocity and the inputs at its start.
+    ///
+    /// # Errors
+    ///
+    /// A slice has the wrong length, or the motion does not remain finite.
+    pub fn step(
+        &mut self,
+        t: f64,
+        start: [&[f64]; 3],
+        h: f64,
+        [q_end, v_end]: [&mut [f64]; 2],
+    ) -> Result<(), Error> {
+        self.evaluate(t, start, h)?;
+        let [q, v, _] = start;
+        self.robot.check_length("v", v.len(), v_end.len())?;
+        for k in 0..v.len() {
+            let change: f64 = self.stages.iter().zip(STAGES).map(|(s, (_, w))| w * s.acceleration[k]).sum();
+            v_end[k] = v[k] + h / 6.0 * change;
+        }
+        let state = State { q, other: [&self.displacement, &[], &[]], ..State::default() };
+        self.robot.state_call_into(self.functions.integrate, state, q_end)?;
+        match q_end.iter().chain(&*v_end).all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err(Error::Value("the motion does not remain finite".to_string())),
+        }
+    }
+
+    /// Evaluates the stages and the displacement of a step.
+    pub(crate) fn evaluate(&mut self, t: f64, [q, v, u]: [&[f64]; 3], h: f64) -> Result<(), Error> {
+        let (robot, functions) = (&mut self.robot, self.functions);
+        robot.check_length("q", robot.nq(), q.len())?;
+        robot.check_length("v", robot.nv(), v.len())?;
+        robot.check_length("u", robot.nu(), u.len())?;
+        for i in 0..STAGES.len() {
+            let (before, rest) = self.stages.split_at_mut(i);
+            let stage = &mut rest[0];
+            let c = h * STAGES[i].0;
+            match before.last() {
+                None => {
+                    stage.displacement.fill(0.0);
+                    stage.q.copy_from_slice(q);
+                    stage.v.copy_from_slice(v);
+                    stage.rate.copy_from_slice(v);
+                }
+                Some(last) => {
+                    for k in 0..v.len() {
+                        stage.displacement[k] = c * last.rate[k];
+                        stage.v[k] = v[k] + c * last.acceleration[k];
+                    }
+                    let dv = &stage.displacement;
+                    let state = State { q, v: &stage.v, other: [dv, &[], &[]], ..State::default() };
+                    robot.state_call_into(functions.integrate, state, &mut stage.q)?;
+                    robot.state_call_into(functions.rate, state, &mut stage.rate)?;
+                }
+            }
+            robot.set_time(t + c);
+            if let Some(forces) = functions.forces {
+                let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
+                robot.state_call_into(forces, state, &mut stage.tau)?;
+            }
+            let state = State { q: &stage.q, v: &stage.v, tau: &stage.tau, ..State::default() };
+            robot.state_call_into(functions.dynamics, state, &mut stage.acceleration)?;
+        }
+        for k in 0..v.len() {
+            let rate: f64 = self.stages.iter().zip(STAGES).map(|(s, (_, w))| w * s.rate[k]).sum();
+            self.displacement[k] = h / 6.0 * rate;
+        }
+        Ok(())
+    }
+
+    /// Returns the displacement of the last step.
+    pub(crate) fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Writes configuration and velocity after a step, and returns its Jacobian matrices (option
+    /// `derivatives`).
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step); the mechanism has generalized speeds, or lacks `linearize`.
+    pub fn differentiate(
+        &mut self,
+        t: f64,
+        start: [&[f64]; 3],
+        h: f64,
+        end: [&mut [f64]; 2],
+    ) -> Result<Jacobians, Error> {
+        let linearize = self.functions.linearize;
+        let names = self.robot.shared.names();
+        let linearize = linearize.ok_or_else(|| Error::unknown("function", "linearize", names))?;
+        if self.robot.shared.has_speeds {
+            let name = self.robot.name();
+            let reason = "steps in generalized speeds have no Jacobians";
+            return Err(Error::Value(format!("`{name}`: {reason}")));
+        }
+        self.step(t, start, h, end)?;
+        let u = start[2];
+        let (n, m) = (self.robot.nv(), self.robot.nu());
+        let charts = self.robot.shared.charts.clone();
+        let mut system = vec![0.0; 4 * n * n + 2 * n * m];
+        let mut stages: Vec<[Sensitive; 2]> = Vec::with_capacity(STAGES.len());
+        for (i, (fraction, _)) in STAGES.into_iter().enumerate() {
+            let stage = &self.stages[i];
+            let c = h * fraction;
+            let (displacement, v) = match stages.last() {
+                None => (Sensitive::displacement(n, m), Sensitive::velocity(n, m)),
+                Some([rate, acceleration]) => {
+                    (rate.scaled(c), Sensitive::velocity(n, m).plus(c, acceleration))
+                }
+            };
+            let rate = match i {
+                0 => v.clone(),
+                _ => {
+                    let [by_dv, by_v] = tangent_rate_derivatives(&charts, &stage.displacement, &stage.v);
+                    displacement.led(&by_dv).plus(1.0, &v.led(&by_v))
+                }
+            };
+            let motion = match i {
+                0 => displacement,
+                _ => end_derivatives(&charts, &stage.displacement, &displacement),
+            };
+            self.robot.set_time(t + c);
+            let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
+            self.robot.state_call_into(linearize, state, &mut system)?;
+            let entry = |i: usize, j: usize| system[2 * n * j + n + i];
+            let by_q = DMatrix::from_fn(n, n, entry);
+            let by_v = DMatrix::from_fn(n, n, |i, j| entry(i, n + j));
+            let mut acceleration = motion.led(&by_q).plus(1.0, &v.led(&by_v));
+            acceleration.by_u += DMatrix::from_fn(n, m, |i, j| entry(i, 2 * n + j));
+            stages.push([rate, acceleration]);
+        }
+        let sum = |which: usize| {
+            let mut all = Sensitive::zero(n, m);
+            for (stage, (_, weight)) in stages.iter().zip(STAGES) {
+                all = all.plus(h / 6.0 * weight, &stage[which]);
+            }
+            all
+        };
+        let motion = end_derivatives(&charts, &self.displacement, &sum(0));
+        let v = Sensitive::velocity(n, m).plus(1.0, &sum(1));
+        Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
+    }
+}
+
+/// Derivatives of a vector of the tangent space by configuration, velocity and inputs at the start of a step.
+#[derive(Clone)]
+struct Sensitive {
+    by_q: DMatrix<f64>,
+    by_v: DMatrix<f64>,
+    by_u: DMatrix<f64>,
+}
+
+impl Sensitive {
+    fn zero(n: usize, m: usize) -> Sensitive {
+        Sensitive { by_q: DMatrix::zeros(n, n), by_v: DMatrix::zeros(n, n), by_u: DMatrix::zeros(n, m) }
+    }
+
+    /// Returns the derivatives of the velocity at the start.
+    fn velocity(n: usize, m: usize) -> Sensitive {
+        Sensitive { by_v: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
+    }
+
+    /// Returns the derivatives of a zero displacement, which moves with the configuration at the start.
+    fn displacement(n: usize, m: usize) -> Sensitive {
+        Sensitive { by_q: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
+    }
+
+    fn plus(&self, s: f64, other: &Sensitive) -> Sensitive {
+        Sensitive {
+            by_q: &self.by_q + &other.by_q * s,
+            by_v: &self.by_v + &other.by_v * s,
+            by_u: &self.by_u + &other.by_u * s,
+        }
+    }
+
+    fn scaled(&self, s: f64) -> Sensitive {
+        Sensitive { by_q: &self.by_q * s, by_v: &self.by_v * s, by_u: &self.by_u * s }
+    }
+
+    /// Returns the products of a matrix with the derivatives.
+    fn led(&self, by: &DMatrix<f64>) -> Sensitive {
+        Sensitive { by_q: by * &self.by_q, by_v: by * &self.by_v, by_u: by * &self.by_u }
+    }
+}
+
+/// Returns the derivatives of the motion of the configuration that a displacement from the start leads to.
+fn end_derivatives(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
+    let [by_q, by_dv] = integrate_derivatives(charts, displacement);
+    let mut motion = derivatives.led(&by_dv);
+    motion.by_q += by_q;
+    motion
+}
+
+fn array<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
+    std::array::from_fn(|k| list[first + k])
+}
+
+/// Writes a block, which is a list of columns, on the diagonal of a matrix.
+fn place<const N: usize>(matrix: &mut DMatrix<f64>, first: usize, block: [[f64; N]; N]) {
+    for (j, column) in block.into_iter().enumerate() {
+        for (i, entry) in column.into_iter().enumerate() {
+            matrix[(first + i, first + j)] = entry;
+        }
+    }
+}
+
+/// Returns the derivatives of `integrate(q, dv)` by displacements of `q` and by `dv`, for velocities that are
+/// joint velocities.
+pub(crate) fn integrate_derivatives(charts: &[Chart], dv: &[f64]) -> [DMatrix<f64>; 2] {
+    let n = dv.len();
+    let (mut by_q, mut by_dv) = (DMatrix::identity(n, n), DMatrix::identity(n, n));
+    for chart in charts {
+        match *chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(_, InV(v)) => {
+                let (q, d) = ball_integrate_derivatives::<f64>(array(dv, v));
+                place(&mut by_q, v, q);
+                place(&mut by_dv, v, d);
+            }
+            Chart::Free(_, InV(v)) => {
+                let (q, d) = free_integrate_derivatives::<f64>(array(dv, v));
+                place(&mut by_q, v, q);
+                place(&mut by_dv, v, d);
+            }
+        }
+    }
+    [by_q, by_dv]
+}
+
+/// Returns the derivatives of `tangent_rate(dv, v)` by `dv` and by `v`.
+pub(crate) fn tangent_rate_derivatives(charts: &[Chart], dv: &[f64], v: &[f64]) -> [DMatrix<f64>; 2] {
+    let n = dv.len();
+    let (mut by_dv, mut by_v) = (DMatrix::zeros(n, n), DMatrix::identity(n, n));
+    for chart in charts {
+        match *chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(_, InV(at)) => {
+                let (d, w) = ball_tangent_rate_derivatives::<f64>(array(dv, at), array(v, at));
+                place(&mut by_dv, at, d);
+                place(&mut by_v, at, w);
+            }
+            Chart::Free(_, InV(at)) => {
+                let (d, w) = free_tangent_rate_derivatives::<f64>(array(dv, at), array(v, at));
+                place(&mut by_dv, at, d);
+                place(&mut by_v, at, w);
+            }
+        }
+    }
+    [by_dv, by_v]
+}
+
+impl Robot {
+    /// Returns the derivatives of [`integrate`](Self::integrate) by displacements of `q` and by `dv`.
+    ///
+    /// # Errors
+    ///
+    /// The slice has the wrong length, or the mechanism has generalized speeds.
+    pub fn integrate_derivatives(&self, dv: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
+        self.check_joint_velocities(dv)?;
+        Ok(integrate_derivatives(&self.shared.charts, dv))
+    }
+
+    /// Returns the derivatives of [`tangent_rate`](Self::tangent_rate) by `dv` and by `v`.
+    ///
+    /// # Errors
+    ///
+    /// A slice has the wrong length, or the mechanism has generalized speeds.
+    pub fn tangent_rate_derivatives(&self, dv: &[f64], v: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
+        self.check_joint_velocities(dv)?;
+        self.check_joint_velocities(v)?;
+        Ok(tangent_rate_derivatives(&self.shared.charts, dv, v))
+    }
+
+    fn check_joint_velocities(&self, dv: &[f64]) -> Result<(), Error> {
+        if self.shared.has_speeds {
+            return Err(Error::Value(format!("the velocities of `{}` are generalized speeds", self.name())));
+        }
+        self.check_length("dv", self.nv(), dv.len())
+    }
+}

@@ -1,0 +1,39 @@
+//! Errors of mechanisms as exceptions of Python.
+
+use linkwork_jit::Error;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+
+/// Returns `linkwork.Error` with a message.
+pub fn failure(py: Python<'_>, message: String) -> PyErr {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    raise(py, &CLASS, "Error", message)
+}
+
+fn raise(
+    py: Python<'_>,
+    class: &'static PyOnceLock<Py<PyType>>,
+    name: &'static str,
+    message: String,
+) -> PyErr {
+    match class.import(py, "linkwork._names", name) {
+        Ok(class) => PyErr::from_type(class.clone(), message),
+        Err(error) => error,
+    }
+}
+
+/// Returns the exception of an error; `state` is the index of the state of a batch.
+pub fn exception(py: Python<'_>, error: &Error, state: Option<usize>) -> PyErr {
+    static UNKNOWN: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let text = match state {
+        Some(state) => format!("state {state}: {error}"),
+        None => error.to_string(),
+    };
+    match error {
+        Error::Unknown { .. } => raise(py, &UNKNOWN, "UnknownName", text),
+        Error::Length { .. } | Error::Arguments { .. } => PyValueError::new_err(text),
+        _ => failure(py, text),
+    }
+}

@@ -1,0 +1,827 @@
+//! Functions of mechanisms as methods of Python.
+
+use crate::arrays;
+use crate::error::exception;
+use crate::robot::{Robot, set_parameters};
+use crate::shared::{Failed, distribute};
+use linkwork_jit::{AdjointStepper, Error, Sensitivity, Stepper, VectorJacobian};
+use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyFloat, PyString, PyTuple, PyType};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Maximum number of arguments of a function.
+const ARGUMENTS: usize = 12;
+
+/// An argument of a function.
+#[derive(Clone)]
+struct Argument {
+    name: String,
+    /// Number of entries of a vector; `None` for a number.
+    length: Option<usize>,
+}
+
+impl Argument {
+    fn length(&self) -> usize {
+        self.length.unwrap_or(1)
+    }
+}
+
+/// A result of a function.
+#[derive(Clone)]
+struct Output {
+    name: String,
+    /// Lengths of its dimensions.
+    shape: Vec<usize>,
+}
+
+impl Output {
+    fn length(&self) -> usize {
+        self.shape.iter().product()
+    }
+}
+
+/// Computation of the results.
+#[derive(Clone)]
+enum Kind {
+    Generated(linkwork_jit::Function),
+    /// One function for each frame.
+    Frames(Vec<linkwork_jit::Function>),
+    /// As `Frames`, with the placement as a matrix of four rows and columns.
+    Placements(Vec<linkwork_jit::Function>),
+    Step,
+    Transition,
+    IntegrateDerivatives,
+    TangentRateDerivatives,
+    Constraint(OnConstraints),
+}
+
+/// A function that finds a state which satisfies the constraints.
+#[derive(Clone, Copy)]
+pub enum OnConstraints {
+    Assemble,
+    ProjectConfiguration,
+    ProjectVelocity,
+    CompleteVelocity,
+}
+
+/// What all objects of a function have in common.
+struct Signature {
+    name: String,
+    documentation: String,
+    arguments: Vec<Argument>,
+    results: Vec<Output>,
+    /// Index of each frame.
+    frames: HashMap<String, usize>,
+    kind: Kind,
+}
+
+/// A function of a mechanism: a method of its class.
+#[pyclass(frozen, dict, module = "linkwork._native")]
+pub struct Function {
+    signature: Arc<Signature>,
+}
+
+// A function of a mechanism with values of its parameters. Its documentation is that of the function.
+#[pyclass(frozen, module = "linkwork._native")]
+pub struct BoundFunction {
+    signature: Arc<Signature>,
+    function: Py<Function>,
+    robot: Py<Robot>,
+    class: Py<PyType>,
+}
+
+/// Documentation and names of the functions of all frames.
+const FRAMES: [(&str, &str); 4] = [
+    (
+        "frame_placement",
+        "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, m.",
+    ),
+    (
+        "frame_velocity",
+        "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground axes.",
+    ),
+    (
+        "frame_acceleration",
+        "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in ground axes; without gravity.",
+    ),
+    (
+        "frame_jacobian",
+        "Jacobian of a frame: its product with `v` is the velocity of the frame, except for motions prescribed in time.",
+    ),
+];
+
+fn arguments(f: &linkwork_jit::Function) -> Vec<Argument> {
+    let argument = |(name, length): (&str, usize)| Argument {
+        name: name.to_string(),
+        length: (name != "t").then_some(length),
+    };
+    f.arguments().into_iter().map(argument).collect()
+}
+
+fn results(f: &linkwork_jit::Function) -> Vec<Output> {
+    let output = |m: &linkwork_jit::Matrix| Output {
+        name: m.name.to_string(),
+        shape: match f.rank() {
+            0 => Vec::new(),
+            1 => vec![m.rows],
+            _ => vec![m.rows, m.columns],
+        },
+    };
+    f.results().iter().map(output).collect()
+}
+
+fn vector(name: &str, length: usize) -> Argument {
+    Argument { name: name.to_string(), length: Some(length) }
+}
+
+fn matrix(name: &str, rows: usize, columns: usize) -> Output {
+    Output { name: name.to_string(), shape: vec![rows, columns] }
+}
+
+impl Function {
+    fn new(
+        name: &str,
+        documentation: &str,
+        arguments: Vec<Argument>,
+        results: Vec<Output>,
+        kind: Kind,
+    ) -> Function {
+        let (name, documentation) = (name.to_string(), documentation.to_string());
+        let frames = HashMap::new();
+        Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) }
+    }
+
+    /// Returns all functions of a mechanism.
+    pub fn all(robot: &linkwork_jit::Robot) -> Vec<Function> {
+        let plain = robot.functions().filter(|f| !f.name().contains('('));
+        let mut all: Vec<Function> = plain
+            .map(|f| {
+                let (arguments, results) = (arguments(&f), results(&f));
+                Function::new(f.name(), f.documentation(), arguments, results, Kind::Generated(f.clone()))
+            })
+            .collect();
+        all.extend(FRAMES.iter().filter_map(|(name, documentation)| of_frames(robot, name, documentation)));
+        let has = |name: &str| robot.function(name).is_ok();
+        if Stepper::new(robot).is_ok_or_missing() {
+            all.extend(steps(robot, has("linearize") && has("tangent_rate")));
+        }
+        if robot.constraints() > 0 {
+            all.extend(on_constraints(robot));
+        }
+        if has("tangent_rate") {
+            let n = robot.nv();
+            all.push(Function::new(
+                "integrate_derivatives",
+                "Derivatives of `integrate(q, dv)` by displacements of `q` and by `dv`.",
+                vec![vector("q", robot.nq()), vector("dv", n)],
+                vec![matrix("by_q", n, n), matrix("by_dv", n, n)],
+                Kind::IntegrateDerivatives,
+            ));
+            all.push(Function::new(
+                "tangent_rate_derivatives",
+                "Derivatives of `tangent_rate(dv, v)` by `dv` and by `v`.",
+                vec![vector("dv", n), vector("v", n)],
+                vec![matrix("by_dv", n, n), matrix("by_v", n, n)],
+                Kind::TangentRateDerivatives,
+            ));
+        }
+        all
+    }
+}
+
+/// Whether steps exist once all parameters have values.
+trait OkOrMissing {
+    fn is_ok_or_missing(&self) -> bool;
+}
+
+impl<T> OkOrMissing for Result<T, Error> {
+    fn is_ok_or_missing(&self) -> bool {
+        matches!(self, Ok(_) | Err(Error::Missing(_)))
+    }
+}
+
+/// Returns the function that takes the name of a frame, if there are frames.
+fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
+    let names = robot.frames();
+    let own = names.iter().map(|frame| robot.function(&format!("{name}({frame})")).ok());
+    let own = own.collect::<Option<Vec<_>>>()?;
+    let first = own.first()?;
+    let (arguments, mut results) = (arguments(first), results(first));
+    let kind = match name {
+        "frame_placement" => {
+            results = vec![matrix("result", 4, 4)];
+            Kind::Placements(own)
+        }
+        _ => Kind::Frames(own),
+    };
+    let frames = names.iter().enumerate().map(|(k, name)| (name.clone(), k)).collect();
+    let (name, documentation) = (name.to_string(), documentation.to_string());
+    Some(Function {
+        signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }),
+    })
+}
+
+/// Returns the functions for steps of the classical Runge–Kutta method.
+fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
+    let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
+    let number = |name: &str| Argument { name: name.to_string(), length: None };
+    let time = robot.depends_on_time().then(|| number("t"));
+    let state = [vector("q", nq), vector("v", nv), vector("u", nu), number("h")];
+    let arguments: Vec<Argument> = time.into_iter().chain(state).collect();
+    let end = |name: &str, n: usize| Output { name: name.to_string(), shape: vec![n] };
+    let state = vec![end("q", nq), end("v", nv)];
+    let mut jacobians = state.clone();
+    for of in ["q", "v"] {
+        for (by, columns) in [("q", nv), ("v", nv), ("u", nu)] {
+            jacobians.push(matrix(&format!("{of}_by_{by}"), nv, columns));
+        }
+    }
+    let step = Function::new(
+        "step",
+        "One step of the classical Runge–Kutta method, `h` seconds long, under inputs `u` that are constant: the state after it.",
+        arguments.clone(),
+        state,
+        Kind::Step,
+    );
+    let transition = || {
+        Function::new(
+            "transition",
+            "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration and velocity after the step by those before it and by the inputs. Changes of configurations are displacements, as `integrate` takes them.",
+            arguments,
+            jacobians,
+            Kind::Transition,
+        )
+    };
+    if with_jacobians { vec![step, transition()] } else { vec![step] }
+}
+
+/// Returns the functions that find states which satisfy the constraints.
+fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
+    let [nq, nv] = [robot.nq(), robot.nv()];
+    let (q, v, held) = (vector("q", nq), vector("v", nv), vector(HELD, nv));
+    let number = Argument { name: "t".to_string(), length: None };
+    let time = || robot.depends_on_time().then(|| number.clone());
+    let list = |rest: &[&Argument]| time().into_iter().chain(rest.iter().map(|a| (*a).clone())).collect();
+    let result = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
+    [
+        Function::new(
+            "assemble",
+            "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do not change.",
+            list(&[&q, &held]),
+            result(nq),
+            Kind::Constraint(OnConstraints::Assemble),
+        ),
+        Function::new(
+            "project_configuration",
+            "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic energy.",
+            list(&[&q]),
+            result(nq),
+            Kind::Constraint(OnConstraints::ProjectConfiguration),
+        ),
+        Function::new(
+            "project_velocity",
+            "Velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.",
+            list(&[&q, &v]),
+            result(nv),
+            Kind::Constraint(OnConstraints::ProjectVelocity),
+        ),
+        Function::new(
+            "complete_velocity",
+            "Velocity with the entries `held` of `v` that satisfies the constraints.",
+            list(&[&q, &v, &held]),
+            result(nv),
+            Kind::Constraint(OnConstraints::CompleteVelocity),
+        ),
+    ]
+}
+
+/// Name of an argument that selects velocities by nonzero entries.
+const HELD: &str = "held";
+
+/// A computation with its work space.
+pub enum Evaluator {
+    Generated(linkwork_jit::Robot, linkwork_jit::Function),
+    Placement(linkwork_jit::Robot, linkwork_jit::Function),
+    Step(Box<Stepper>, bool),
+    Derivatives(linkwork_jit::Robot, bool),
+    Constraint(linkwork_jit::Robot, OnConstraints),
+}
+
+impl Signature {
+    /// Returns the computation, for a frame where the function takes one.
+    fn evaluator(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Evaluator, Error> {
+        let robot = || robot.clone();
+        Ok(match &self.kind {
+            Kind::Generated(f) => Evaluator::Generated(robot(), f.clone()),
+            Kind::Frames(all) => Evaluator::Generated(robot(), all[frame].clone()),
+            Kind::Placements(all) => Evaluator::Placement(robot(), all[frame].clone()),
+            Kind::Step => Evaluator::Step(Box::new(Stepper::new(&robot())?), false),
+            Kind::Transition => Evaluator::Step(Box::new(Stepper::new(&robot())?), true),
+            Kind::IntegrateDerivatives => Evaluator::Derivatives(robot(), false),
+            Kind::TangentRateDerivatives => Evaluator::Derivatives(robot(), true),
+            Kind::Constraint(which) => Evaluator::Constraint(robot(), *which),
+        })
+    }
+
+    fn length(&self) -> usize {
+        self.results.iter().map(Output::length).sum()
+    }
+}
+
+impl Evaluator {
+    fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
+        match self {
+            Evaluator::Generated(robot, _)
+            | Evaluator::Placement(robot, _)
+            | Evaluator::Derivatives(robot, _)
+            | Evaluator::Constraint(robot, _) => robot,
+            Evaluator::Step(stepper, _) => stepper.robot_mut(),
+        }
+    }
+
+    /// Writes the results one after the other, matrices by columns.
+    fn evaluate(&mut self, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+        match self {
+            Evaluator::Generated(robot, f) => robot.evaluate_into(f, arguments, out),
+            Evaluator::Placement(robot, f) => placement(robot, f, arguments, out),
+            Evaluator::Step(stepper, jacobians) => step(stepper, *jacobians, arguments, out),
+            Evaluator::Constraint(robot, which) => satisfy(robot, *which, arguments, out),
+            Evaluator::Derivatives(robot, of_rate) => {
+                let found = match *of_rate {
+                    true => robot.tangent_rate_derivatives(arguments[0], arguments[1])?,
+                    false => robot.integrate_derivatives(arguments[1])?,
+                };
+                let entries = found.iter().flat_map(|matrix| matrix.as_slice());
+                out.iter_mut().zip(entries).for_each(|(to, from)| *to = *from);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Writes the placement of a frame as a matrix of four rows.
+fn placement(
+    robot: &linkwork_jit::Robot,
+    f: &linkwork_jit::Function,
+    arguments: &[&[f64]],
+    out: &mut [f64],
+) -> Result<(), Error> {
+    let mut values = [0.0; 12];
+    robot.evaluate_into(f, arguments, &mut values)?;
+    for (k, (column, own)) in out.chunks_exact_mut(4).zip(values.chunks_exact(3)).enumerate() {
+        column[..3].copy_from_slice(own);
+        column[3] = f64::from(u8::from(k == 3));
+    }
+    Ok(())
+}
+
+/// Writes a configuration or velocity that satisfies the constraints.
+fn satisfy(
+    robot: &mut linkwork_jit::Robot,
+    which: OnConstraints,
+    arguments: &[&[f64]],
+    out: &mut [f64],
+) -> Result<(), Error> {
+    let mut rest = arguments;
+    if robot.depends_on_time() {
+        robot.set_time(arguments[0][0]);
+        rest = &arguments[1..];
+    }
+    let marked = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
+    let found = match (which, rest) {
+        (OnConstraints::Assemble, [q, held]) => robot.assemble(q, &marked(held)),
+        (OnConstraints::ProjectConfiguration, [q]) => robot.project_configuration(q),
+        (OnConstraints::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
+        (OnConstraints::CompleteVelocity, [q, v, held]) => robot.complete_velocity(q, v, &marked(held)),
+        _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
+    }?;
+    out.copy_from_slice(found.as_slice());
+    Ok(())
+}
+
+/// Writes the state after a step, and its Jacobians if they are wanted.
+fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+    let (t, rest) = match arguments {
+        [t, rest @ ..] if rest.len() == 4 => (t[0], rest),
+        rest => (0.0, rest),
+    };
+    let [q, v, u, h] = rest else {
+        return Err(Error::Internal("the arguments of a step".to_string()));
+    };
+    let (end_q, rest) = out.split_at_mut(q.len());
+    let (end_v, rest) = rest.split_at_mut(v.len());
+    if !jacobians {
+        return stepper.step(t, [q, v, u], h[0], [end_q, end_v]);
+    }
+    let found = stepper.differentiate(t, [q, v, u], h[0], [end_q, end_v])?;
+    let entries = found.q.iter().chain(&found.v).flat_map(|matrix| matrix.as_slice());
+    rest.iter_mut().zip(entries).for_each(|(to, from)| *to = *from);
+    Ok(())
+}
+
+thread_local! {
+    /// Results of the last call of the thread.
+    static RESULTS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl BoundFunction {
+    /// Evaluates the function for one state whose arrays need no conversion. `None` for all other arguments.
+    fn single<'py>(
+        &self,
+        py: Python<'py>,
+        given: &Bound<'py, PyTuple>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let signature = &*self.signature;
+        let robot = &self.robot.get();
+        let takes_frame = usize::from(!signature.frames.is_empty());
+        let count = signature.arguments.len();
+        if robot.sets.is_some() || given.len() != count + takes_frame || count > ARGUMENTS {
+            return Ok(None);
+        }
+        let mut frame = 0;
+        if takes_frame == 1 {
+            let name = given.get_borrowed_item(0)?;
+            let Ok(name) = name.cast::<PyString>() else { return Ok(None) };
+            match signature.frames.get(name.to_str()?) {
+                Some(index) => frame = *index,
+                None => return Ok(None),
+            }
+        }
+        let mut arrays: [Option<Bound<'py, PyArray1<f64>>>; ARGUMENTS] = [const { None }; ARGUMENTS];
+        let mut numbers = [[0.0]; ARGUMENTS];
+        for (k, argument) in signature.arguments.iter().enumerate() {
+            let value = given.get_borrowed_item(takes_frame + k)?;
+            match argument.length {
+                None => match value.cast::<PyFloat>() {
+                    Ok(number) => numbers[k][0] = number.value(),
+                    Err(_) => return Ok(None),
+                },
+                Some(length) => match value.cast_exact::<PyArray1<f64>>() {
+                    Ok(array) if array.len() == length && array.is_c_contiguous() => {
+                        arrays[k] = Some(array.to_owned());
+                    }
+                    _ => return Ok(None),
+                },
+            }
+        }
+        let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
+        for ((slice, array), number) in slices.iter_mut().zip(&arrays).zip(&numbers).take(count) {
+            *slice = match array {
+                Some(array) => arrays::entries(array)?,
+                None => number,
+            };
+        }
+        let slices = &slices[..count];
+        let length = signature.length();
+        RESULTS.with_borrow_mut(|results| {
+            if results.len() < length {
+                results.resize(length, 0.0);
+            }
+            let results = &mut results[..length];
+            let done = match &signature.kind {
+                Kind::Generated(f) => robot.robot.evaluate_into(f, slices, results),
+                Kind::Frames(all) => robot.robot.evaluate_into(&all[frame], slices, results),
+                Kind::Placements(all) => placement(&robot.robot, &all[frame], slices, results),
+                _ => signature.evaluator(&robot.robot, frame).and_then(|mut e| e.evaluate(slices, results)),
+            };
+            done.map_err(|error| exception(py, &error, None))?;
+            let mut first = 0;
+            let mut next = |output: &Output| {
+                let own = &results[first..first + output.length()];
+                first += output.length();
+                object(py, &output.shape, own)
+            };
+            match signature.results.as_slice() {
+                [one] => Ok(Some(next(one))),
+                all => Ok(Some(PyTuple::new(py, all.iter().map(next))?.into_any())),
+            }
+        })
+    }
+}
+
+/// Returns a number, vector or matrix as an object of Python.
+fn object<'py>(py: Python<'py>, shape: &[usize], values: &[f64]) -> Bound<'py, PyAny> {
+    match *shape {
+        [] => PyFloat::new(py, values[0]).into_any(),
+        [_] => PyArray1::from_slice(py, values).into_any(),
+        [rows, columns, ..] => arrays::matrix(py, rows, columns, values).into_any(),
+    }
+}
+
+#[pymethods]
+impl Function {
+    /// Returns the name, and the documentation.
+    #[getter]
+    fn name_and_documentation(&self) -> (&str, &str) {
+        (&self.signature.name, &self.signature.documentation)
+    }
+
+    /// Returns name and shape of each argument; of a frame, `None` instead of the shape.
+    #[getter]
+    fn arguments(&self) -> Vec<(&str, Option<Vec<usize>>)> {
+        let frame = (!self.signature.frames.is_empty()).then_some(("frame", None));
+        let others = self.signature.arguments.iter();
+        let others = others.map(|a| (a.name.as_str(), Some(a.length.into_iter().collect())));
+        frame.into_iter().chain(others).collect()
+    }
+
+    /// Returns name and shape of each result.
+    #[getter]
+    fn results(&self) -> Vec<(&str, &[usize])> {
+        self.signature.results.iter().map(|result| (result.name.as_str(), &*result.shape)).collect()
+    }
+
+    /// Returns the function of a mechanism, which then keeps it as an attribute.
+    fn __get__<'py>(
+        slf: &Bound<'py, Self>,
+        instance: &Bound<'py, PyAny>,
+        _owner: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        if instance.is_none() {
+            return Ok(slf.clone().into_any());
+        }
+        let robot = instance.getattr(intern!(py, "_robot"))?.cast_into::<Robot>()?.unbind();
+        let signature = slf.get().signature.clone();
+        let (function, class) = (slf.clone().unbind(), instance.get_type().unbind());
+        let name = PyString::new(py, &signature.name);
+        let bound = Bound::new(py, BoundFunction { signature, function, robot, class })?.into_any();
+        instance.setattr(name, &bound)?;
+        Ok(bound)
+    }
+
+    #[pyo3(signature = (*_given, **_named))]
+    fn __call__(&self, _given: &Bound<'_, PyTuple>, _named: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+        Err(pyo3::exceptions::PyTypeError::new_err(format!(
+            "{} is a function of a mechanism, not of its class: make one first, with values of its parameters",
+            self.signature.name
+        )))
+    }
+
+    /// Writes derivatives of the sum of the results, each times a factor: by the arguments of each state,
+    /// then by the parameters. Factors of matrices are stored by columns.
+    #[pyo3(signature = (robot, frame, arguments, factors, out, states, threads))]
+    #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
+    fn pull_back(
+        &self,
+        py: Python<'_>,
+        robot: &Robot,
+        frame: usize,
+        arguments: Vec<PyReadonlyArrayDyn<'_, f64>>,
+        factors: PyReadonlyArrayDyn<'_, f64>,
+        mut out: PyReadwriteArrayDyn<'_, f64>,
+        states: usize,
+        threads: usize,
+    ) -> PyResult<()> {
+        let signature = &*self.signature;
+        let lists = arguments.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
+        let (factors, mut rest) = (factors.as_slice()?, out.as_slice_mut()?);
+        let width = rest.len() / states.max(1);
+        let failed = py.detach(|| {
+            let split = |count: usize| {
+                let (own, others) = std::mem::take(&mut rest).split_at_mut(count * width);
+                rest = others;
+                own
+            };
+            distribute(states, threads, split, |first, count, own| {
+                signature.differentiate(robot, frame, &lists, first..first + count, factors, own)
+            })
+        });
+        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
+    }
+
+    /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with
+    /// the entries of one state is common to all states. Matrices are stored by columns.
+    #[pyo3(signature = (robot, frame, arguments, results, states, threads))]
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        robot: &Robot,
+        frame: usize,
+        arguments: Vec<PyReadonlyArrayDyn<'_, f64>>,
+        mut results: Vec<PyReadwriteArrayDyn<'_, f64>>,
+        states: usize,
+        threads: usize,
+    ) -> PyResult<()> {
+        let signature = &*self.signature;
+        let lists = arguments.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
+        let mut outs = results.iter_mut().map(|array| array.as_slice_mut()).collect::<Result<Vec<_>, _>>()?;
+        let lengths: Vec<usize> = signature.results.iter().map(Output::length).collect();
+        let work = |first: usize, count: usize, mut outs: Vec<&mut [f64]>| -> Failed {
+            signature.many(robot, frame, &lists, first..first + count, &mut outs, &lengths)
+        };
+        let failed = py.detach(|| {
+            let split = |count: usize| {
+                let each = outs.iter_mut().zip(&lengths);
+                each.map(|(out, length)| {
+                    let (own, rest) = std::mem::take(out).split_at_mut(count * length);
+                    *out = rest;
+                    own
+                })
+                .collect::<Vec<_>>()
+            };
+            distribute(states, threads, split, work)
+        });
+        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
+    }
+}
+
+/// Derivatives of one state: by the arguments one after the other, then by the parameters.
+enum Adjoint {
+    Product(linkwork_jit::Robot, VectorJacobian),
+    /// With the placement of a frame as a matrix of four rows, whose last row is constant.
+    Placement(linkwork_jit::Robot, VectorJacobian),
+    Step(Box<AdjointStepper>),
+}
+
+impl Adjoint {
+    fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
+        match self {
+            Adjoint::Product(robot, _) | Adjoint::Placement(robot, _) => robot,
+            Adjoint::Step(stepper) => stepper.robot_mut(),
+        }
+    }
+
+    fn evaluate(&mut self, arguments: &[&[f64]], factors: &[f64], out: &mut [f64]) -> Result<(), Error> {
+        match self {
+            Adjoint::Product(robot, product) => product.evaluate_into(robot, arguments, factors, out),
+            Adjoint::Placement(robot, product) => {
+                let mut own = [0.0; 12];
+                for (column, factors) in own.chunks_exact_mut(3).zip(factors.chunks_exact(4)) {
+                    column.copy_from_slice(&factors[..3]);
+                }
+                product.evaluate_into(robot, arguments, &own, out)
+            }
+            Adjoint::Step(stepper) => {
+                let (t, rest, first) = match arguments {
+                    [t, rest @ ..] if rest.len() == 4 => (t[0], rest, 1),
+                    rest => (0.0, rest, 0),
+                };
+                let [q, v, u, h] = rest else {
+                    return Err(Error::Internal("the arguments of a step".to_string()));
+                };
+                out.fill(0.0);
+                let (time, own) = out.split_at_mut(first);
+                let (by_q, rest) = own.split_at_mut(q.len());
+                let (by_v, rest) = rest.split_at_mut(v.len());
+                let (by_u, rest) = rest.split_at_mut(u.len());
+                by_q.copy_from_slice(&factors[..q.len()]);
+                by_v.copy_from_slice(&factors[q.len()..]);
+                let (length, parameters) = rest.split_at_mut(1);
+                let mut derivatives = Sensitivity { q: by_q, v: by_v, u: by_u, parameters };
+                let [by_t, by_h] = stepper.step(t, [q, v, u], h[0], &mut derivatives)?;
+                time.fill(by_t);
+                length.fill(by_h);
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Signature {
+    /// Writes the derivatives of consecutive states.
+    fn differentiate(
+        &self,
+        robot: &Robot,
+        frame: usize,
+        lists: &[&[f64]],
+        states: Range<usize>,
+        factors: &[f64],
+        out: &mut [f64],
+    ) -> Failed {
+        let mut adjoint = match self.adjoint(&robot.robot, frame) {
+            Ok(adjoint) => adjoint,
+            Err(error) => return Some((states.start, error)),
+        };
+        let length = self.length();
+        let width =
+            robot.robot.parameters().len() + self.arguments.iter().map(Argument::length).sum::<usize>();
+        let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
+        let mut failed = None;
+        for (k, state) in states.enumerate() {
+            for ((slice, list), argument) in slices.iter_mut().zip(lists).zip(&self.arguments) {
+                let length = argument.length();
+                let at = if list.len() == length { 0 } else { state * length };
+                *slice = &list[at..at + length];
+            }
+            let own = &mut out[k * width..(k + 1) * width];
+            let set = set_parameters(adjoint.robot_mut(), robot.sets.as_ref(), state);
+            let factors = &factors[state * length..(state + 1) * length];
+            let done = set.and_then(|()| adjoint.evaluate(&slices[..self.arguments.len()], factors, own));
+            if let Err(error) = done {
+                failed.get_or_insert((state, error));
+            }
+        }
+        failed
+    }
+
+    /// Returns the derivatives, for a frame where the function takes one.
+    fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
+        Ok(match &self.kind {
+            Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),
+            Kind::Frames(all) => Adjoint::Product(robot.clone(), all[frame].vector_jacobian()?),
+            Kind::Placements(all) => Adjoint::Placement(robot.clone(), all[frame].vector_jacobian()?),
+            Kind::Step => Adjoint::Step(Box::new(AdjointStepper::new(robot)?)),
+            _ => return Err(Error::Value(format!("`{}` has no vector–Jacobian product", self.name))),
+        })
+    }
+
+    /// Evaluates consecutive states.
+    fn many(
+        &self,
+        robot: &Robot,
+        frame: usize,
+        lists: &[&[f64]],
+        states: Range<usize>,
+        outs: &mut [&mut [f64]],
+        lengths: &[usize],
+    ) -> Failed {
+        let mut evaluator = match self.evaluator(&robot.robot, frame) {
+            Ok(evaluator) => evaluator,
+            Err(error) => return Some((states.start, error)),
+        };
+        let total: usize = lengths.iter().sum();
+        let mut values = vec![0.0; total];
+        let mut failed: Failed = None;
+        let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
+        let count = self.arguments.len();
+        for (k, state) in states.enumerate() {
+            for ((slice, list), argument) in slices.iter_mut().zip(lists).zip(&self.arguments) {
+                let length = argument.length();
+                let at = if list.len() == length { 0 } else { state * length };
+                *slice = &list[at..at + length];
+            }
+            let set = set_parameters(evaluator.robot_mut(), robot.sets.as_ref(), state);
+            let done = match &mut *outs {
+                [out] => {
+                    let own = &mut out[k * total..(k + 1) * total];
+                    set.and_then(|()| evaluator.evaluate(&slices[..count], own))
+                }
+                outs => {
+                    let done = set.and_then(|()| evaluator.evaluate(&slices[..count], &mut values));
+                    let mut rest = &values[..];
+                    for (out, length) in outs.iter_mut().zip(lengths) {
+                        let (own, others) = rest.split_at(*length);
+                        out[k * length..(k + 1) * length].copy_from_slice(own);
+                        rest = others;
+                    }
+                    done
+                }
+            };
+            if let Err(error) = done {
+                outs.iter_mut().zip(lengths).for_each(|(out, n)| out[k * n..(k + 1) * n].fill(f64::NAN));
+                failed.get_or_insert((state, error));
+            }
+        }
+        failed
+    }
+}
+
+#[pymethods]
+impl BoundFunction {
+    #[getter]
+    fn __self__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.class.bind(py).call_method1(intern!(py, "_of"), (&self.robot,))
+    }
+
+    #[getter]
+    fn __func__(&self, py: Python<'_>) -> Py<Function> {
+        self.function.clone_ref(py)
+    }
+
+    #[getter]
+    fn __doc__(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.function.getattr(py, intern!(py, "__doc__"))
+    }
+
+    /// Returns other attributes of the function.
+    fn __getattr__(&self, py: Python<'_>, name: &Bound<'_, PyString>) -> PyResult<Py<PyAny>> {
+        self.function.getattr(py, name)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("<function {} of {}>", self.signature.name, self.__self__(py)?.repr()?))
+    }
+
+    #[pyo3(signature = (*given, **named))]
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        given: &Bound<'py, PyTuple>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if named.is_none()
+            && let Some(found) = self.single(py, given)?
+        {
+            return Ok(found);
+        }
+        // The package converts arguments, and calls `evaluate`.
+        let general = py.import(intern!(py, "linkwork._functions"))?.getattr(intern!(py, "call"))?;
+        general.call1((&self.function, self.__self__(py)?, given, named))
+    }
+}

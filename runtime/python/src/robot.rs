@@ -1,0 +1,357 @@
+//! Loaded mechanisms as objects of Python.
+
+use crate::error::{exception, failure};
+use crate::function::Function;
+use crate::shared::{Failed, distribute};
+use linkwork::Table;
+use linkwork_jit::{AdjointStepper, AnyTable, Error, Loader, Quantity, Sensitivity, Stepper};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray2,
+    PyReadwriteArray3,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Mutex;
+
+/// A loaded mechanism with the values of its parameters, or with one set of values for each state of a batch.
+#[pyclass(frozen, module = "linkwork._native")]
+pub struct Robot {
+    pub robot: linkwork_jit::Robot,
+    /// Sets of parameters one after the other, and their number.
+    pub sets: Option<(usize, Vec<f64>)>,
+}
+
+/// Returns the loader of a file or a text.
+pub fn loader(
+    source: &str,
+    is_file: bool,
+    options: &str,
+    name: Option<&str>,
+    folder: Option<&str>,
+) -> Loader {
+    let mut loader = if is_file { Loader::file(source) } else { Loader::text(source) }.options(options);
+    if let Some(name) = name {
+        loader = loader.name(name);
+    }
+    if let Some(folder) = folder {
+        loader = loader.folder(folder);
+    }
+    loader
+}
+
+/// Loads a mechanism from a file or a text.
+#[pyfunction]
+#[pyo3(signature = (source, *, is_file, options, name, folder, equations = false))]
+pub fn load(
+    py: Python<'_>,
+    source: &str,
+    is_file: bool,
+    options: &str,
+    name: Option<&str>,
+    folder: Option<&str>,
+    equations: bool,
+) -> PyResult<Robot> {
+    let mut loader = loader(source, is_file, options, name, folder);
+    if equations {
+        loader = loader.readable_equations();
+    }
+    let robot = py.detach(|| loader.load()).map_err(|error| exception(py, &error, None))?;
+    Ok(Robot { robot, sets: None })
+}
+
+/// Names and units of a list of quantities.
+fn names_and_units(list: &[Quantity]) -> Vec<(&str, &str)> {
+    list.iter().map(|entry| (entry.name.as_str(), entry.unit.as_str())).collect()
+}
+
+#[pymethods]
+impl Robot {
+    /// Returns names, units and numbers of the mechanism.
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (robot, about) = (&self.robot, PyDict::new(py));
+        about.set_item("name", robot.name())?;
+        about.set_item("documentation", robot.documentation())?;
+        about.set_item("configuration", names_and_units(robot.configuration()))?;
+        about.set_item("velocities", names_and_units(robot.velocities()))?;
+        about.set_item("inputs", names_and_units(robot.inputs()))?;
+        about.set_item("parameters", names_and_units(robot.parameters()))?;
+        about.set_item("outputs", names_and_units(robot.outputs()))?;
+        about.set_item("tables", robot.tables().to_vec())?;
+        about.set_item("frames", robot.frames())?;
+        about.set_item("time", robot.depends_on_time())?;
+        about.set_item("constraints", robot.constraints())?;
+        about.set_item("contacts", robot.contacts())?;
+        about.set_item("states", robot.states())?;
+        Ok(about)
+    }
+
+    /// Returns the functions of the mechanism.
+    fn functions(&self) -> Vec<Function> {
+        Function::all(&self.robot)
+    }
+
+    /// Returns the equations of motion as text.
+    #[getter]
+    fn equations(&self) -> &str {
+        self.robot.equations()
+    }
+
+    /// Returns index of the velocity, lower, upper, velocity and effort limit of each limited coordinate.
+    fn limits(&self, py: Python<'_>) -> PyResult<Vec<(usize, f64, f64, f64, f64)>> {
+        let limits = self.robot.limits().map_err(|error| exception(py, &error, None))?;
+        let values = |limit: linkwork_jit::Limit| {
+            (limit.index, limit.lower, limit.upper, limit.velocity, limit.effort)
+        };
+        Ok(limits.into_iter().map(values).collect())
+    }
+
+    /// Returns the number of states, if each has its own values of the parameters.
+    #[getter]
+    fn sets(&self) -> Option<usize> {
+        self.sets.as_ref().map(|(count, _)| *count)
+    }
+
+    /// Returns the values of the parameters, one row for each state; NaN for parameters without a value.
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let own = self.robot.parameter_values();
+        let (count, values) = match &self.sets {
+            Some((count, values)) => (*count, values.as_slice()),
+            None => (1, own),
+        };
+        PyArray1::from_slice(py, values).reshape([count, own.len()])
+    }
+
+    /// Returns the mechanism with values of the parameters: one set, or one for each state.
+    fn with_parameters(
+        &self,
+        py: Python<'_>,
+        sets: PyReadonlyArray2<'_, f64>,
+        many: bool,
+    ) -> PyResult<Robot> {
+        let values = sets.as_slice()?;
+        let count = sets.as_array().nrows();
+        let mut robot = self.robot.clone();
+        let width = robot.parameters().len();
+        for state in 0..count {
+            let set = robot.set_parameters(&values[state * width..(state + 1) * width]);
+            set.and_then(|()| robot.validate())
+                .map_err(|error| exception(py, &error, many.then_some(state)))?;
+        }
+        let sets = many.then(|| (count, values.to_vec()));
+        Ok(Robot { robot, sets })
+    }
+
+    /// Returns the mechanism with a table: grid points of each axis, and values of which those of the last
+    /// axis are next to each other.
+    fn with_table(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        axes: Vec<Vec<f64>>,
+        values: Vec<f64>,
+        smooth: bool,
+        extrapolated: bool,
+    ) -> PyResult<Robot> {
+        let mut robot = self.robot.clone();
+        let table = table(&axes, &values, smooth, extrapolated)
+            .map_err(|error| failure(py, format!("table {name:?}: {error}")))?;
+        robot.set_table(name, table).map_err(|error| exception(py, &error, None))?;
+        Ok(Robot { robot, sets: self.sets.clone() })
+    }
+
+    /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and
+    /// velocities contain the initial ones.
+    #[pyo3(signature = (q, v, inputs, *, start, h, threads))]
+    #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+    fn roll_out(
+        &self,
+        py: Python<'_>,
+        mut q: PyReadwriteArray3<'_, f64>,
+        mut v: PyReadwriteArray3<'_, f64>,
+        inputs: Option<PyReadonlyArray3<'_, f64>>,
+        start: f64,
+        h: f64,
+        threads: usize,
+    ) -> PyResult<()> {
+        let (nq, nv, nu) = (self.robot.nq(), self.robot.nv(), self.robot.nu());
+        let (states, rows) = (q.as_array().shape()[0], q.as_array().shape()[1]);
+        let own = inputs.as_ref().is_some_and(|inputs| inputs.as_array().shape()[0] > 1);
+        let inputs = inputs.as_ref().map_or(Ok(&[][..]), |inputs| inputs.as_slice())?;
+        let (mut q, mut v) = (q.as_slice_mut()?, v.as_slice_mut()?);
+        let stepper = Stepper::new(&self.robot).map_err(|error| exception(py, &error, None))?;
+        let sets = self.sets.as_ref();
+        let zeros = vec![0.0; nu];
+        let advance = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
+            let mut stepper = stepper.clone();
+            let mut failed = None;
+            let states = q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
+            for (k, (q, v)) in states.enumerate() {
+                let state = first + k;
+                let set = set_parameters(stepper.robot_mut(), sets, state);
+                let motion = set.and_then(|()| {
+                    for step in 0..rows - 1 {
+                        let row = if own { state * (rows - 1) + step } else { step };
+                        let u = inputs.get(row * nu..(row + 1) * nu).unwrap_or(&zeros);
+                        let (q, next_q) = q[step * nq..].split_at_mut(nq);
+                        let (v, next_v) = v[step * nv..].split_at_mut(nv);
+                        let end = [&mut next_q[..nq], &mut next_v[..nv]];
+                        let done = stepper.step(start + step as f64 * h, [q, v, u], h, end);
+                        if done.is_err() {
+                            next_q.fill(f64::NAN);
+                            next_v.fill(f64::NAN);
+                            return done;
+                        }
+                    }
+                    Ok(())
+                });
+                if let Err(error) = motion {
+                    failed.get_or_insert((state, error));
+                }
+            }
+            failed
+        };
+        let failed = py.detach(|| {
+            let split = |count: usize| {
+                let (own_q, rest_q) = std::mem::take(&mut q).split_at_mut(count * rows * nq);
+                let (own_v, rest_v) = std::mem::take(&mut v).split_at_mut(count * rows * nv);
+                (q, v) = (rest_q, rest_v);
+                (own_q, own_v)
+            };
+            distribute(states, threads, split, advance)
+        });
+        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
+    }
+}
+
+/// Writes derivatives of a function of rollouts by inputs and parameters, and replaces derivatives by the
+/// states of the motions by derivatives by the initial states, in the first rows.
+#[pyfunction]
+#[pyo3(signature = (robot, q, v, inputs, by_q, by_v, by_inputs, by_parameters, *, start, h, threads))]
+#[allow(clippy::too_many_arguments, reason = "arguments of Python")]
+pub fn roll_back(
+    py: Python<'_>,
+    robot: &Robot,
+    q: PyReadonlyArray3<'_, f64>,
+    v: PyReadonlyArray3<'_, f64>,
+    inputs: PyReadonlyArray3<'_, f64>,
+    mut by_q: PyReadwriteArray3<'_, f64>,
+    mut by_v: PyReadwriteArray3<'_, f64>,
+    mut by_inputs: PyReadwriteArray3<'_, f64>,
+    mut by_parameters: PyReadwriteArray2<'_, f64>,
+    start: f64,
+    h: f64,
+    threads: usize,
+) -> PyResult<()> {
+    let jit = &robot.robot;
+    let (nq, nv, nu, np) = (jit.nq(), jit.nv(), jit.nu(), jit.parameters().len());
+    let (states, rows) = (q.as_array().shape()[0], q.as_array().shape()[1]);
+    let steps = rows - 1;
+    let (q, v, inputs) = (q.as_slice()?, v.as_slice()?, inputs.as_slice()?);
+    let mut rest = (
+        by_q.as_slice_mut()?,
+        by_v.as_slice_mut()?,
+        by_inputs.as_slice_mut()?,
+        by_parameters.as_slice_mut()?,
+    );
+    type Share<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64], &'a mut [f64]);
+    let work = |first: usize, count: usize, (by_q, by_v, by_u, by_p): Share<'_>| -> Failed {
+        let mut stepper = match AdjointStepper::new(jit) {
+            Ok(stepper) => stepper,
+            Err(error) => return Some((first, error)),
+        };
+        for k in 0..count {
+            let state = first + k;
+            let own_q = &mut by_q[k * rows * nq..(k + 1) * rows * nq];
+            let own_v = &mut by_v[k * rows * nv..(k + 1) * rows * nv];
+            let own_p = &mut by_p[k * np..(k + 1) * np];
+            let mut done = set_parameters(stepper.robot_mut(), robot.sets.as_ref(), state);
+            let (mut at_q, mut at_v) = (own_q[steps * nq..].to_vec(), own_v[steps * nv..].to_vec());
+            for step in (0..steps).rev() {
+                let row = state * rows + step;
+                let u = (k * steps + step) * nu;
+                let at = (state * steps + step) * nu;
+                let start_of_step =
+                    [&q[row * nq..(row + 1) * nq], &v[row * nv..(row + 1) * nv], &inputs[at..at + nu]];
+                let mut derivatives =
+                    Sensitivity { q: &mut at_q, v: &mut at_v, u: &mut by_u[u..u + nu], parameters: own_p };
+                done = done.and_then(|()| {
+                    let t = start + step as f64 * h;
+                    stepper.step(t, start_of_step, h, &mut derivatives).map(|_| ())
+                });
+                let add = |to: &mut [f64], more: &[f64]| to.iter_mut().zip(more).for_each(|(a, b)| *a += b);
+                add(&mut at_q, &own_q[step * nq..(step + 1) * nq]);
+                add(&mut at_v, &own_v[step * nv..(step + 1) * nv]);
+            }
+            own_q[..nq].copy_from_slice(&at_q);
+            own_v[..nv].copy_from_slice(&at_v);
+            if let Err(error) = done {
+                return Some((state, error));
+            }
+        }
+        None
+    };
+    let failed = py.detach(|| {
+        let split = |count: usize| {
+            let (q, other_q) = std::mem::take(&mut rest.0).split_at_mut(count * rows * nq);
+            let (v, other_v) = std::mem::take(&mut rest.1).split_at_mut(count * rows * nv);
+            let (u, other_u) = std::mem::take(&mut rest.2).split_at_mut(count * steps * nu);
+            let (p, other_p) = std::mem::take(&mut rest.3).split_at_mut(count * np);
+            rest = (other_q, other_v, other_u, other_p);
+            (q, v, u, p)
+        };
+        distribute(states, threads, split, work)
+    });
+    failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
+}
+
+/// Sets the parameters of a state, if each state has its own.
+pub fn set_parameters(
+    robot: &mut linkwork_jit::Robot,
+    sets: Option<&(usize, Vec<f64>)>,
+    state: usize,
+) -> Result<(), Error> {
+    let Some((count, values)) = sets else { return Ok(()) };
+    let width = values.len() / (*count).max(1);
+    let first = if *count == 1 { 0 } else { state * width };
+    robot.set_parameters(&values[first..first + width])
+}
+
+/// Returns a table. Equal values share memory, which lives as long as the process.
+fn table(
+    axes: &[Vec<f64>],
+    values: &[f64],
+    smooth: bool,
+    extrapolated: bool,
+) -> Result<AnyTable, linkwork::TableError> {
+    fn shaped<const N: usize>(table: Table<N>, smooth: bool, extrapolated: bool) -> Table<N> {
+        let table = if smooth { table.smooth() } else { table };
+        if extrapolated { table.extrapolated() } else { table }
+    }
+    let kept: Vec<&'static [f64]> = axes.iter().map(|axis| keep(axis)).collect();
+    let values = keep(values);
+    match kept[..] {
+        [a] => Table::new([a], values).map(|table| shaped(table, smooth, extrapolated).into()),
+        [a, b] => Table::new([a, b], values).map(|table| shaped(table, smooth, extrapolated).into()),
+        [a, b, c] => Table::new([a, b, c], values).map(|table| shaped(table, smooth, extrapolated).into()),
+        _ => Err(linkwork::TableError::Size { expected: 3, found: axes.len() }),
+    }
+}
+
+/// Returns a list that lives as long as the process; equal lists are one.
+fn keep(list: &[f64]) -> &'static [f64] {
+    static LISTS: Mutex<Option<HashMap<u64, Vec<&'static [f64]>>>> = Mutex::new(None);
+    let mut hasher = DefaultHasher::new();
+    list.iter().for_each(|x| x.to_bits().hash(&mut hasher));
+    let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let lists = lists.get_or_insert_default().entry(hasher.finish()).or_default();
+    let equal =
+        |known: &&&'static [f64]| known.iter().map(|x| x.to_bits()).eq(list.iter().map(|x| x.to_bits()));
+    if let Some(known) = lists.iter().find(equal) {
+        return known;
+    }
+    let kept: &'static [f64] = Vec::leak(list.to_vec());
+    lists.push(kept);
+    kept
+}

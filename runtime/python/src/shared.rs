@@ -1,0 +1,53 @@
+//! Distribution of states over threads.
+
+use linkwork_jit::Error;
+use std::any::Any;
+
+/// Index of the first state that failed, and its error.
+pub type Failed = Option<(usize, Error)>;
+
+/// Returns the number of states per thread: all for one thread, and equal shares else. Zero threads are as
+/// many as the machine has processors.
+fn share(states: usize, threads: usize) -> usize {
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if threads == 0 { processors() } else { threads };
+    states.div_ceil(threads.clamp(1, states.max(1))).max(1)
+}
+
+/// Splits states into shares with `split`, which takes the number of states of a share, and works on the
+/// shares in parallel: `work` takes the index of the first state, the number of states, and the share.
+pub fn distribute<P: Send>(
+    states: usize,
+    threads: usize,
+    mut split: impl FnMut(usize) -> P,
+    work: impl Fn(usize, usize, P) -> Failed + Sync,
+) -> Failed {
+    let share = share(states, threads);
+    let mut shares = Vec::new();
+    let mut first = 0;
+    while first < states {
+        let count = share.min(states - first);
+        shares.push((first, count, split(count)));
+        first += count;
+    }
+    if shares.len() == 1 {
+        return shares.pop().and_then(|(first, count, own)| work(first, count, own));
+    }
+    let work = &work;
+    std::thread::scope(|scope| {
+        let all: Vec<_> = shares
+            .into_iter()
+            .map(|(first, count, own)| scope.spawn(move || work(first, count, own)))
+            .collect();
+        let ends = all
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(message(&*panic))))));
+        ends.collect::<Vec<_>>().into_iter().flatten().min_by_key(|(state, _)| *state)
+    })
+}
+
+/// Returns the text of a panic.
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_string())
+}
