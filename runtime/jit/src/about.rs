@@ -63,10 +63,4 @@ impl Robot {
     pub fn contacts(&self) -> usize {
         self.shared.contacts.len()
     }
-
-    /// Returns the number of states of first order.
-    #[must_use]
-    pub fn states(&self) -> usize {
-        self.shared.states.len()
-    }
 }

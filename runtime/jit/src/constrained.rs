@@ -55,7 +55,7 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     for (kind, name, documentation, results) in functions {
         if kind != ConstrainedFunction::Derivatives || has_derivatives {
             let plan = Plan::Constrained(kind);
-            let rank = if kind == Kind::Derivatives { 2 } else { 1 };
+            let rank = if kind == ConstrainedFunction::Derivatives { 2 } else { 1 };
             let entry = Entry::new(name, documentation.to_string(), arguments.clone(), results, plan);
             maker.entries.push(Entry { rank, ..entry });
         }
