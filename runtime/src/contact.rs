@@ -115,9 +115,9 @@ pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::{Equations, Problem, entry};
-use selection::Selection;
 #[doc(hidden)]
 pub use response::responses;
+use selection::Selection;
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};
