@@ -34,7 +34,7 @@ pub struct VectorJacobian {
 
 /// Computation of the derivatives.
 enum Product {
-    Reversed(Routine),
+    Reversed(Box<Routine>),
     Integrate,
     Difference,
     TangentRate,
@@ -77,7 +77,7 @@ impl Function {
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
                 let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
-                Product::Reversed(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?)
+                Product::Reversed(Box::new(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?))
             }
             (None, _) if self.shared().has_speeds => return Err(unavailable()),
             (None, "integrate") => Product::Integrate,

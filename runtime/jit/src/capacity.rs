@@ -53,8 +53,8 @@ impl Robot {
     pub(crate) fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
         match self.dimension() {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
-            ..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
-            ..=LARGEST => Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?)),
+            9..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
+            25..=LARGEST => Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?)),
             count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
         }
     }

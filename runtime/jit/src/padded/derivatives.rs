@@ -161,8 +161,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             put(&mut all, rows, own);
             all.data.0
         };
-        let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] =
-            lengths.map(|rows| next(rows));
+        let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] = lengths.map(next);
         MotionDerivatives { forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning }
     }
 
