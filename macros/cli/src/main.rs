@@ -77,10 +77,14 @@ fn main() -> ExitCode {
         Some(("completions", given)) => completions(given),
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c99(given),
+            Some(("cuda", given)) => export::cuda(given),
+            Some(("wgsl", given)) => export::wgsl(given),
             Some(("library", given)) => export::library(given),
             Some(("python", given)) => export::python(given),
             Some(("rust", given)) => export::rust(given),
-            _ => Err(Stop::Failure("expected `c`, `library`, `python` or `rust`".to_string())),
+            _ => {
+                Err(Stop::Failure("expected `c`, `cuda`, `wgsl`, `library`, `python` or `rust`".to_string()))
+            }
         },
         _ => Err(Stop::Failure("expected a command".to_string())),
     };
