@@ -52,6 +52,9 @@ pub mod control {}
 #[doc = include_str!("../guide/batches.md")]
 pub mod batches {}
 
+#[doc = include_str!("../guide/gpus.md")]
+pub mod gpus {}
+
 #[doc = include_str!("../guide/without_std.md")]
 pub mod without_std {}
 

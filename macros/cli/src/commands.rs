@@ -94,6 +94,12 @@ fn export() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(export_c())
+        .subcommand(for_gpus(
+            Command::new("cuda").about("CUDA: kernels of all functions for many states, and their launchers"),
+        ))
+        .subcommand(for_gpus(
+            Command::new("wgsl").about("WGSL: compute shaders of the functions for many states"),
+        ))
         .subcommand(export_library())
         .subcommand(
             with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
@@ -120,6 +126,22 @@ fn export_c() -> Command {
                 .action(ArgAction::Append)
                 .requires("casadi"),
         )
+}
+
+fn for_gpus(command: Command) -> Command {
+    with_input(command)
+        .arg(
+            text("out", "FOLDER", "Output folder of the files")
+                .short('o')
+                .default_value(".")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(text("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
+        .arg(
+            text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
+                .value_parser(["double", "float"]),
+        )
+        .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
 }
 
 fn export_library() -> Command {

@@ -10,7 +10,8 @@ use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
 use linkwork_compiler::syntax::{Inertias, ScalarType};
-use linkwork_compiler::{expand, export_c};
+use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Writes a C source file and a header.
@@ -19,6 +20,63 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.read(cx);
     let mut source = input.checked(source, cx)?;
+    let single = prepare(&mut source, matches);
+    let prefix = given(matches, "prefix").unwrap_or_default().to_string();
+    let fixed = values("set", matches)?;
+    let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
+    let casadi = matches.get_flag("casadi").then(|| fixed.collect());
+    let files = export_c(&source, &Options { prefix, single, casadi, ..Options::default() }, cx);
+    let files = input.checked(files, cx)?;
+    let texts = [(".h", &files.header), (".c", &files.source)];
+    let casadi = files.casadi.as_ref().map(|text| ("_casadi.c", text));
+    write_all(matches, &files.prefix, &texts.into_iter().chain(casadi).collect::<Vec<_>>())?;
+    for line in &files.left_out {
+        crate::note!("linkwork: not in C: {line}");
+    }
+    Ok(())
+}
+
+/// Writes kernels in CUDA, and functions that launch them from C++ and Python.
+pub fn cuda(matches: &ArgMatches) -> Result<(), Stop> {
+    let input = Input::one(matches)?;
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let mut source = input.checked(source, cx)?;
+    let single = prepare(&mut source, matches);
+    let prefix = checked_prefix(matches, "CUDA")?;
+    let files = export_cuda(&source, &Options { prefix, single, ..Options::default() }, cx);
+    let files = input.checked(files, cx)?;
+    let texts = [(".cu", &files.kernels), (".cuh", &files.host), ("_cuda.py", &files.python)];
+    write_all(matches, &files.prefix, &texts)?;
+    for line in &files.left_out {
+        crate::note!("linkwork: not in CUDA: {line}");
+    }
+    Ok(())
+}
+
+/// Writes compute shaders in WGSL, and a module for Python that runs them.
+pub fn wgsl(matches: &ArgMatches) -> Result<(), Stop> {
+    if given(matches, "scalar") == Some("double") {
+        let why = "WGSL has no double precision: leave `--scalar double` out, or use `linkwork export cuda`";
+        return Err(Stop::Failure(why.to_string()));
+    }
+    let input = Input::one(matches)?;
+    let cx = &mut Diagnostics::new();
+    let source = input.read(cx);
+    let mut source = input.checked(source, cx)?;
+    prepare(&mut source, matches);
+    let prefix = checked_prefix(matches, "WGSL")?;
+    let files = export_wgsl(&source, &prefix, cx);
+    let files = input.checked(files, cx)?;
+    write_all(matches, &files.prefix, &[(".wgsl", &files.shaders), ("_wgpu.py", &files.python)])?;
+    for line in &files.left_out {
+        crate::note!("linkwork: not in WGSL: {line}");
+    }
+    Ok(())
+}
+
+/// Requests the derivatives unless an option excludes them. Returns true for single precision.
+fn prepare(source: &mut Source, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
     let single = match given(matches, "scalar") {
         Some(scalar) => scalar == "float",
@@ -26,23 +84,30 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     };
     let kinematic = description.inertias == Inertias::None;
     source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
+    single
+}
+
+/// Returns the prefix of names. Rejects a prefix that is not an identifier of the target.
+fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
     let prefix = given(matches, "prefix").unwrap_or_default().to_string();
-    let fixed = values("set", matches)?;
-    let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
-    let casadi = matches.get_flag("casadi").then(|| fixed.collect());
-    let files = export_c(&source, &Options { prefix, single, casadi, ..Options::default() }, cx);
-    let files = input.checked(files, cx)?;
+    let usable = c::prefix_identifier(&prefix);
+    if prefix.is_empty() || usable == prefix {
+        return Ok(prefix);
+    }
+    Err(Stop::Failure(format!(
+        "`--prefix {prefix}` is no identifier of {target} that is free; `--prefix {usable}` is one"
+    )))
+}
+
+/// Writes files with a common prefix to the output folder, and prints their paths.
+fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> Result<(), Stop> {
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     std::fs::create_dir_all(&folder)
         .map_err(|error| Stop::Failure(format!("cannot make the folder {}: {error}", folder.display())))?;
-    let casadi = files.casadi.as_ref().map(|text| ("_casadi.c", text));
-    for (end, text) in [(".h", &files.header), (".c", &files.source)].into_iter().chain(casadi) {
-        let path = folder.join(format!("{}{end}", files.prefix));
+    for (end, text) in texts {
+        let path = folder.join(format!("{prefix}{end}"));
         write(&path, text)?;
         crate::say!("{}", path.display());
-    }
-    for line in &files.left_out {
-        crate::note!("linkwork: not in C: {line}");
     }
     Ok(())
 }

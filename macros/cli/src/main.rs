@@ -77,9 +77,11 @@ fn main() -> ExitCode {
         Some(("completions", given)) => completions(given),
         Some(("export", given)) => match given.subcommand() {
             Some(("c", given)) => export::c99(given),
+            Some(("cuda", given)) => export::cuda(given),
+            Some(("wgsl", given)) => export::wgsl(given),
             Some(("library", given)) => export::library(given),
             Some(("rust", given)) => export::rust(given),
-            _ => Err(Stop::Failure("expected `c`, `library` or `rust`".to_string())),
+            _ => Err(Stop::Failure("expected `c`, `cuda`, `wgsl`, `library` or `rust`".to_string())),
         },
         _ => Err(Stop::Failure("expected a command".to_string())),
     };

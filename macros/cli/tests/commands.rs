@@ -94,6 +94,9 @@ fn what_cannot_be_done_is_said() {
     std::fs::write(here.join("leg.urdf"), "<robot name='leg'><link name='a'/></robot>").unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
+    let closed = "#[mechanism] pub struct Loop { #[particle(mass = 1)] bob: Particle, \
+        #[joint(ground -> bob)] plane: Planar, #[constraint(sum = plane.x + plane.y)] line: Holonomic }";
+    std::fs::write(here.join("loop.rs"), closed).unwrap();
     for (arguments, status, stderr) in [
         (&["check", "robot.urdf"][..], 2, "there is no such file"),
         (&["check", "mujoco.urdf"], 1, "mujoco"),
@@ -132,6 +135,15 @@ fn what_cannot_be_done_is_said() {
             "`q.theta` is given by `--set` and by `--guess`",
         ),
         (&["view", "pendulum.rs", "--motion", "log.csv", "--every", "0.1"], 2, "cannot be used with"),
+        (&["export", "cuda", "loop.rs"], 1, "kernels are for trees, and this mechanism has constraints"),
+        (
+            &["export", "wgsl", "loop.rs"],
+            1,
+            "`linkwork export library` writes all functions with constraints",
+        ),
+        (&["export", "wgsl", "pendulum.rs", "--scalar", "double"], 2, "WGSL has no double precision"),
+        (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "`--prefix x2x` is one"),
+        (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "`--prefix class_` is one"),
         (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write those that ask for functions"),
     ] {
         let (found, _, error) = linkwork(&here, arguments);
@@ -179,6 +191,25 @@ fn missing_meshes_are_listed() {
     }
     let (status, _, stderr) = linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
     assert!(status == 2 && stderr.contains("`--meshes`: nowhere: "), "{stderr}");
+}
+
+/// Checks the shaders and the functions that are listed as missing for a mechanism with a table.
+#[test]
+fn shaders_are_written_for_straight_line_functions() {
+    let here = folder("shaders");
+    let sled = "#[mechanism] pub struct Sled { pub m: f64, pub drag: Table<1>, #[particle(mass = m)] block: Particle, \
+        #[joint(ground -> block, along = x)] rail: Slider, \
+        #[acts(on = rail, value = -drag(rate(rail)))] air: Force }";
+    std::fs::write(here.join("sled.rs"), sled).unwrap();
+    let (status, stdout, stderr) = linkwork(&here, &["export", "wgsl", "sled.rs"]);
+    assert_eq!((status, stdout.as_str()), (0, "./sled.wgsl\n./sled_wgpu.py\n"), "{stderr}");
+    for line in ["inverse_dynamics: it has tables", "rk4_step: it calls other functions"] {
+        assert!(stderr.contains(&format!("linkwork: not in WGSL: {line}\n")), "{line} in {stderr}");
+    }
+    let text = std::fs::read_to_string(here.join("sled.wgsl")).unwrap();
+    assert!(text.contains("fn sled_mass_matrix(") && !text.contains("fn sled_inverse_dynamics("), "{text}");
+    let mass = "results[0 * n + i] = p_m;";
+    assert!(text.contains(mass) && text.contains("let p_m = parameters[0 * sizes.parameter_entry"), "{text}");
 }
 
 /// Checks that syntax errors are reported in the format of other errors.

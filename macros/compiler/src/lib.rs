@@ -99,46 +99,113 @@ pub fn export_c(
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
+    let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
+    export::c::write(&model, &output, &tables, options).map_err(|unfit| report_unfit(&model, unfit, cx)).ok()
+}
+
+/// Compiles a tree mechanism to kernels in CUDA, and to functions that launch them. Returns `None` with the
+/// errors in `cx` if the mechanism or the options are not supported.
+pub fn export_cuda(
+    source: &Source,
+    options: &export::c::Options,
+    cx: &mut Diagnostics,
+) -> Option<export::cuda::KernelFiles> {
+    let graph = Graph::new();
+    let (model, output) = compile_for_registers(source, &graph, cx)?;
+    let tables = source.mechanism.shell.table_names();
+    let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
+    export::cuda::write(&model, &output, &tables, options)
+        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .ok()
+}
+
+/// Compiles a tree mechanism to compute shaders in WGSL. Returns `None` with the errors in `cx` if the
+/// mechanism is not supported.
+pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Option<export::wgsl::ShaderFiles> {
+    let graph = Graph::new();
+    let (model, output) = compile_for_registers(source, &graph, cx)?;
+    let tables = source.mechanism.shell.table_names();
+    let prefix = prefix.to_string();
+    let options = export::c::Options { prefix, left_out: rust_only(source), ..Default::default() };
+    export::wgsl::write(&model, &output, &tables, &options)
+        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .ok()
+}
+
+/// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all values
+/// in registers.
+fn compile_for_registers<'g>(
+    source: &Source,
+    graph: &'g Graph,
+    cx: &mut Diagnostics,
+) -> Option<(mechanism::Model<'g>, derive::Output)> {
+    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let (model, mut output) = compile_with(source, graph, passes, cx)?;
+    check_tree(&model, &output, cx)?;
+    for function in &mut output.functions {
+        let arrays = function.shape.arrays();
+        let lengths: Vec<usize> = arrays.iter().map(|(_, rows, columns)| rows * columns).collect();
+        function.program = std::mem::take(&mut function.program).with_few_live_values(&lengths);
+    }
+    Some((model, output))
+}
+
+/// Rejects mechanisms with constraints or contacts, whose functions need solvers.
+fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Diagnostics) -> Option<()> {
+    let has = |id: catalogue::Id| output.functions.iter().any(|f| f.id == id);
+    let what = match (has(catalogue::Id::ConstraintJacobian), model.contacts.is_empty()) {
+        (true, _) => "constraints",
+        (_, false) => "contacts",
+        _ => return Some(()),
+    };
+    cx.error(model.place.clone(), format!("kernels are for trees, and this mechanism has {what}")).help(
+        format!(
+            "`linkwork export library` writes all functions with {what} for processors, `linkwork export c` those that need no solver; without the {what} there are kernels of all functions"
+        ),
+    );
+    None
+}
+
+/// Returns the functions that options request and that exist in Rust only.
+fn rust_only(source: &Source) -> Vec<String> {
     let requests = source.mechanism.requests;
     let rust_only = [
         (requests.prepare, "the functions of `prepare`"),
         (requests.batch, "functions of several states at once, of `batch`"),
         (requests.drawing, "the drawing, of `drawing`"),
     ];
-    let left_out = rust_only.into_iter().filter(|(asked, _)| *asked).map(|(_, what)| what.to_string());
-    let options = &export::c::Options { left_out: left_out.collect(), ..options.clone() };
-    export::c::write(&model, &output, &tables, options)
-        .map_err(|unfit| {
-            let (what, help) = match unfit {
-                export::c::Unfit::NoParameter(name) => (
-                    format!("there is no parameter `{name}` to be fixed"),
-                    match model.parameters.is_empty() {
-                        true => "the mechanism has no parameters".to_string(),
-                        false => format!("there are {}", model.parameters.join(", ")),
-                    },
-                ),
-                export::c::Unfit::SingleCasadi => (
-                    "CasADi has no functions of single precision".to_string(),
-                    "export them in double precision".to_string(),
-                ),
-                export::c::Unfit::CasadiSpeeds => (
-                    "functions for CasADi have no declared speeds".to_string(),
-                    "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the rates of coordinates: leave `#[speed(…)]` out, or export plain C"
-                        .to_string(),
-                ),
-                export::c::Unfit::Missing => (
-                    "internal error: a value of the functions in C is missing".to_string(),
-                    "please report this with the declaration of the mechanism".to_string(),
-                ),
-                export::c::Unfit::Lanes(of) => (
-                    format!("Linkwork made a mistake: `{of}` was derived with lanes"),
-                    "this is no mistake of yours: please report it with the declaration of the mechanism"
-                        .to_string(),
-                ),
-            };
-            cx.error(model.place.clone(), what).help(help);
-        })
-        .ok()
+    rust_only.into_iter().filter(|(asked, _)| *asked).map(|(_, what)| what.to_string()).collect()
+}
+
+/// Reports why a mechanism or the options of an export are not supported.
+fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut Diagnostics) {
+    let (what, help) = match unfit {
+        export::c::Unfit::NoParameter(name) => (
+            format!("there is no parameter `{name}` to be fixed"),
+            match model.parameters.is_empty() {
+                true => "the mechanism has no parameters".to_string(),
+                false => format!("there are {}", model.parameters.join(", ")),
+            },
+        ),
+        export::c::Unfit::SingleCasadi => (
+            "CasADi has no functions of single precision".to_string(),
+            "export them in double precision".to_string(),
+        ),
+        export::c::Unfit::CasadiSpeeds => (
+            "functions for CasADi have no declared speeds".to_string(),
+            "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the rates of coordinates: leave `#[speed(…)]` out, or export plain C"
+                .to_string(),
+        ),
+        export::c::Unfit::Missing => (
+            "internal error: a value of the functions in C is missing".to_string(),
+            "please report this with the declaration of the mechanism".to_string(),
+        ),
+        export::c::Unfit::Lanes(of) => (
+            format!("internal error: `{of}` was derived with lanes"),
+            "please report this with the declaration of the mechanism".to_string(),
+        ),
+    };
+    cx.error(model.place.clone(), what).help(help);
 }
 
 /// Returns the messages of all errors in a mechanism; the list is empty if the mechanism is valid.

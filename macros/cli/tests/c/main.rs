@@ -3,6 +3,7 @@
 
 mod casadi;
 mod compiled;
+mod kernels;
 #[path = "../mechanisms/mod.rs"]
 mod mechanisms;
 
@@ -161,6 +162,34 @@ macro_rules! steps {
     }};
 }
 
+/// Calls of products of a row vector with the Jacobians of inverse and forward dynamics.
+macro_rules! products {
+    ($kind:ident, $m:expr, $case:ident $(, $t:expr)?) => {{
+        let (m, state) = (&$m, &$case.given);
+        let (q, v, a, tau) = (vector(&state[0].1), vector(&state[1].1), vector(&state[2].1), vector(&state[3].1));
+        let w: SVector<f64, { $kind::NV }> = a;
+        let (by_q, by_v) = m.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
+        let by_a = m.mass_matrix($($t,)? &q);
+        let (a_by_q, a_by_v, by_tau) = m.forward_dynamics_derivatives($($t,)? &q, &v, &tau);
+        [
+            entry!(
+                "inverse_dynamics_vjp",
+                "q, v, a, a",
+                by_q.transpose() * w,
+                by_v.transpose() * w,
+                by_a.transpose() * w
+            ),
+            entry!(
+                "forward_dynamics_vjp",
+                "q, v, tau, a",
+                a_by_q.transpose() * w,
+                a_by_v.transpose() * w,
+                by_tau.transpose() * w
+            ),
+        ]
+    }};
+}
+
 macro_rules! nothing {
     ($($t:tt)*) => {
         Vec::new()
@@ -209,6 +238,34 @@ fn arms() {
     agrees(&case, &["../../models/urdf/ur5.urdf"]);
     let case = case!("panda_arm", PandaArm, PandaArm, [], time(), of_trees);
     agrees(&case, &["../../models/src/arm7.rs", "--struct", "PandaArm"]);
+}
+
+/// Compares the kernels of mechanisms with plain and curved configuration spaces, parameters and time.
+#[test]
+fn kernels_of_trees() {
+    let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
+    case.entries.extend(steps!(Ur5, Ur5, case));
+    case.entries.extend(products!(Ur5, Ur5, case));
+    kernels::agrees(&case, "double", &["../../models/urdf/ur5.urdf"]);
+    case.tolerance = 2e-3;
+    kernels::agrees(&case, "float", &["../../models/urdf/ur5.urdf"]);
+    let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
+    case.entries.extend(products!(Solo12, Solo12, case));
+    kernels::agrees(&case, "double", &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
+    let m = Balloon { mass: 3.0, buoyancy: 2.5 };
+    let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
+    case.entries.extend(steps!(Balloon, m, case));
+    case.entries.extend(products!(Balloon, m, case, 0.7));
+    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
+    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    case.entries.extend(products!(Awkward, m, case));
+    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
+    let ([drag], [lift], [moment]) = tables(true, true);
+    let m = Wing { mass: 2.0, lift, drag, moment };
+    let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
+    case.tables = [ARRAYS, TABLES[3]];
+    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
 }
 
 #[test]
@@ -300,17 +357,19 @@ const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] 
     static const double m[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95};
 ";
 
+/// Initialisers of the tables in C: linear, extrapolated, smooth, and both.
+const TABLES: [&str; 4] = [
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 0}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 1}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 0}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 1}",
+];
+
 /// Checks tables of every dimension within the grid and beyond it.
 #[test]
 fn tables_are_looked_up_alike() {
-    let written = [
-        ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 0}",
-        ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 1}",
-        ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 0}",
-        ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 1}",
-    ];
     for (k, (prefix, c)) in
-        ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(written).enumerate()
+        ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(TABLES).enumerate()
     {
         let ([drag], [lift], [moment]) = tables(k > 1, k % 2 == 1);
         let m = Wing { mass: 2.0, lift, drag, moment };

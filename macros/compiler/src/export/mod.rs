@@ -2,6 +2,8 @@
 //! programs and never simplifies.
 
 pub mod c;
+pub mod cuda;
+pub mod wgsl;
 
 pub use c::capitals;
 

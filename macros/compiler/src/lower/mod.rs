@@ -15,6 +15,7 @@ mod negations;
 pub mod pipeline;
 mod program;
 mod reassociate;
+mod registers;
 mod schedule;
 mod share_subsums;
 mod terms;

@@ -6,8 +6,8 @@ use super::pieces::{Piece, Statement};
 use super::scalar::constant;
 use super::support::Support;
 use crate::catalogue::Argument;
-use crate::expr::{Extreme, Function as Elementary, Lookup};
-use crate::lower::{Angles, Op, Operand, Program};
+use crate::expr::{Extreme, Function as Elementary, Lookup, Symbol};
+use crate::lower::{Angle, Angles, Op, Operand, Program};
 use crate::mechanism::Quantity;
 use std::fmt::Write;
 
@@ -35,6 +35,8 @@ struct Writer<'a> {
     statements: Vec<Statement>,
     /// Expression of each instruction that is inlined; `None` for the other instructions.
     pieces: Vec<Option<Piece>>,
+    /// Arguments and parameters that are already local constants, if each is read before its first use.
+    read: Vec<Symbol>,
     support: &'a mut Support,
 }
 
@@ -47,10 +49,14 @@ pub fn write_program(
     places: Places<'_>,
     support: &mut Support,
 ) -> String {
-    write_inputs(out, program, scope);
     let pieces = vec![None; program.instructions.len()];
-    let mut w = Writer { program, scope, statements: Vec::new(), pieces, support };
-    w.write_instructions();
+    let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new(), support };
+    if w.support.is_kernel {
+        w.write_late();
+    } else {
+        write_inputs(out, program, scope);
+        w.write_instructions();
+    }
     let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand(*o)).collect();
     write_statements(out, &w.statements, &outputs, places);
     outputs.into_iter().next().unwrap_or_default().text
@@ -58,20 +64,26 @@ pub fn write_program(
 
 /// Writes local constants for the arguments and parameters that the program uses.
 fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
-    for quantity in program.symbols().into_iter().map(Quantity::of) {
-        match (quantity, local_name(quantity, scope)) {
-            (Quantity::Time, _) => {}
-            (Quantity::Parameter(k), Some(name)) => {
-                let _ = writeln!(out, "    const double {name} = self->{};", scope.parameters[k]);
-            }
-            (_, Some(name)) => {
-                let found = scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.name(), k)));
-                if let Some((argument, k)) = found {
-                    let _ = writeln!(out, "    const double {name} = {argument}[{k}];");
-                }
-            }
-            _ => {}
+    for symbol in program.symbols() {
+        out.push_str(&input(symbol, scope));
+    }
+}
+
+/// Returns the definition of the local constant of an argument or parameter.
+fn input(symbol: Symbol, scope: &Scope<'_>) -> String {
+    let quantity = Quantity::of(symbol);
+    match (quantity, local_name(quantity, scope)) {
+        (Quantity::Time, _) => String::new(),
+        (Quantity::Parameter(k), Some(name)) => {
+            format!("    const double {name} = self->{};\n", scope.parameters[k])
         }
+        (_, Some(name)) => {
+            let found = scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.name(), k)));
+            found.map_or(String::new(), |(argument, k)| {
+                format!("    const double {name} = {argument}[{k}];\n")
+            })
+        }
+        _ => String::new(),
     }
 }
 
@@ -96,6 +108,52 @@ impl Writer<'_> {
                 self.write_instruction(k);
             }
         }
+    }
+
+    /// Writes all instructions, with arguments, parameters, sines and cosines right before their first use.
+    fn write_late(&mut self) {
+        let angles = Angles::find(self.program);
+        let mut is_written = vec![false; self.program.instructions.len()];
+        for k in 0..self.program.instructions.len() {
+            self.program.instructions[k].operands(|o| self.read(o));
+            if !angles.covered[k] {
+                self.write_instruction(k);
+            } else if !is_written[k] {
+                let has_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
+                let Some(angle) = angles.list.iter().find(has_value) else { continue };
+                let text = self.operand(angle.angle).text;
+                let function = self.support.angles(1);
+                let mut text = format!(
+                    "    double sine{k}, cosine{k};\n    {function}({text}, &sine{k}, &cosine{k});\n"
+                );
+                let mut names = Vec::new();
+                for (value, name) in [(angle.sine, "sine"), (angle.cosine, "cosine")] {
+                    let Some(value) = value else { continue };
+                    let _ = writeln!(text, "    const double t{value} = {name}{k};");
+                    is_written[value] = true;
+                    names.push(value);
+                }
+                self.statements.push(Statement { names, text });
+            }
+        }
+        self.program.outputs.clone().into_iter().for_each(|o| self.read(o));
+    }
+
+    /// Reads an argument or parameter if an operand is one that has not been read.
+    fn read(&mut self, operand: Operand) {
+        if let Operand::Symbol(symbol) = operand
+            && !self.read.contains(&symbol)
+        {
+            self.read.push(symbol);
+            let text = input(symbol, self.scope);
+            self.statements.push(Statement { names: self.reading(symbol), text });
+        }
+    }
+
+    /// Returns the index of the statement that reads an argument or parameter, after those of the instructions.
+    fn reading(&self, symbol: Symbol) -> Vec<usize> {
+        let at = self.read.iter().position(|known| *known == symbol);
+        at.map(|at| self.program.instructions.len() + at).into_iter().collect()
     }
 
     fn write_instruction(&mut self, k: usize) {
@@ -148,7 +206,7 @@ impl Writer<'_> {
             Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
             Operand::Const(c) => Piece::plain(constant(c)),
             Operand::Symbol(s) => match local_name(Quantity::of(s), self.scope) {
-                Some(name) => Piece::plain(name),
+                Some(name) => Piece { needs: self.reading(s), ..Piece::plain(name) },
                 None => self.missing(),
             },
             // Programs without lanes contain neither tuples nor gathers.
@@ -213,11 +271,7 @@ impl Writer<'_> {
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table()) else { return self.missing() };
-        let text = format!(
-            "lw_tabulated(&self->{table}, {count}, (const double[]){{{}}}, (const int[]){{{}}})",
-            x.join(", "),
-            orders.join(", ")
-        );
+        let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
     }
 

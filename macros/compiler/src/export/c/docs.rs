@@ -64,7 +64,7 @@ pub fn wrapped(text: &str, first: &str, others: &str) -> String {
 }
 
 /// Returns the description of an argument.
-fn argument(a: Argument) -> &'static str {
+pub fn argument(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",
         Argument::Q => "configuration",
@@ -79,7 +79,8 @@ fn argument(a: Argument) -> &'static str {
     }
 }
 
-fn numbers(n: usize) -> String {
+/// Returns a count of numbers in words.
+pub fn numbers(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
 

@@ -1,6 +1,7 @@
 //! Frames: placements, velocities, accelerations and Jacobians of all frames by index. Links are traversed
 //! from the ground outwards, with one step per link.
 
+use super::batch::Batch;
 use super::body::{Scope, write_program};
 use super::docs;
 use super::function::Outline;
@@ -55,8 +56,8 @@ fn signature(o: &Outline<'_>, access: &Access) -> String {
     format!("{}int frame, {}", &spelled[..at], &spelled[at..])
 }
 
-/// Returns the declarations and the indices of the frames.
-pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
+/// Returns the indices of the frames.
+pub fn indices(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     let mut text = String::new();
     if frames.is_empty() {
         return text;
@@ -68,13 +69,37 @@ pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
         let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", docs::safe(says));
     }
     text.push_str("};\n\n");
-    for access in &ACCESSES {
+    text
+}
+
+/// Returns the declarations and the indices of the frames.
+pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
+    let mut text = indices(o, frames);
+    for access in ACCESSES.iter().filter(|_| !frames.is_empty()) {
         text.push_str(&docs::wrapped(access.docs, "/* ", " * "));
         text.push_str(" * Returns 0; 1 where there is no such frame.\n *\n");
         text.push_str(&docs::wrapped(access.result, " * result    ", " *           "));
         let _ = writeln!(text, " */\n{};\n", signature(o, access));
     }
     text
+}
+
+/// Returns the functions of frames.
+pub fn batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
+    let accesses = ACCESSES.iter().filter(|_| !output.frames.is_empty());
+    let batch = |access: &Access| {
+        let size = match access.name {
+            "frame_placement" => 12,
+            "frame_jacobian" => 6 * o.nv,
+            _ => 6,
+        };
+        let arguments = o.timed(access.arguments);
+        Batch {
+            of_frame: true,
+            ..Batch::written(access.name, &arguments, &[("result", size)], access.docs, o)
+        }
+    };
+    accesses.map(batch).collect()
 }
 
 /// Returns the definitions.
@@ -256,23 +281,24 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     for (int k = count - 1; k >= 0; --k) {{
         double next[12];
         lw_link_placement(path[k], {own}{time}q, p, next);
-        memcpy(p, next, sizeof next);
+        for (int i = 0; i < 12; ++i) {{
+            p[i] = next[i];
+        }}
 "
         );
         if is_jacobian {
-            body.push_str("        memcpy(placements + 12 * k, next, sizeof next);\n");
+            copy(&mut body, "        ", "placements[12 * k + i]", "next[i]", 12);
         }
         if acceleration {
             let _ = write!(
                 body,
-                "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
+                "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n"
             );
+            copy(&mut body, "        ", "p[12 + i]", "next[i]", 12);
         }
         if twist {
-            let _ = write!(
-                body,
-                "        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
-            );
+            let _ = writeln!(body, "        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);");
+            copy(&mut body, "        ", "p[12 + i]", "next[i]", 6);
         }
         body.push_str("    }\n");
     }
@@ -288,7 +314,9 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     for (int k = 0; k < 9; ++k) {{
         result[k] = placed[3 * (k % 3) + k / 3];
     }}
-    memcpy(result + 9, placed + 9, 3 * sizeof placed[0]);"
+    for (int k = 9; k < 12; ++k) {{
+        result[k] = placed[k];
+    }}"
             ),
             "frame_velocity" => writeln!(body, "    lw_twist_on_link(frame, {own}p, result);"),
             _ => writeln!(body, "    lw_acceleration_on_link(frame, {own}p, result);"),
@@ -296,6 +324,12 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     }
     body.push_str("    return 0;\n");
     body
+}
+
+/// Writes a loop that copies `n` values.
+fn copy(body: &mut String, indent: &str, to: &str, from: &str, n: usize) {
+    let _ =
+        writeln!(body, "{indent}for (int i = 0; i < {n}; ++i) {{\n{indent}    {to} = {from};\n{indent}}}");
 }
 
 /// Writes the sum of the columns of the links on the path to a frame into its Jacobian. With declared
@@ -335,7 +369,9 @@ fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
             body,
             "    double joints[6 * {0}], z[{0} * {0}];
     {call};
-    memcpy(joints, result, sizeof joints);
+    for (int k = 0; k < 6 * {0}; ++k) {{
+        joints[k] = result[k];
+    }}
     for (int j = 0; j < {0}; ++j) {{
         for (int i = 0; i < 6; ++i) {{
             double sum = 0.0;

@@ -111,7 +111,8 @@ impl Outline<'_> {
     }
 }
 
-fn is_passed(argument: &Argument) -> bool {
+/// Returns false for arguments that do not occur in signatures.
+pub fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }
 
@@ -131,7 +132,7 @@ pub fn plain(name: &str) -> String {
 }
 
 /// Documentation of the function of [`Id::InputDerivatives`].
-const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
+pub const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
 
 /// Returns the public name of a function.
 pub fn public_name(f: &Function) -> String {

@@ -1,6 +1,7 @@
 //! Functions of the configuration manifold in declared generalized speeds. They call internal functions of
 //! joint velocities, as in Rust.
 
+use super::batch::{Array, Batch};
 use super::docs;
 use super::function::Outline;
 use super::manifold::{self, self_parameter};
@@ -55,6 +56,22 @@ const TO_FIRST_ORDER: [Space; 2] = [
 fn all(o: &Outline<'_>) -> impl Iterator<Item = &'static Space> {
     let derivatives: &[Space] = if o.derivatives { &TO_FIRST_ORDER } else { &[] };
     SPACE.iter().chain(derivatives)
+}
+
+/// Returns the functions.
+pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
+    let batch = |of: &Space| {
+        let size = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
+        let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, size(name))).collect();
+        let result = |name: &&str| match (of.name, *name) {
+            ("integrate", name) => Array::new(name, o.nq),
+            (_, "result") => Array::new("result", o.nv),
+            (_, name) => Array::matrix(name, o.nv, o.nv),
+        };
+        let results = of.results.iter().map(result).collect();
+        Batch { results, docs: vec![of.docs.to_string()], ..Batch::plain(of.name, &arguments, &[]) }
+    };
+    all(o).map(batch).collect()
 }
 
 fn signature(o: &Outline<'_>, of: &Space) -> String {

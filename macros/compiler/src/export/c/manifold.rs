@@ -1,5 +1,6 @@
 //! Functions of the configuration manifold: `integrate`, `difference`, `tangent_rate` and their derivatives.
 
+use super::batch::{Array, Batch};
 use super::docs;
 use super::function::Outline;
 use super::in_speeds;
@@ -31,6 +32,45 @@ fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
+/// Returns the functions of the configuration manifold.
+pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
+    if o.speeds {
+        return in_speeds::batches(o);
+    }
+    let size = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
+    let plain = MANIFOLD.iter().map(|(name, arguments, docs)| {
+        let result = if *name == "integrate" { o.nq } else { o.nv };
+        let arguments = arguments.map(|argument| (argument, size(argument)));
+        Batch { docs: vec![docs.to_string()], ..Batch::plain(name, &arguments, &[("result", result)]) }
+    });
+    let derivatives = TO_FIRST_ORDER.iter().filter(|_| o.derivatives).map(|of| {
+        let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, o.nv)).collect();
+        let mut batch = Batch::plain(&format!("{}_derivatives", of.name), &arguments, &[]);
+        batch.results = of.results.iter().map(|name| Array::matrix(name, o.nv, o.nv)).collect();
+        Batch { docs: vec![of.docs.to_string()], ..batch }
+    });
+    plain.chain(derivatives).collect()
+}
+
+/// Returns the functions of a configuration space without curved joints, with their bodies; none otherwise.
+pub fn bodies_of_plain_charts(charts: &[Chart], o: &Outline<'_>) -> Vec<(Batch, String)> {
+    if o.speeds || charts.iter().any(|chart| !matches!(chart, Chart::Plain(..))) {
+        return Vec::new();
+    }
+    let body = |batch: &Batch| charts.iter().map(|chart| plain_statement(*chart, &batch.name)).collect();
+    batches(o).into_iter().take(MANIFOLD.len()).map(|batch| (batch.clone(), body(&batch))).collect()
+}
+
+/// Returns the statement of a function for a plain coordinate.
+fn plain_statement(chart: Chart, name: &str) -> String {
+    let Chart::Plain(q, v) = chart else { return String::new() };
+    match name {
+        "integrate" => format!("    result[{q}] = q[{q}] + dv[{v}];\n"),
+        "difference" => format!("    result[{v}] = to[{q}] - from[{q}];\n"),
+        _ => format!("    result[{v}] = v[{v}];\n"),
+    }
+}
+
 /// Writes the definitions. With declared generalized speeds, the functions of joint velocities are internal,
 /// and the public functions call them.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
@@ -38,12 +78,8 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
         let mut body = String::new();
         for chart in charts {
             let (kind, q, v) = match *chart {
-                Chart::Plain(q, v) => {
-                    let _ = match name {
-                        "integrate" => writeln!(body, "    result[{q}] = q[{q}] + dv[{v}];"),
-                        "difference" => writeln!(body, "    result[{v}] = to[{q}] - from[{q}];"),
-                        _ => writeln!(body, "    result[{v}] = v[{v}];"),
-                    };
+                Chart::Plain(..) => {
+                    body.push_str(&plain_statement(*chart, name));
                     continue;
                 }
                 Chart::Ball(q, v) => ("ball", q.0, v.0),

@@ -3,6 +3,7 @@
 //! Vectors are plain arrays, and matrices are stored by columns. The functions are reentrant: they store
 //! nothing between calls and allocate no memory.
 
+mod batch;
 mod body;
 mod casadi;
 mod composed;
@@ -19,6 +20,9 @@ mod steps;
 mod support;
 mod tables;
 
+pub(super) use batch::{Array, Batch};
 pub(super) use docs::{safe, without_links, wrapped};
-pub use names::{capitals, identifier, prefix};
+pub use names::{capitals, identifier, prefix, prefix_identifier};
+pub(super) use scalar::{in_single_precision, number_length};
+pub(super) use source::{CodeParts, bodies_without_calls, parts};
 pub use source::{Files, Options, Unfit, write};

@@ -52,7 +52,8 @@ fn word(word: &str, after: &str) -> String {
     if is_call { format!("{word}f") } else { word.to_string() }
 }
 
-fn number_length(text: &str) -> usize {
+/// Returns the length of the number that a text begins with.
+pub fn number_length(text: &str) -> usize {
     let mut exponent = false;
     text.find(|c: char| {
         let goes_on = c.is_ascii_alphanumeric() || c == '.' || (exponent && matches!(c, '+' | '-'));

@@ -6,6 +6,7 @@
 //! its derivatives with respect to `q`, `v`, `u` and, unless the equations depend on time, the step size.
 //! Each part has `NV` entries.
 
+use super::batch::{Array, Batch};
 use super::docs;
 use super::function::Outline;
 use super::manifold::block;
@@ -74,6 +75,26 @@ impl<'a> Steps<'a> {
         }
     }
 
+    /// Returns the functions.
+    pub fn batches(&self, o: &Outline<'_>) -> Vec<Batch> {
+        let mut all = Vec::new();
+        for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
+            let arguments = o.timed(&STATE);
+            let docs = format!("One step of {about}; `h` seconds long, under inputs `u` that are held.");
+            let mut step = Batch::written(&format!("{method}_step"), &arguments, &[], &docs, o);
+            step.arguments.push(Array::value("h", "step size, s"));
+            let array = |(name, rows, columns): (&str, usize, usize)| Array::matrix(name, rows, columns);
+            step.results = next(o).into_iter().map(array).collect();
+            let docs = format!("The step of `{method}_step` with its Jacobians along displacements.");
+            let mut transition = Batch { docs: vec![docs], ..step.clone() };
+            transition.name = format!("{method}_transition");
+            transition.results = transition_results(o).into_iter().map(array).collect();
+            all.push(step);
+            all.extend(self.has_transitions.then_some(transition));
+        }
+        all
+    }
+
     /// Returns the declarations.
     pub fn declare(&self, o: &Outline<'_>) -> String {
         let mut text = String::new();
@@ -90,11 +111,7 @@ impl<'a> Steps<'a> {
             let says = format!(
                 "The step of `{method}_step` with its Jacobians, exact to rounding: with `x` the displacement of the configuration (as `integrate` takes it), then the change of the velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the change of the inputs{by_h}."
             );
-            let (n, m) = (o.nv, o.nu);
-            let mut results = next(o);
-            results.extend([("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]);
-            results.extend((!o.time).then_some(("by_h", 2 * n, 1)));
-            text.push_str(&docs::function(&[says], &o.timed(&STATE), &results, o));
+            text.push_str(&docs::function(&[says], &o.timed(&STATE), &transition_results(o), o));
             let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_transition"), &transition(o)));
         }
         text
@@ -256,6 +273,15 @@ fn rate_of_way(o: &Outline<'_>) -> String {
 
 fn next(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
     vec![(NEXT[0], o.nq, 1), (NEXT[1], o.nv, 1)]
+}
+
+/// Returns the results of a step with its Jacobians.
+fn transition_results(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
+    let (n, m) = (o.nv, o.nu);
+    let mut results = next(o);
+    results.extend([("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]);
+    results.extend((!o.time).then_some(("by_h", 2 * n, 1)));
+    results
 }
 
 /// Returns the names of the results of a step with its Jacobians.

@@ -7,6 +7,8 @@
 pub struct Support {
     /// Whether numbers have single precision.
     single: bool,
+    /// Whether the target defines fused products and the functions for sines and cosines itself.
+    pub is_kernel: bool,
     one_angle: bool,
     four_angles: bool,
     signum: bool,
@@ -45,6 +47,11 @@ impl Support {
     /// Creates an empty set of helpers.
     pub fn new(single: bool) -> Support {
         Support { single, ..Support::default() }
+    }
+
+    /// Creates an empty set of helpers for a target that defines fused products, sines and cosines itself.
+    pub fn of_kernels() -> Support {
+        Support { is_kernel: true, ..Support::default() }
     }
 
     /// Returns the function for sines and cosines of one or four angles.
@@ -88,9 +95,9 @@ impl Support {
         };
         let air = self.atmosphere.contains(&true);
         let parts = [
-            (true, include_str!("templates/fused.c")),
-            (self.one_angle, angles[0]),
-            (self.four_angles, angles[1]),
+            (!self.is_kernel, include_str!("templates/fused.c")),
+            (self.one_angle && !self.is_kernel, angles[0]),
+            (self.four_angles && !self.is_kernel, angles[1]),
             (self.signum, include_str!("templates/signum.c")),
             (air, include_str!("templates/atmosphere.c")),
             (self.products, include_str!("templates/products.c")),

@@ -7,7 +7,7 @@ static void lw_ball_integrate_derivatives(const double dv[3], double by_q[9], do
     lw_ball_integrate(identity, back, turn);
     lw_left_jacobian(lw_dot_of(dv, dv), factors);
     for (int j = 0; j < 3; ++j) {
-        const double e[3] = {j == 0, j == 1, j == 2};
+        const double e[3] = {j == 0 ? 1.0 : 0.0, j == 1 ? 1.0 : 0.0, j == 2 ? 1.0 : 0.0};
         double first[3], second[3], inner[3], outer[3];
         lw_cross_into(dv, e, first);
         lw_cross_into(dv, first, second);
@@ -31,7 +31,7 @@ static void lw_ball_tangent_rate_derivatives(const double dv[3], const double v[
     lw_cross_into(dv, v, first);
     lw_cross_into(dv, first, twice);
     for (int j = 0; j < 3; ++j) {
-        const double e[3] = {j == 0, j == 1, j == 2};
+        const double e[3] = {j == 0 ? 1.0 : 0.0, j == 1 ? 1.0 : 0.0, j == 2 ? 1.0 : 0.0};
         double changed[3], outer[3], inner[3];
         lw_cross_into(e, v, changed);
         lw_cross_into(e, first, outer);

@@ -97,3 +97,19 @@ static double lw_tabulated(const @PREFIX@_table *table, int variables, const dou
     }
     return sum;
 }
+
+static inline double lw_tabulated_1(const @PREFIX@_table *table, double x, int order) {
+    return lw_tabulated(table, 1, &x, &order);
+}
+
+static inline double lw_tabulated_2(const @PREFIX@_table *table, double x, double y, int by_x, int by_y) {
+    const double at[2] = {x, y};
+    const int orders[2] = {by_x, by_y};
+    return lw_tabulated(table, 2, at, orders);
+}
+
+static inline double lw_tabulated_3(const @PREFIX@_table *table, double x, double y, double z, int by_x, int by_y, int by_z) {
+    const double at[3] = {x, y, z};
+    const int orders[3] = {by_x, by_y, by_z};
+    return lw_tabulated(table, 3, at, orders);
+}

@@ -1,0 +1,120 @@
+//! Signatures of the functions, from which kernels for many states are made.
+
+use super::docs::{self, without_links};
+use super::function::{INPUT_DERIVATIVES, Outline, is_passed, public_name};
+use crate::catalogue::{Argument, Id, Shape};
+use crate::derive::Function;
+
+/// Array that a function reads or writes for one state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Array {
+    /// Name of the argument.
+    pub name: String,
+    /// Number of entries.
+    pub length: usize,
+    /// Meaning and size, for the documentation.
+    pub about: String,
+    /// Whether the function takes the value of the only entry instead of an array.
+    pub is_value: bool,
+}
+
+/// Signature of a function that a program can call.
+#[derive(Clone, Debug)]
+pub struct Batch {
+    /// Name without the prefix.
+    pub name: String,
+    /// Arguments after the parameters and the index of the frame.
+    pub arguments: Vec<Array>,
+    /// Results, in the order of the arguments that receive them.
+    pub results: Vec<Array>,
+    /// Whether the function returns its only result.
+    pub returns: bool,
+    /// Whether the function takes the index of a frame.
+    pub of_frame: bool,
+    /// Documentation, one paragraph per entry.
+    pub docs: Vec<String>,
+}
+
+impl Batch {
+    /// Returns the signature of a derived function.
+    pub fn from_function(f: &Function, o: &Outline<'_>) -> Batch {
+        let own = [INPUT_DERIVATIVES.to_string()];
+        let docs = if f.id == Id::InputDerivatives { &own } else { f.docs.as_slice() };
+        Batch::new(&public_name(f), &f.arguments, f.shape, docs, o)
+    }
+
+    /// Returns the signature of a function with these arguments and this result.
+    pub fn new(name: &str, arguments: &[Argument], shape: Shape, docs: &[String], o: &Outline<'_>) -> Batch {
+        let mut results: Vec<Array> = shape
+            .arrays()
+            .into_iter()
+            .map(|(name, rows, columns)| Array::matrix(name, rows, columns))
+            .collect();
+        let returns = results.is_empty();
+        if returns {
+            results.push(Array::new("result", 1));
+        }
+        let docs = docs.iter().map(|text| without_links(text)).collect();
+        let mut batch = Batch { results, returns, docs, ..Batch::plain(name, &[], &[]) };
+        batch.arguments =
+            arguments.iter().filter(|a| is_passed(a)).map(|a| Array::from_argument(*a, o)).collect();
+        batch
+    }
+
+    /// Returns the signature of a handwritten function with vectors as results.
+    pub fn written(
+        name: &str,
+        arguments: &[Argument],
+        results: &[(&str, usize)],
+        docs: &str,
+        o: &Outline<'_>,
+    ) -> Batch {
+        let arguments = arguments.iter().map(|a| Array::from_argument(*a, o)).collect();
+        Batch { arguments, docs: vec![docs.to_string()], ..Batch::plain(name, &[], results) }
+    }
+
+    /// Returns the signature of a function on vectors.
+    pub fn plain(name: &str, arguments: &[(&str, usize)], results: &[(&str, usize)]) -> Batch {
+        let arrays = |list: &[(&str, usize)]| list.iter().map(|(name, n)| Array::new(name, *n)).collect();
+        Batch {
+            name: name.to_string(),
+            arguments: arrays(arguments),
+            results: arrays(results),
+            returns: false,
+            of_frame: false,
+            docs: Vec::new(),
+        }
+    }
+}
+
+impl Array {
+    /// Returns a vector.
+    pub fn new(name: &str, length: usize) -> Array {
+        Array { name: name.to_string(), length, about: docs::numbers(length), is_value: false }
+    }
+
+    /// Returns a matrix, which is stored by columns.
+    pub fn matrix(name: &str, rows: usize, columns: usize) -> Array {
+        let about = match columns {
+            1 => docs::numbers(rows),
+            _ => format!("{rows} by {columns}, column by column"),
+        };
+        Array { about, ..Array::new(name, rows * columns) }
+    }
+
+    /// Returns a value that is passed by itself.
+    pub fn value(name: &str, about: &str) -> Array {
+        Array { about: about.to_string(), is_value: true, ..Array::new(name, 1) }
+    }
+
+    fn from_argument(argument: Argument, o: &Outline<'_>) -> Array {
+        let about = docs::argument(argument);
+        match argument {
+            Argument::T => Array::value("t", about),
+            a => {
+                let length = o.length(a);
+                Array { about: format!("{about}, {}", docs::numbers(length)), ..Array::new(a.name(), length) }
+            }
+        }
+    }
+}

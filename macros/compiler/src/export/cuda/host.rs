@@ -1,0 +1,67 @@
+//! Functions that launch the kernels, for C++.
+
+use super::Kernels;
+use crate::export::c::{Batch, wrapped};
+use std::fmt::Write;
+
+/// Returns the header.
+pub fn text(kernels: &Kernels<'_>) -> String {
+    let p = &kernels.parts.prefix;
+    let upper = p.to_ascii_uppercase();
+    let mut text = include_str!("templates/launch.cuh").replace("@PREFIX@", p).replace("@UPPER@", &upper);
+    kernels.functions.iter().for_each(|f| launch(&mut text, kernels, f));
+    text.push_str("#endif\n");
+    text
+}
+
+/// Writes the function that launches a kernel, with its documentation.
+fn launch(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
+    let p = &kernels.parts.prefix;
+    let upper = p.to_ascii_uppercase();
+    let _ = writeln!(text, "{}", kernels.condition(f));
+    for (k, paragraph) in f.docs.iter().enumerate() {
+        text.push_str(&wrapped(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
+    }
+    text.push_str(if f.docs.is_empty() { "/*\n" } else { " *\n" });
+    for (array, of) in f.arguments.iter().map(|a| (a, "")).chain(f.results.iter().map(|a| (a, "out: "))) {
+        let says = format!("{of}{}", array.about);
+        text.push_str(&wrapped(&says, &format!(" * {:9} ", array.name), " *           "));
+    }
+    text.push_str(" */\n");
+    let mut declared = vec!["long long states".to_string()];
+    let mut passed = vec!["states".to_string()];
+    let view = |kind: &str, name: &str| {
+        (format!("lw_view<{kind}> {name}"), format!("{name}.at, {name}.entry_of(states), {name}.state"))
+    };
+    if kernels.has_own() {
+        let (argument, values) = view("const double", "parameters");
+        declared.push(argument);
+        passed.push(values);
+    }
+    for name in &kernels.parts.tables {
+        declared.push(format!("{p}_device::{p}_table table_{name}"));
+        passed.push(format!("table_{name}"));
+    }
+    if f.of_frame {
+        declared.push("int frame".to_string());
+        passed.push("frame".to_string());
+    }
+    let arguments = f.arguments.iter().map(|a| view("const double", &a.name));
+    for (argument, values) in arguments.chain(f.results.iter().map(|a| view("double", &a.name))) {
+        declared.push(argument);
+        passed.push(values);
+    }
+    let check = match f.of_frame {
+        true => {
+            format!("    if (frame < 0 || frame >= {upper}_FRAMES) {{\n        return LW_INVALID;\n    }}\n")
+        }
+        false => String::new(),
+    };
+    let _ = writeln!(
+        text,
+        "inline lw_error {p}_{0}_batch({1}, lw_stream stream = 0) {{\n{check}    LW_LAUNCH({p}_{0}_kernel, {2});\n}}\n#endif\n",
+        f.name,
+        declared.join(", "),
+        passed.join(", ")
+    );
+}
