@@ -349,10 +349,10 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns one if the cell contains the position and zero otherwise, lane by lane.
     fn share(&self, points: &[f64], cell: usize) -> T {
-        let from = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let step_at = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { from(cell) };
-        low - if last { T::zero() } else { from(cell + 1) }
+        let low = if cell == 0 { T::one() } else { step_at(cell) };
+        low - if last { T::zero() } else { step_at(cell + 1) }
     }
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.

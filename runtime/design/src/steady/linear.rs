@@ -3,7 +3,7 @@
 use super::problem::{Place, Problem, dynamic};
 use super::solve::check_steady;
 use super::{SteadyState, Trim};
-use crate::mechanism::{displacements, effective_mass, input_names, named, state_names};
+use crate::mechanism::{displacements, effective_mass, input_names, signals, state_names};
 use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{Derivatives, OutputDerivatives};
 use nalgebra::{DMatrix, SVector};
