@@ -274,7 +274,7 @@ impl Model {
                     d.column = d.articulated.times(&s);
                     d.inverse = 1.0 / s.dot(&d.column);
                     d.force = tau[link.v] - s.dot(&d.wrench);
-                    let reduced = d.articulated.without(&d.column, d.inverse);
+                    let reduced = d.articulated.subtract_rank_one(&d.column, d.inverse);
                     let wrench = d.wrench + reduced.times(&d.acceleration) + d.column * (d.force * d.inverse);
                     (Some(reduced), wrench)
                 }

@@ -20,7 +20,7 @@ pub struct Size {
 }
 
 impl Size {
-    fn of<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
+    fn sum<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
         let mut size = Size::default();
         for program in programs {
             size.operations += program.counts.total();
@@ -43,7 +43,7 @@ pub struct Operations {
 impl Operations {
     /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if the mechanism
     /// has an error.
-    pub fn of(arguments: &str, item: &str) -> Operations {
+    pub fn compile(arguments: &str, item: &str) -> Operations {
         let tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
         let cx = &mut Diagnostics::new();
         let graph = Graph::new();
@@ -59,7 +59,7 @@ impl Operations {
     /// Returns the numbers of operations of a generated function; zero if it does not exist.
     pub fn function(&self, name: &str) -> Size {
         let found = self.output.functions.iter().filter(|f| f.name == name);
-        Size::of(found.map(|f| &f.program))
+        Size::sum(found.map(|f| &f.program))
     }
 
     /// Returns the numbers of operations of a frame's Jacobian: the steps along the path to its link.
@@ -72,6 +72,6 @@ impl Operations {
             programs.extend([&link.placement, &link.columns]);
             at = link.parent;
         }
-        Size::of(programs)
+        Size::sum(programs)
     }
 }

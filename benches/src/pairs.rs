@@ -102,7 +102,7 @@ where
 {
     let model = Model::from_urdf(source.text, &source.options);
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
-    let operations = Operations::of(source.arguments, "pub struct Robot;");
+    let operations = Operations::compile(source.arguments, "pub struct Robot;");
     let states = Rc::new(states(&model));
     let bench = Bench { frame: model.frame(source.frame).unwrap_or_default(), model, states };
     let pairs = vec![

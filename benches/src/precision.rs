@@ -216,7 +216,7 @@ trait Visit {
         M: Mechanism<N, N, 0, Scalar = f64>;
 }
 
-fn with<V: Visit>(problem: usize, visit: V) -> V::Result {
+fn visit_problem<V: Visit>(problem: usize, visit: V) -> V::Result {
     match problem {
         0 => visit.visit(&Pleiades {}, Pleiades::START, 3.0),
         1 => visit.visit(&CarAxle {}, ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]), 3.0),
@@ -262,7 +262,7 @@ impl<S: Method<f64> + Clone> Visit for Solve<S> {
 ///
 /// Returns the errors of the simulation.
 pub fn solve<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
-    with(problem, Solve(method))
+    visit_problem(problem, Solve(method))
 }
 
 struct Start;
@@ -280,7 +280,7 @@ impl Visit for Start {
 
 /// Returns the initial state, configuration and velocity, and the final time of a problem, s.
 pub fn start(problem: usize) -> (Vec<f64>, f64) {
-    with(problem, Start)
+    visit_problem(problem, Start)
 }
 
 struct Rate<'a> {
@@ -308,5 +308,5 @@ impl Visit for Rate<'_> {
 /// Writes the rate of a state, with accelerations that satisfy the constraints: the right-hand side for other
 /// libraries.
 pub fn rate(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
-    with(problem, Rate { t, y, rate });
+    visit_problem(problem, Rate { t, y, rate });
 }

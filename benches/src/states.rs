@@ -24,12 +24,12 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
     /// Returns a state with random coordinates and unit quaternions; all other values are of the order of
     /// one.
     fn random(model: &Model, random: &mut Random) -> State<NQ, NV> {
-        let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.within(3.0));
+        let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform(3.0));
         for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
             let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
             quaternion.normalize_mut();
         }
-        let mut vector = || SVector::from_fn(|_, _| random.within(2.0));
+        let mut vector = || SVector::from_fn(|_, _| random.uniform(2.0));
         State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
     }
 

@@ -133,7 +133,7 @@ impl Fourier {
         Fourier([[(); 5]; 7].map(|joint| joint.map(|()| [0.8 * random.next(), 0.8 * random.next()])))
     }
 
-    fn at(&self, t: f64) -> [Joints; 3] {
+    fn evaluate(&self, t: f64) -> [Joints; 3] {
         const RATE: f64 = 0.6;
         let mut q = Joints::from([0.0, 0.3, 0.0, -1.6, 0.0, 1.8, 0.0]);
         let (mut v, mut a) = (Joints::zeros(), Joints::zeros());
@@ -186,7 +186,7 @@ fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
 /// Returns the root mean square of the difference between two robots' torques on a trajectory, N·m.
 fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
     let square = |k: usize| {
-        let [q, v, a] = trajectory.at(0.02 * k as f64);
+        let [q, v, a] = trajectory.evaluate(0.02 * k as f64);
         (one.inverse_dynamics(&q, &v, &a) - other.inverse_dynamics(&q, &v, &a)).norm_squared()
     };
     ((0..500).map(square).sum::<f64>() / (500.0 * 7.0)).sqrt()
@@ -203,7 +203,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..6 {
         let trajectory = Fourier::new(&mut random);
         for k in 0..400 {
-            let state = trajectory.at(0.025 * k as f64);
+            let state = trajectory.evaluate(0.025 * k as f64);
             let [q, v, a] = &state;
             let torque = truth.inverse_dynamics(q, v, a) + Joints::from_fn(|_, _| 0.05 * random.next());
             let y = columns(&arm, &state);

@@ -58,7 +58,7 @@ fn costs() -> Quadratic<f64, 2, 1> {
 }
 
 /// Returns the state after a period with a constant force.
-fn after(x: &State, push: f64) -> Result<State, Error> {
+fn next_state(x: &State, push: f64) -> Result<State, Error> {
     let (q, v) = discrete::split(x);
     let (q, v) = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
     Ok(discrete::stacked(&q, &v))
@@ -69,7 +69,7 @@ fn after(x: &State, push: f64) -> Result<State, Error> {
 struct Entries(Vec<usize>, Vec<usize>, Vec<f64>);
 
 impl Entries {
-    fn put(&mut self, row: usize, column: usize, value: f64) {
+    fn push(&mut self, row: usize, column: usize, value: f64) {
         self.0.push(row);
         self.1.push(column);
         self.2.push(value);
@@ -103,10 +103,10 @@ impl Program {
             let known = if k == 0 { next - b * push } else { next - a * x - b * push };
             for i in 0..4 {
                 let row = self.right.len();
-                self.rows.put(row, SIZE * k + 1 + i, 1.0);
-                self.rows.put(row, SIZE * k, -b[i]);
+                self.rows.push(row, SIZE * k + 1 + i, 1.0);
+                self.rows.push(row, SIZE * k, -b[i]);
                 for j in (0..4).filter(|_| k > 0) {
-                    self.rows.put(row, SIZE * (k - 1) + 1 + j, -a[(i, j)]);
+                    self.rows.push(row, SIZE * (k - 1) + 1 + j, -a[(i, j)]);
                 }
                 self.right.push(known[i]);
             }
@@ -124,7 +124,7 @@ impl Program {
             for (column, least, most) in [(SIZE * k, -strength, strength), (SIZE * k + 1 + RAIL, least, most)]
             {
                 for (sign, bound) in [(1.0, most), (-1.0, -least)] {
-                    self.rows.put(self.right.len(), column, sign);
+                    self.rows.push(self.right.len(), column, sign);
                     self.right.push(bound);
                 }
             }
@@ -138,10 +138,10 @@ impl Program {
         for k in 0..STEPS {
             let last = k + 1 == STEPS;
             let weight = if last { to_go.hessian::<4>() } else { each };
-            self.hessian.put(SIZE * k, SIZE * k, costs.uu[0]);
+            self.hessian.push(SIZE * k, SIZE * k, costs.uu[0]);
             let first = SIZE * k + 1;
             for j in 0..4 {
-                (0..=j).for_each(|i| self.hessian.put(first + i, first + j, weight[(i, j)]));
+                (0..=j).for_each(|i| self.hessian.push(first + i, first + j, weight[(i, j)]));
                 self.gradient[first + j] = -(weight.row(j) * GOAL)[0];
             }
         }
@@ -184,7 +184,7 @@ fn main() -> Result<(), Error> {
     for k in 0..100 {
         let (dq, dv) = discrete::split(&(free - GOAL));
         let push = regulator.inputs(1.0, &dq, &dv)[0];
-        free = after(&free, push)?;
+        free = next_state(&free, push)?;
 
         plan.rotate_left(1);
         plan = planned(&x, &plan, &to_go)?.expect("there is a way within the limits");
@@ -192,7 +192,7 @@ fn main() -> Result<(), Error> {
             let t = PERIOD * k as f64;
             println!("{t:6.2} {:9.4} {:11.4} {:9.3} {:15.4}", x[0], x[1], plan[0], free[0]);
         }
-        x = after(&x, plan[0])?;
+        x = next_state(&x, plan[0])?;
         for (i, (x, push)) in [(x, plan[0]), (free, push)].into_iter().enumerate() {
             furthest[i] = furthest[i].max(x[0].abs());
             strongest[i] = strongest[i].max(push.abs());

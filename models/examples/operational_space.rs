@@ -27,19 +27,19 @@ const RADIUS: f64 = 0.12;
 const RATE: f64 = 2.0;
 
 /// Returns the desired pose, velocity and acceleration of the hand: pointing down, on a vertical circle.
-fn wanted(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
+fn reference(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
     let (sin, cos) = (RATE * t).sin_cos();
-    let along = |y: f64, z: f64| Twist::from([0.0, RADIUS * y, RADIUS * z, 0.0, 0.0, 0.0]);
+    let planar_twist = |y: f64, z: f64| Twist::from([0.0, RADIUS * y, RADIUS * z, 0.0, 0.0, 0.0]);
     let place = Vector3::new(0.5, RADIUS * cos, 0.45 + RADIUS * sin);
     let placement =
         IsometryMatrix3::from_parts(place.into(), Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
-    (placement, along(-sin, cos) * RATE, along(-cos, -sin) * RATE * RATE)
+    (placement, planar_twist(-sin, cos) * RATE, planar_twist(-cos, -sin) * RATE * RATE)
 }
 
 /// Returns the torques for the hand's motion; its nullspace moves the joints towards their preferred posture.
 fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
-    let (placement, twist, acceleration) = wanted(t);
+    let (placement, twist, acceleration) = reference(t);
     let jacobian = arm.frame_jacobian(hand, q);
     let missing = placement_difference(&arm.frame_placement(hand, q), &placement);
     // Desired acceleration of the hand with feedback, minus the part J̇ v that it has without joint
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
     // The initial configuration follows by inverse kinematics from the posture. It starts at rest, so that
     // the hand must catch up.
-    let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), wanted(0.0).0);
+    let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), reference(0.0).0);
     let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
 
     let run = simulate(&arm)
@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for sample in run {
         let sample = sample?;
         let is = arm.frame_placement(hand, &sample.q);
-        let left = placement_difference(&is, &wanted(sample.t).0);
+        let left = placement_difference(&is, &reference(sample.t).0);
         let (off, turned) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
         let share = sample.u.component_div(&limits).amax();
         let place = is.translation;

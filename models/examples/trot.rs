@@ -3,7 +3,7 @@
 //!
 //! During stance a foot moves backwards under its hip, and during swing it returns above the ground. The
 //! joints are compliant, so that the robot moves at half to three quarters of the commanded speed. In a trot,
-//! diagonal pairs of feet stand for half of the time each; in a walk, one foot after the other is lifted.
+//! each diagonal pair of feet stands half of the time; in a walk, one foot after the other is lifted.
 //! Source: Hildebrand, *Symmetrical gaits of horses*, Science 150 (1965). The controller does not know the
 //! contacts; the ground forces are read from the simulation, as with force plates.
 //!

@@ -44,12 +44,15 @@ const REACH: [f64; 3] = [0.03, 0.015, 0.12];
 const RATE: f64 = 6.0;
 
 /// Returns the desired displacement of the trunk from the start, in its axes, with velocity and acceleration.
-fn wanted(t: f64) -> [SVector<f64, 6>; 3] {
+fn reference(t: f64) -> [SVector<f64, 6>; 3] {
     let [side, up, nod] = REACH;
-    let along = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
+    let trunk_vector = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
     let (sin, cos) = (RATE * t).sin_cos();
-    let (x, rate, change) =
-        (along(sin, cos - 1.0), along(cos, -sin) * RATE, along(-sin, -cos) * (RATE * RATE));
+    let (x, rate, change) = (
+        trunk_vector(sin, cos - 1.0),
+        trunk_vector(cos, -sin) * RATE,
+        trunk_vector(-sin, -cos) * (RATE * RATE),
+    );
     // The motion starts at rest.
     let late = (-4.0 * t).exp();
     let grown = 1.0 - late * (1.0 + 4.0 * t + 8.0 * t * t);
@@ -59,7 +62,7 @@ fn wanted(t: f64) -> [SVector<f64, 6>; 3] {
 
 /// Returns the configuration with the desired pose of the trunk.
 fn led(start: &Configuration, t: f64) -> Configuration {
-    let [place, ..] = wanted(t);
+    let [place, ..] = reference(t);
     let mut displacement = Velocity::zeros();
     displacement.fixed_rows_mut::<6>(0).copy_from(&place);
     Solo {}.integrate(start, &displacement)
@@ -69,7 +72,7 @@ fn led(start: &Configuration, t: f64) -> Configuration {
 fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (Torques, SVector<f64, 12>) {
     let robot = Solo {};
     let missing = robot.difference(q, &led(start, t));
-    let [_, velocity, acceleration] = wanted(t);
+    let [_, velocity, acceleration] = reference(t);
     let off = missing.fixed_rows::<6>(0) * 900.0 + (velocity - v.fixed_rows::<6>(0)) * 60.0;
     let target = acceleration + off;
     // With sticking feet: motion and contact forces for zero torques, and their derivatives with respect to
@@ -99,8 +102,9 @@ fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (T
 /// Returns the largest ratio of tangential force to friction limit over all feet, with positive normal
 /// forces.
 fn share(forces: &SVector<f64, 12>) -> f64 {
-    let of = |foot: usize| forces.fixed_rows::<2>(3 * foot + 1).norm() / (0.6 * forces[3 * foot].max(1e-9));
-    (0..4).map(of).fold(0.0, f64::max)
+    let ratio =
+        |foot: usize| forces.fixed_rows::<2>(3 * foot + 1).norm() / (0.6 * forces[3 * foot].max(1e-9));
+    (0..4).map(ratio).fold(0.0, f64::max)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -81,12 +81,12 @@ where
     S: FixedStep<T>,
 {
     method.check()?;
-    let step = taken(mechanism, method, t, q, v, u)?;
+    let step = take_step(mechanism, method, t, q, v, u)?;
     Ok((step.end.q, step.end.v))
 }
 
 /// Returns one step of the method, with the displacement within the step.
-fn taken<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn take_step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
     t: T,
@@ -124,7 +124,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
-    let step = taken(mechanism, method, t, q, v, u)?;
+    let step = take_step(mechanism, method, t, q, v, u)?;
     Ok(((step.end.q, step.end.v), step.displacement.at(T::one()) / h))
 }
 

@@ -5,8 +5,8 @@ const AXIS: [f64; 3] = [0.36, -0.48, 0.8];
 const QUATERNION: [f64; 4] = [0.1, -0.5, 0.7, 0.5];
 const POSE: [f64; 7] = [1.0, -2.0, 0.5, 0.1, -0.5, 0.7, 0.5];
 
-fn far<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    a.iter().zip(b).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()))
+fn difference<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    a.iter().zip(b).fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()))
 }
 
 fn twist(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
@@ -19,7 +19,7 @@ fn ball_exponential_is_a_turn_about_the_axis() {
     for angle in ANGLES.into_iter().chain([10.0, 1e3]) {
         let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scale(AXIS, angle));
         let [x, y, z] = scale(AXIS, (angle / 2.0).sin());
-        assert!(far(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
+        assert!(difference(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
     }
 }
 
@@ -29,10 +29,10 @@ fn ball_difference_inverts_integrate() {
         let dv = scale(AXIS, angle);
         let q = normalised(QUATERNION);
         let found = ball_difference(q, ball_integrate(q, dv));
-        assert!(far(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
+        assert!(difference(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
         let [x, y, z, w] = ball_integrate(q, dv);
         let found = ball_difference(q, [-x, -y, -z, -w]);
-        assert!(far(found, dv) <= 4e-15 * (angle + 1e-1), "antipode of {angle}: {found:?}");
+        assert!(difference(found, dv) <= 4e-15 * (angle + 1e-1), "antipode of {angle}: {found:?}");
     }
 }
 
@@ -44,7 +44,7 @@ fn ball_difference_near_half_a_turn_is_shortest() {
         let found = ball_difference(QUATERNION, q1);
         assert!(dot(found, found).sqrt() <= core::f64::consts::PI + 1e-15);
         let reached = ball_integrate(QUATERNION, found);
-        assert!(far(reached, q1).min(far(reached, scale4(q1))) < 1e-15);
+        assert!(difference(reached, q1).min(difference(reached, scale4(q1))) < 1e-15);
     }
 }
 
@@ -57,7 +57,7 @@ fn free_difference_inverts_integrate() {
     for angle in ANGLES {
         let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
         let found = free_difference(POSE, free_integrate(POSE, dv));
-        assert!(far(found, dv) < 2e-14, "{angle}: {found:?}");
+        assert!(difference(found, dv) < 2e-14, "{angle}: {found:?}");
     }
 }
 
@@ -68,7 +68,7 @@ fn free_exponential_of_a_screw() {
     let quarter = core::f64::consts::FRAC_PI_2;
     let q = free_integrate([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 3.0, 0.0, 0.0, quarter]);
     let half = core::f64::consts::FRAC_1_SQRT_2;
-    assert!(far(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
+    assert!(difference(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn free_exponential_is_a_flow() {
         let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
         let half = dv.map(|x| 0.5 * x);
         let twice = free_integrate(free_integrate(POSE, half), half);
-        assert!(far(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
+        assert!(difference(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
     }
 }
 
@@ -89,15 +89,15 @@ fn tangent_rates_give_the_velocity() {
         let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
         let rate = free_tangent_rate(dv, v);
         let step = 1e-3;
-        let at = |t: f64| free_integrate(POSE, plus(dv, t, rate));
-        let slope = |h: f64| plus([0.0; 6], 0.5 / h, free_difference(at(-h), at(h)));
+        let pose = |t: f64| free_integrate(POSE, plus(dv, t, rate));
+        let slope = |h: f64| plus([0.0; 6], 0.5 / h, free_difference(pose(-h), pose(h)));
         // Central differences, extrapolated: the error is of order step⁴.
         let (coarse, fine) = (slope(step), slope(step / 2.0));
         let body = plus(plus([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
-        assert!(far(body, v) < 1e-9, "{angle}: {body:?}");
+        assert!(difference(body, v) < 1e-9, "{angle}: {body:?}");
         let [.., rx, ry, rz] = rate;
         let ball = ball_tangent_rate(scale(AXIS, angle), [0.4, 0.9, -1.3]);
-        assert!(far(ball, [rx, ry, rz]) < 1e-13, "{angle}");
+        assert!(difference(ball, [rx, ry, rz]) < 1e-13, "{angle}");
     }
 }
 
@@ -119,10 +119,10 @@ fn single_precision_is_accurate_to_its_rounding() {
         let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
         let exact = free_integrate(POSE, dv);
         let found = free_integrate(POSE.map(single), dv.map(single)).map(f64::from);
-        assert!(far(found, exact) < 2e-6, "{angle}");
+        assert!(difference(found, exact) < 2e-6, "{angle}");
         let exact = free_tangent_rate(dv, v);
         let found = free_tangent_rate(dv.map(single), v.map(single)).map(f64::from);
-        assert!(far(found, exact) < 2e-5, "{angle}");
+        assert!(difference(found, exact) < 2e-5, "{angle}");
     }
 }
 

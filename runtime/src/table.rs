@@ -211,7 +211,7 @@ impl<const N: usize> Table<N> {
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
-            let place = AxisPosition::of(points, x);
+            let place = AxisPosition::locate(points, x);
             *range = place.cells(points);
             *weights = Weights { place: Some(place), order };
         }
@@ -318,9 +318,9 @@ fn step<T: Real>(x: T) -> T {
 }
 
 impl<T: Real> AxisPosition<T> {
-    fn of(points: &[f64], x: T) -> AxisPosition<T> {
-        let at = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
-        let (low, high) = (at(points.first()), at(points.last()));
+    fn locate(points: &[f64], x: T) -> AxisPosition<T> {
+        let coordinate = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
+        let (low, high) = (coordinate(points.first()), coordinate(points.last()));
         let inner = x.max(low).min(high);
         // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
@@ -349,15 +349,15 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns one if the cell contains the position and zero otherwise, lane by lane.
     fn share(&self, points: &[f64], cell: usize) -> T {
-        let from = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let step_at = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { from(cell) };
-        low - if last { T::zero() } else { from(cell + 1) }
+        let low = if cell == 0 { T::one() } else { step_at(cell) };
+        low - if last { T::zero() } else { step_at(cell + 1) }
     }
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.
     fn weights(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
-        let around = Around::of(points, cell, shape.smooth);
+        let around = Around::new(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
         let value = |order| around.weights(s, order);
         match (order, shape.extrapolated) {
@@ -381,12 +381,12 @@ struct Around {
 }
 
 impl Around {
-    fn of(points: &[f64], cell: usize, smooth: bool) -> Around {
-        let at = |k: usize| points.get(k).copied();
-        let (start, end) = (at(cell).unwrap_or(0.0), at(cell + 1).unwrap_or(1.0));
+    fn new(points: &[f64], cell: usize, smooth: bool) -> Around {
+        let coordinate = |k: usize| points.get(k).copied();
+        let (start, end) = (coordinate(cell).unwrap_or(0.0), coordinate(cell + 1).unwrap_or(1.0));
         let h = end - start;
-        let before = cell.checked_sub(1).and_then(at).map(|p| start - p);
-        let after = at(cell + 2).map(|p| p - end);
+        let before = cell.checked_sub(1).and_then(coordinate).map(|p| start - p);
+        let after = coordinate(cell + 2).map(|p| p - end);
         let slopes = smooth.then(|| {
             // Slope of the parabola through three points, times `h`: at the middle point, otherwise at the
             // first or the last point.

@@ -64,7 +64,7 @@ where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.within(bound));
+    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform(bound));
     let q: Vec<_> = (0..STATES).map(|_| m.integrate(&m.neutral(), &vector(2.0))).collect();
     let v: Vec<_> = (0..STATES).map(|_| vector(2.0)).collect();
     let q: States<NQ> = (q.clone(), wide(&q), wide(&q));
@@ -113,7 +113,7 @@ where
     M: Batch<N, N, NU, Scalar = f64>,
 {
     let mut random = Random::new(2);
-    let mut numbers = || (0..N * ARRAYS).map(|_| random.within(2.0)).collect::<Vec<f64>>();
+    let mut numbers = || (0..N * ARRAYS).map(|_| random.uniform(2.0)).collect::<Vec<f64>>();
     let (q, v, a) = (numbers(), numbers(), numbers());
     let (mut matrices, mut vectors) = (vec![0.0; N * N * ARRAYS], vec![0.0; N * ARRAYS]);
     let m = m.lanes::<8>();

@@ -121,16 +121,16 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
     let method = stepping(1e-3);
     let (level, inclined) = (Solo { slope: 0.0 }, Solo { slope: 10.0_f64.to_radians() });
     let drop = posed(&level, 0.26);
-    let settled = |m: &Solo| {
+    let rest_state = |m: &Solo| {
         let end = end(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
     // Velocity over the following second, m/s.
     let creep = |m: &Solo| {
-        let from = settled(m);
+        let from = rest_state(m);
         (end(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()
     };
-    let stands = settled(&level);
+    let stands = rest_state(&level);
     let depth = -level.contact_gaps(&stands.0).min();
     let difference = |h: f64| {
         let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, stepping(h), 0.2).q);

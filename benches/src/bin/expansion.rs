@@ -50,12 +50,13 @@ const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Returns name, target time and text of every mechanism.
 fn mechanisms() -> Vec<(String, &'static str, Source)> {
-    let own = |name: &str, goal, item: &str| {
+    let mechanism = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
         let item = item.to_string();
         (name.to_string(), goal, Source { arguments, item })
     };
-    let mut list = vec![own("CartPole", "20 ms", CART_POLE), own("DoublePendulum", "", DOUBLE_PENDULUM)];
+    let mut list =
+        vec![mechanism("CartPole", "20 ms", CART_POLE), mechanism("DoublePendulum", "", DOUBLE_PENDULUM)];
     for (name, options, goal) in ROBOTS {
         let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
         let item = "pub struct Robot;".to_string();
@@ -142,13 +143,13 @@ fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<St
     let start = Instant::now();
     for _ in 0..REPEATS {
         whole = whole.min(timed(|| expand(arguments.clone(), item.clone(), folder)));
-        derivation = derivation.min(timed(|| Operations::of(&source.arguments, &source.item)));
+        derivation = derivation.min(timed(|| Operations::compile(&source.arguments, &source.item)));
         if start.elapsed() > PATIENCE {
             break;
         }
     }
     let ms = |time: Duration| time.as_secs_f64() * 1e3;
-    let derived = Operations::of(&source.arguments, &source.item);
+    let derived = Operations::compile(&source.arguments, &source.item);
     let operations = |name: &str| derived.function(name).operations;
     Ok(format!(
         "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",

@@ -61,7 +61,7 @@ fn main() {
 
 fn measure<const N: usize>() {
     let mut random = Random::new(1);
-    let states: Vec<[f64; N]> = (0..STATES).map(|_| from_fn(|_| random.within(BOUND))).collect();
+    let states: Vec<[f64; N]> = (0..STATES).map(|_| from_fn(|_| random.uniform(BOUND))).collect();
     let mut least = [f64::INFINITY; 3];
     let start = Instant::now();
     while start.elapsed() < BUDGET {

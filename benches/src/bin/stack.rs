@@ -64,7 +64,7 @@ where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.within(2.0));
+    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.uniform(2.0));
     (m.integrate(&m.neutral(), &vector()), vector())
 }
 

@@ -51,7 +51,7 @@ impl<const N: usize> Flat for Stacked<N> {
 }
 
 /// Returns a function of Linkwork as a contender.
-fn own<M: Copy + 'static, R: Flat + 'static, const N: usize>(
+fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     mechanism: M,
     states: &Rc<Vec<State<N, N>>>,
     call: Call<M, R, N, N>,
@@ -87,7 +87,7 @@ where
             let path = folder.join(name).join(format!("step_{file}.so"));
             all.extend(library::casadi(&path, Function::Step, rows));
         }
-        all.push(own(m, &states, |m, s| Stacked(step(m, s))));
+        all.push(linkwork_contender(m, &states, |m, s| Stacked(step(m, s))));
         let wrong = agree(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));
@@ -103,12 +103,18 @@ where
         );
     }
     let found = nanoseconds(vec![
-        own(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))),
-        own(m, &states, |m, s| Unread(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))),
-        own(m, &states, |m, s| Unread(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))),
-        own(m, &states, |m, s| Unread(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))),
-        own(m, &states, |m, s| Unread(step(m, s))),
-        own(m, &states, |m, s| {
+        linkwork_contender(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))),
+        linkwork_contender(m, &states, |m, s| {
+            Unread(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
+        }),
+        linkwork_contender(m, &states, |m, s| {
+            Unread(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))
+        }),
+        linkwork_contender(m, &states, |m, s| {
+            Unread(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))
+        }),
+        linkwork_contender(m, &states, |m, s| Unread(step(m, s))),
+        linkwork_contender(m, &states, |m, s| {
             let factors = (&s.a, &s.tau);
             Unread(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
         }),

@@ -230,7 +230,7 @@ impl Articulated {
     }
 
     /// Returns `IA − U Uᵀ / D`.
-    pub fn without(&self, u: &Spatial, inverse: f64) -> Articulated {
+    pub fn subtract_rank_one(&self, u: &Spatial, inverse: f64) -> Articulated {
         let scaled = *u * inverse;
         Articulated {
             m: self.m - scaled.linear * u.linear.transpose(),
@@ -242,12 +242,12 @@ impl Articulated {
     /// Transforms the articulated inertia to the parent's origin and axes.
     pub fn to_parent(&self, placement: &Placement) -> Articulated {
         let r = &placement.rotation;
-        let turned = |x: &Matrix3<f64>| r * x * r.transpose();
+        let rotate = |x: &Matrix3<f64>| r * x * r.transpose();
         let p = placement.translation.cross_matrix();
-        let m = turned(&self.m);
-        let h = turned(&self.h);
+        let m = rotate(&self.m);
+        let h = rotate(&self.h);
         let moved = h + p * m;
-        Articulated { m, h: moved, i: turned(&self.i) - moved * p + p * h.transpose() }
+        Articulated { m, h: moved, i: rotate(&self.i) - moved * p + p * h.transpose() }
     }
 
     /// Returns the acceleration that a wrench causes.

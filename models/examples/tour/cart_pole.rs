@@ -141,19 +141,19 @@ fn list(gains: &SMatrix<f64, 1, 4>) -> String {
 
 fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
     // The mechanism's y axis points up, that of the animation is z.
-    let turned = |body: &IsometryMatrix3<f64>, at| {
+    let to_z_up = |body: &IsometryMatrix3<f64>, at| {
         let [x, y, z] = point(body, at);
         [x, -z, y]
     };
     let frame = |s: &Sample<f64, 2, 2, 1>| {
         let cart = CART_POLE.frame_placement(frame!(CartPole, "cart"), &s.q);
         let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
-        let mut points = vec![turned(&pole, [0.0; 3]), turned(&pole, [0.0, CART_POLE.pole_length, 0.0])];
+        let mut points = vec![to_z_up(&pole, [0.0; 3]), to_z_up(&pole, [0.0, CART_POLE.pole_length, 0.0])];
         points.extend(corners(&cart, [0.0, -0.04, 0.0], [0.16, 0.07, 0.1]).map(|[x, y, z]| [x, -z, y]));
         // The force is an arrow that ends at the cart.
         let side = -0.17 * s.u[0].signum();
-        points.push(turned(&cart, [side - 0.03 * s.u[0], -0.04, 0.0]));
-        points.push(turned(&cart, [side, -0.04, 0.0]));
+        points.push(to_z_up(&cart, [side - 0.03 * s.u[0], -0.04, 0.0]));
+        points.push(to_z_up(&cart, [side, -0.04, 0.0]));
         points.extend([[-1.2, 0.0, -0.127], [1.2, 0.0, -0.127]]);
         points
     };
@@ -164,7 +164,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         Part::Arrow(10, 11, Tone::Second),
     ];
     parts.extend(faces(2, Tone::Body));
-    let at = |t: f64| (t * RATE) as usize;
+    let sample_index = |t: f64| (t * RATE) as usize;
     Scene {
         title: "Swing-up, catch, shove",
         rate: RATE,
@@ -174,9 +174,9 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         still: 4.6,
         captions: vec![
             (0, "pumping energy".into()),
-            (at(caught), "caught: regulator holds".into()),
-            (at(SHOVE.start), format!("shoved with {SHOVING} N")),
-            (at(SHOVE.end) + 20, "regulator holds".into()),
+            (sample_index(caught), "caught: regulator holds".into()),
+            (sample_index(SHOVE.start), format!("shoved with {SHOVING} N")),
+            (sample_index(SHOVE.end) + 20, "regulator holds".into()),
         ],
         guides: Vec::new(),
         trail: Some((1, 40)),

@@ -214,7 +214,7 @@ fn scene(samples: &[Sample12]) -> Scene {
         let t = FLIGHT * k as f64 / 60.0;
         (start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0)).into()
     };
-    let at = |part: f64| (part * FLIGHT * RATE) as usize;
+    let sample_index = |part: f64| (part * FLIGHT * RATE) as usize;
     Scene {
         title: "Somersault of Solo 12, a quarter of its speed",
         rate: RATE,
@@ -224,8 +224,8 @@ fn scene(samples: &[Sample12]) -> Scene {
         still: 0.75,
         captions: vec![
             (0, "take-off".into()),
-            (at(TUCKING[0]), "tucking: spins faster".into()),
-            (at(OPENING[0]), "opening: spins slower".into()),
+            (sample_index(TUCKING[0]), "tucking: spins faster".into()),
+            (sample_index(OPENING[0]), "opening: spins slower".into()),
         ],
         guides: vec![(0..=60).map(fall).collect()],
         trail: Some((28, 400)),

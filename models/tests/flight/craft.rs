@@ -262,7 +262,7 @@ const CRAFT: HypersonicGlider = HypersonicGlider {
 };
 
 /// Returns the pose at a position over the Earth with local axes of the craft: forward, right, down.
-fn over(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQuaternion<f64>) {
+fn pose_above(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQuaternion<f64>) {
     let down = -place.normalize();
     let axes = linkwork::nalgebra::Matrix3::from_columns(&[forward, down.cross(&forward), down]);
     let turn = UnitQuaternion::from_matrix(&axes);
@@ -284,7 +284,7 @@ fn to_the_east_a_craft_needs_less_lift() {
     let r = CRAFT.radius + 40e3;
     let place = Vector3::new(r, 0.0, 0.0);
     for (speed, sign) in [(2000.0, 1.0), (2000.0, -1.0), (5000.0, 1.0), (5000.0, -1.0)] {
-        let (q, _) = over(place, Vector3::new(0.0, sign, 0.0));
+        let (q, _) = pose_above(place, Vector3::new(0.0, sign, 0.0));
         let v = [speed, 0.0, 0.0, 0.0, -speed / r, 0.0].into();
         let inertial: f64 = sign * speed + CRAFT.turning * r;
         let lift = CRAFT.mass * (CRAFT.mu / (r * r) - inertial * inertial / r);
@@ -305,7 +305,7 @@ fn over_the_earth_gravity_and_turning_pull() {
             Vector3::new(latitude.cos() * longitude.cos(), latitude.cos() * longitude.sin(), latitude.sin());
         let east = Vector3::z().cross(&up).normalize();
         let forward = UnitQuaternion::from_scaled_axis(up * (0.5 + k)) * east;
-        let (q, turn) = over(up * r, forward);
+        let (q, turn) = pose_above(up * r, forward);
         let v = [3000.0 + 500.0 * k, 20.0, -40.0, 0.01, -0.02, 0.003].into();
         let found = acceleration(50.0 * k, &q, &v, [2e4, 0.0, 0.0]);
         let velocity = turn * v.fixed_rows::<3>(0);
@@ -325,7 +325,7 @@ fn over_the_earth_gravity_and_turning_pull() {
 fn an_orbit_goes_west_over_the_ground() {
     let craft = HypersonicGlider { density: 0.0, ..CRAFT };
     let r = CRAFT.radius + 300e3;
-    let (q, _) = over(Vector3::new(r, 0.0, 0.0), Vector3::z());
+    let (q, _) = pose_above(Vector3::new(r, 0.0, 0.0), Vector3::z());
     let (speed, rate) = ((CRAFT.mu / r).sqrt(), (CRAFT.mu / (r * r * r)).sqrt());
     // Relative to the Earth the craft moves west, to the left of its northward heading.
     let turning = CRAFT.turning;

@@ -34,11 +34,11 @@ fn circles_level() -> Result<(), Error> {
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert_close(v[1], rate * u, 1e-13);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
-        let at = |name| BallInDish::CONSTRAINTS.iter().position(|c| *c == name).expect("it is one");
+        let index = |name| BallInDish::CONSTRAINTS.iter().position(|c| *c == name).expect("it is one");
         let normal = B.mass * (rate * rate * rho * c + B.g * s);
-        assert_close(lambda[at("contact.normal")], normal, 1e-12);
+        assert_close(lambda[index("contact.normal")], normal, 1e-12);
         for name in ["contact.foot_first", "contact.foot_second"] {
-            assert_close(lambda[at(name)], 0.0, 1e-12);
+            assert_close(lambda[index(name)], 0.0, 1e-12);
         }
         let time = 1.0;
         let end = simulate(&B).from(q, v).method(precisely()).duration(time).finish()?;

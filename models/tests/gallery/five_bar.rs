@@ -37,9 +37,10 @@ fn jacobian(left: f64, right: f64) -> Matrix2<f64> {
     let [first, second, tool] = closed_form(left, right);
     let forearms = [tool - first, tool - second];
     let inverse = Matrix2::from_rows(&forearms.map(|f| f.transpose())).try_inverse();
-    let turned = |k: usize, angle: f64| R.crank * forearms[k].dot(&Vector2::new(-angle.sin(), angle.cos()));
+    let arm_speed =
+        |k: usize, angle: f64| R.crank * forearms[k].dot(&Vector2::new(-angle.sin(), angle.cos()));
     inverse.expect("the forearms are not in line")
-        * Matrix2::from_diagonal(&Vector2::new(turned(0, left), turned(1, right)))
+        * Matrix2::from_diagonal(&Vector2::new(arm_speed(0, left), arm_speed(1, right)))
 }
 
 #[test]

@@ -16,9 +16,9 @@ fn closed_form(theta: f64) -> [Course; 4] {
     let first = -r / l * c / cp;
     let second = (r / l * s + sp * first * first) / cp;
     // x of a point at `r` along the crank and at `k` along the rod.
-    let along =
+    let course =
         |k: f64| [r * c + k * cp, -r * s - k * sp * first, -r * c - k * (cp * first * first + sp * second)];
-    [[phi, first, second], along(l / 2.0), [r / 2.0 * s, r / 2.0 * c, -r / 2.0 * s], along(l)]
+    [[phi, first, second], course(l / 2.0), [r / 2.0 * s, r / 2.0 * c, -r / 2.0 * s], course(l)]
 }
 
 fn state(theta: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
@@ -58,7 +58,7 @@ fn reduced_inertia() {
     let (q, v) = state(theta, rate);
     assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
-    let along = |c: &Course| c[1] * expected + c[2] * rate * rate;
-    assert_near(a, [expected, along(&rod) - expected, along(&piston)].into(), 1e-12);
+    let acceleration = |c: &Course| c[1] * expected + c[2] * rate * rate;
+    assert_near(a, [expected, acceleration(&rod) - expected, acceleration(&piston)].into(), 1e-12);
     assert_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);
 }

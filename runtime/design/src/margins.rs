@@ -126,7 +126,7 @@ struct Loop {
 
 impl Loop {
     /// Returns the response and its derivative with respect to frequency; `None` at a pole.
-    fn at(&self, frequency: f64) -> Option<Sample> {
+    fn sample(&self, frequency: f64) -> Option<Sample> {
         let s = boundary(self.period, frequency);
         let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
         self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
@@ -135,7 +135,7 @@ impl Loop {
     /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
     /// rounding decides the sign are skipped.
     fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
-        let value = |w: f64| self.at(w).map_or(f64::NAN, |sample| f(sample.value));
+        let value = |w: f64| self.sample(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
@@ -174,9 +174,9 @@ impl StateSpace {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
         let (grid, samples): (Vec<f64>, Vec<Sample>) =
-            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.at(w)?))).unzip();
+            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample(w)?))).unzip();
         let crosses = |frequency: f64| {
-            let Sample { value, error, .. } = open.at(frequency)?;
+            let Sample { value, error, .. } = open.sample(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
             // rounding error.
             let is_certain = error <= CERTAIN * value.norm();
@@ -189,7 +189,7 @@ impl StateSpace {
         let gain = all.filter(|w| w.is_finite()).filter_map(|w| crosses(*w)).collect();
         let phase = open.crossings(&grid, &samples, |x| x.norm() - 1.0).into_iter();
         let phase = phase.filter_map(|frequency| {
-            let degrees = (-open.at(frequency)?.value).arg().to_degrees();
+            let degrees = (-open.sample(frequency)?.value).arg().to_degrees();
             Some(PhaseMargin { degrees, frequency })
         });
         Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
@@ -224,8 +224,8 @@ impl StateSpace {
         let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
         // Near its minimum, the distance determines the frequency to half of the digits only. The sign
         // change of its derivative is more accurate.
-        let distance = |w: f64| open.at(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
-        let slope = |w: f64| open.at(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
+        let distance = |w: f64| open.sample(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
+        let slope = |w: f64| open.sample(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
         let sharper = reach.into_iter().find_map(|reach| {
             let (low, high) = (frequency - reach, frequency + reach);

@@ -48,7 +48,7 @@ fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
 }
 
 /// Returns signals with names and units. The unit is empty for dimensionless and undetermined quantities.
-pub(crate) fn named(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
+pub(crate) fn signals(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
     let said = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
     let unit = |k: usize| units.get(k).copied().map_or("", said);
     names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit(k))).collect()
@@ -71,7 +71,7 @@ pub(crate) fn displacements<M, const NQ: usize, const NV: usize, const NU: usize
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    let speeds = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    let speeds = signals(&M::VELOCITIES, &M::VELOCITY_UNITS);
     which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    let all = named(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    let all = signals(&M::VELOCITIES, &M::VELOCITY_UNITS);
     let changes = speeds.into_iter().filter_map(|k| {
         let speed = all.get(k)?.clone();
         let is_state = k + M::FIRST_ORDER >= NV;
@@ -108,12 +108,12 @@ pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    named(&M::INPUTS, &M::INPUT_UNITS)
+    signals(&M::INPUTS, &M::INPUT_UNITS)
 }
 
 /// Returns the indices of states among all displacements and velocities. States of first order have no
 /// displacement.
-fn kept(nv: usize, first_order: usize) -> Vec<usize> {
+fn state_indices(nv: usize, first_order: usize) -> Vec<usize> {
     (0..nv.saturating_sub(first_order)).chain(nv..2 * nv).collect()
 }
 
@@ -181,7 +181,7 @@ fn of_motion<const NV: usize, const NU: usize>(
         blocks([[&dynamic(&motion.turning), &identity], [&dynamic(&motion.by_q), &dynamic(&motion.by_v)]]);
     let mut b = DMatrix::zeros(2 * NV, NU);
     b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamic(&motion.by_u));
-    let kept = kept(NV, first_order);
+    let kept = state_indices(NV, first_order);
     let (a, b, n) = (a.select_rows(&kept).select_columns(&kept), b.select_rows(&kept), kept.len());
     StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
 }
@@ -233,9 +233,9 @@ where
     let n = M::FIRST_ORDER;
     let system = of_motion(&motion, n)?;
     let (c, d) = output_matrices(&seen);
-    let system = StateSpace::new(system.a, system.b, c.select_columns(&kept(NV, n)), d)?;
+    let system = StateSpace::new(system.a, system.b, c.select_columns(&state_indices(NV, n)), d)?;
     let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
-    system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(named(&M::OUTPUTS, &M::OUTPUT_UNITS))
+    system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(signals(&M::OUTPUTS, &M::OUTPUT_UNITS))
 }
 
 fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(

@@ -235,7 +235,7 @@ impl ModalSum {
     }
 
     /// Returns the sum at an instant.
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn value(&self, t: f64) -> f64 {
         self.derivative(0, t)
     }
 
@@ -303,13 +303,13 @@ impl ModalSum {
     /// sum it is the sample on the side that is not negative.
     fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         if !self.sampled {
-            return root_between(|t| f(self.at(t)), from, to);
+            return root_between(|t| f(self.value(t)), from, to);
         }
-        let rises = f(self.at(to)) >= 0.0;
+        let rises = f(self.value(to)) >= 0.0;
         let (mut low, mut high) = (from, to);
         while high - low > 1.0 {
             let middle = (0.5 * (low + high)).floor();
-            if (f(self.at(middle)) >= 0.0) == rises { high = middle } else { low = middle }
+            if (f(self.value(middle)) >= 0.0) == rises { high = middle } else { low = middle }
         }
         if rises { high } else { low }
     }
@@ -328,10 +328,10 @@ impl ModalSum {
             }
             if self.is_last(&interval) {
                 for (low, high) in self.pieces(&interval) {
-                    if self.at(low) >= level {
+                    if self.value(low) >= level {
                         return Ok(low);
                     }
-                    if self.at(high) >= level {
+                    if self.value(high) >= level {
                         return Ok(self.sign_change(|e| e - level, low, high));
                     }
                 }
@@ -359,10 +359,10 @@ impl ModalSum {
             }
             if self.is_last(&interval) {
                 for (low, high) in self.pieces(&interval).into_iter().rev() {
-                    if self.at(high).abs() > band {
+                    if self.value(high).abs() > band {
                         return Ok(Some(high));
                     }
-                    if self.at(low).abs() > band {
+                    if self.value(low).abs() > band {
                         return Ok(Some(self.sign_change(|e| e.abs() - band, low, high)));
                     }
                 }
@@ -371,7 +371,7 @@ impl ModalSum {
             }
             count_interval(&mut count)?;
         }
-        Ok((self.at(from).abs() > band).then_some(from))
+        Ok((self.value(from).abs() > band).then_some(from))
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the sum from
@@ -381,7 +381,7 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] after too many intervals.
     pub fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
-        let mut best = (from, sign * self.at(from));
+        let mut best = (from, sign * self.value(from));
         let mut reached = best.1;
         let bound = |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
         let mut open = BinaryHeap::new();
@@ -394,7 +394,7 @@ impl ModalSum {
             }
             if self.is_last(&interval) {
                 for t in self.pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
-                    let value = sign * self.at(t);
+                    let value = sign * self.value(t);
                     if value > best.1 {
                         best = (t, value);
                     }

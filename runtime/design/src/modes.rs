@@ -178,7 +178,7 @@ impl StateSpace {
                 let pair = (0..n).filter(|k| !taken[*k]).min_by(|i, j| other(i).total_cmp(&other(j)));
                 pair.into_iter().for_each(|k| taken[k] = true);
             }
-            modes.push(self.mode(pole, &schur.right(k), &schur.left(k), &d));
+            modes.push(self.mode(pole, &schur.right_eigenvector(k), &schur.left_eigenvector(k), &d));
         }
         modes.sort_by(|a, b| a.frequency().total_cmp(&b.frequency()));
         Ok(modes)

@@ -36,7 +36,7 @@ fn title(response: &FrequencyResponse) -> String {
 ///
 /// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
-    let over = |values: Vec<f64>| -> Vec<(f64, f64)> {
+    let points = |values: Vec<f64>| -> Vec<(f64, f64)> {
         let points = response.frequencies.iter().copied().zip(values);
         points.filter(|(w, _)| *w > 0.0).map(|(w, y)| (w.log10(), y)).collect()
     };
@@ -45,7 +45,7 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
         x: "frequency, rad/s".into(),
         y: y.into(),
         logarithmic: true,
-        curves: vec![Curve { name: String::new(), points: over(values) }],
+        curves: vec![Curve { name: String::new(), points: points(values) }],
         ..Panel::default()
     };
     let above = panel(format!("Bode diagram, {}", title(response)), "magnitude, dB", response.decibels());

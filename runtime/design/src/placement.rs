@@ -53,13 +53,13 @@ fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
     for pole in wanted {
-        let near = |i: &usize| found.get(*i).map_or(f64::INFINITY, |other| (other - pole).norm());
-        let Some(best) = (0..found.len()).min_by(|i, j| near(i).total_cmp(&near(j))) else {
+        let distance = |i: &usize| found.get(*i).map_or(f64::INFINITY, |other| (other - pole).norm());
+        let Some(best) = (0..found.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))) else {
             return f64::INFINITY;
         };
         let times = wanted.iter().filter(|other| *other == pole).count();
         let excused = 1e-10_f64.powf(1.0 / times as f64) * size.max(f64::MIN_POSITIVE);
-        worst = worst.max(near(&best) / excused);
+        worst = worst.max(distance(&best) / excused);
         found.swap_remove(best);
     }
     worst

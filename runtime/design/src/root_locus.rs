@@ -67,19 +67,19 @@ impl StateSpace {
         let poles = self.poles()?;
         let all = poles.iter().copied().chain(self.zeros()?);
         let size = all.map(|x| x.norm()).fold(1e-6, f64::max);
-        let moved = |k: f64| -> Result<f64, Error> {
+        let pole_shift = |k: f64| -> Result<f64, Error> {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, k))?.poles()?;
             Ok(follow(&poles, closed).iter().zip(&poles).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max))
         };
         let (mut low, mut high) = (1.0, 1.0);
         for _ in 0..60 {
-            if moved(low)? <= 0.01 * size {
+            if pole_shift(low)? <= 0.01 * size {
                 break;
             }
             low *= 0.4;
         }
         for _ in 0..60 {
-            if moved(high)? >= 4.0 * size {
+            if pole_shift(high)? >= 4.0 * size {
                 break;
             }
             high *= 2.5;
@@ -90,9 +90,9 @@ impl StateSpace {
         gains.extend(crate::logarithmic(low, high, 80)?);
         for _ in 0..6 {
             let locus = self.root_locus(&gains)?;
-            let far = |k: usize| locus.branches.iter().any(|b| (b[k] - b[k - 1]).norm() > 0.025 * size);
+            let is_coarse = |k: usize| locus.branches.iter().any(|b| (b[k] - b[k - 1]).norm() > 0.025 * size);
             let more: Vec<f64> =
-                (1..gains.len()).filter(|k| far(*k)).map(|k| 0.5 * (gains[k - 1] + gains[k])).collect();
+                (1..gains.len()).filter(|k| is_coarse(*k)).map(|k| 0.5 * (gains[k - 1] + gains[k])).collect();
             if more.is_empty() || gains.len() > 1500 {
                 break;
             }

@@ -110,9 +110,9 @@ impl Polynomial {
 }
 
 fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
-    let of = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
-    let ratio = of(two, 0) / of(one, 0);
-    let terms = (0..length).map(|j| (of(two, j + 1), ratio * of(one, j + 1)));
+    let entry = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
+    let ratio = entry(two, 0) / entry(one, 0);
+    let terms = (0..length).map(|j| (entry(two, j + 1), ratio * entry(one, j + 1)));
     terms.map(|(a, b)| (a - b, a.abs().max(b.abs()))).unzip()
 }
 

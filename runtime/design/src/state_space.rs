@@ -144,7 +144,7 @@ impl StateSpace {
     ///
     /// [`Error::Count`] if the number of names differs from the number of states.
     pub fn with_states<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
-        self.states = named("states", self.a.nrows(), names)?;
+        self.states = check_names("states", self.a.nrows(), names)?;
         Ok(self)
     }
 
@@ -154,7 +154,7 @@ impl StateSpace {
     ///
     /// [`Error::Count`] if the number of names differs from the number of inputs.
     pub fn with_inputs<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
-        self.inputs = named("inputs", self.b.ncols(), names)?;
+        self.inputs = check_names("inputs", self.b.ncols(), names)?;
         Ok(self)
     }
 
@@ -167,7 +167,7 @@ impl StateSpace {
         mut self,
         names: impl IntoIterator<Item = S>,
     ) -> Result<Self, Error> {
-        self.outputs = named("outputs", self.c.nrows(), names)?;
+        self.outputs = check_names("outputs", self.c.nrows(), names)?;
         Ok(self)
     }
 
@@ -309,7 +309,7 @@ impl StateSpace {
     }
 }
 
-fn named<S: Into<Signal>>(
+fn check_names<S: Into<Signal>>(
     what: &'static str,
     expected: usize,
     names: impl IntoIterator<Item = S>,

@@ -465,16 +465,16 @@ where
     /// Returns whether two states differ by more than the accuracy of a solution.
     fn differ(&self, one: &SteadyState<NQ, NV, NU>, other: &SteadyState<NQ, NV, NU>) -> bool {
         const APART: f64 = 1e-6;
-        let far =
+        let differs =
             |a: &[f64], b: &[f64]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > APART * a.abs().max(1.0));
-        let way = self.with(&one.parameters, |m| m.difference(&one.q, &other.q));
+        let way = self.with_mechanism(&one.parameters, |m| m.difference(&one.q, &other.q));
         way.amax() > APART
-            || far(one.v.as_slice(), other.v.as_slice())
-            || far(one.u.as_slice(), other.u.as_slice())
-            || far(&one.parameters, &other.parameters)
+            || differs(one.v.as_slice(), other.v.as_slice())
+            || differs(one.u.as_slice(), other.u.as_slice())
+            || differs(&one.parameters, &other.parameters)
     }
 
-    fn with<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
+    fn with_mechanism<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
         match &self.source {
             Source::Given(m) => f(m),
             Source::Family(family) => f(&family(parameters)),

@@ -79,7 +79,7 @@ impl Distance {
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
         let late = self.modes.extreme(sign, from.max(self.start()))?;
         let best = early.filter(|early| sign * early.1 >= sign * late.1).unwrap_or(late);
-        let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.at(from));
+        let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.value(from));
         Ok(if sign * best.1 > self.modes.noise {
             best
         } else if sign * initial >= -self.modes.noise {

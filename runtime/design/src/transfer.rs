@@ -164,8 +164,8 @@ impl TransferFunction {
         let mut all = self.factored()?;
         let mut kept = Vec::new();
         for zero in all.zeros {
-            let near = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
-            match all.poles.iter().position(near) {
+            let is_near = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
+            match all.poles.iter().position(is_near) {
                 Some(k) => drop(all.poles.remove(k)),
                 None => kept.push(zero),
             }

@@ -15,7 +15,7 @@ struct Pencil {
 }
 
 impl Pencil {
-    fn of(system: &StateSpace) -> Self {
+    fn new(system: &StateSpace) -> Self {
         let (a, b, c, _) = balance_system(&system.a, &system.b, &system.c);
         // Inputs and outputs are scaled to the same norm as the states.
         let size = a.norm().max(f64::MIN_POSITIVE);
@@ -105,7 +105,7 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`] if the eigenvalues of the reduced system do not converge.
     pub fn zeros(&self) -> Result<Vec<C>, Error> {
-        let reduced = Pencil::of(self).reduce().transpose().reduce().transpose();
+        let reduced = Pencil::new(self).reduce().transpose().reduce().transpose();
         let (n, m) = (reduced.a.nrows(), reduced.d.ncols());
         if n == 0 {
             return Ok(Vec::new());

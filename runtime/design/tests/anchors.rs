@@ -215,7 +215,7 @@ fn whipple_bicycle() {
     let c1 = dmatrix![0.0, 33.86641391492494; -0.85035641456978, 1.68540397397560];
     let k0 = dmatrix![-80.95, -2.59951685249872; -2.59951685249872, -0.80329488458618];
     let k2 = dmatrix![0.0, 76.59734589573222; 0.0, 2.65431523794604];
-    let at = |v: f64| {
+    let system = |v: f64| {
         let form =
             SecondOrderForm::new(mass.clone(), &c1 * v, &k0 * 9.81 + &k2 * (v * v), DMatrix::zeros(2, 0))
                 .unwrap();
@@ -229,14 +229,14 @@ fn whipple_bicycle() {
         (10.0, [(-24.62459635017404, 0.0), (0.16105338653172, 0.0), (-3.72016840437287, 10.90681139476287)]),
     ];
     for (v, expected) in published {
-        let poles = at(v).poles().unwrap();
+        let poles = system(v).poles().unwrap();
         expected.iter().for_each(|(re, im)| contains(&poles, *re, *im, 1e-11));
     }
     // The bicycle is self-stable between the weave speed and the capsize speed.
     for (v, stable) in
         [(4.29238253634, false), (4.29238253635, true), (6.024262015, true), (6.024262016, false)]
     {
-        assert_eq!(at(v).is_stable().unwrap(), stable, "at {v} m/s");
+        assert_eq!(system(v).is_stable().unwrap(), stable, "at {v} m/s");
     }
 }
 

@@ -206,19 +206,22 @@ fn regulators_that_do_not_exist_name_the_mode() {
 
 #[test]
 fn improper_and_impossible_transfer_functions() {
-    let of = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
-    let improper = of(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
+    let transfer = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
+    let improper = transfer(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
     let text = "improper: degree 2 over degree 1";
     says(text, improper.state_space());
     says(text, improper.step_figures());
     says(text, improper.margins());
     says(text, improper.factored().unwrap().matched(0.1));
     says("improper: degree 1 over degree 0", TransferFunction::s().state_space());
-    says("a denominator of 0 has no meaning", of(&[1.0], &[0.0]));
-    says("a denominator of 0 has no meaning", of(&[1.0], &[]));
-    says("a denominator of 0 has no meaning", of(&[1.0], &[1.0]).unwrap().over(&of(&[0.0], &[1.0]).unwrap()));
-    says("the numerator has an entry that is not finite", of(&[f64::NAN], &[1.0]));
-    says("the denominator has an entry that is not finite", of(&[1.0], &[1.0, f64::INFINITY]));
+    says("a denominator of 0 has no meaning", transfer(&[1.0], &[0.0]));
+    says("a denominator of 0 has no meaning", transfer(&[1.0], &[]));
+    says(
+        "a denominator of 0 has no meaning",
+        transfer(&[1.0], &[1.0]).unwrap().over(&transfer(&[0.0], &[1.0]).unwrap()),
+    );
+    says("the numerator has an entry that is not finite", transfer(&[f64::NAN], &[1.0]));
+    says("the denominator has an entry that is not finite", transfer(&[1.0], &[1.0, f64::INFINITY]));
     let [one, minus] = [1.0, -1.0].map(TransferFunction::constant);
     let text = "the direct ways through both systems form a loop without a solution";
     says(text, one.feedback(&minus));
@@ -343,13 +346,13 @@ fn problems_that_are_posed_wrongly_are_named() {
     says(&unknown("velocity"), rest().accelerating(["hing"]).find());
     says(&unknown("velocity"), rest().acceleration("hing", 1.0).find());
     says("no input `comand`, perhaps `command`; there are command", rest().inputs(["comand"]).find());
-    let turned = || rest().inputs(["command"]).output("angle", 0.2);
+    let output_at_rest = || rest().inputs(["command"]).output("angle", 0.2);
     let angel = rest().inputs(["command"]).output("angel", 0.2);
     says("no output `angel`, perhaps `angle`; there are angle", angel.find());
     says("the coordinate `hinge` is asked for twice", rest().coordinates(["hinge", "hinge"]).find());
     says("the coordinate `hinge` is asked for twice", rest().hold(["hinge"]).hold(["hinge"]).find());
-    says("the input `command` is asked for twice", turned().inputs(["command"]).find());
-    says("the output `angle` is asked for twice", turned().output("angle", 0.3).find());
+    says("the input `command` is asked for twice", output_at_rest().inputs(["command"]).find());
+    says("the output `angle` is asked for twice", output_at_rest().output("angle", 0.3).find());
     says(
         "the velocity `hinge` is asked for twice",
         rest().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),

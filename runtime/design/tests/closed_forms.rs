@@ -15,13 +15,13 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Returns a number whose logarithm is uniformly distributed.
     fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
+        self.uniform(low.ln(), high.ln()).exp()
     }
 }
 
@@ -58,9 +58,9 @@ fn peak_gains_of_biproper_systems() {
     let mut random = Random(1);
     for k in 0..1000 {
         let light = k % 4 == 3;
-        let (c, f) = (random.between(0.1, 50.0), random.between(0.0, 50.0));
+        let (c, f) = (random.uniform(0.1, 50.0), random.uniform(0.0, 50.0));
         let damping = |random: &mut Random| {
-            if light { random.magnitude(1e-5, 1.0) } else { random.between(0.05, 10.0) }
+            if light { random.magnitude(1e-5, 1.0) } else { random.uniform(0.05, 10.0) }
         };
         let (b, e) = (damping(&mut random), damping(&mut random));
         let system = state_space(&[1.0, e, f], &[1.0, b, c]);
@@ -224,7 +224,7 @@ fn step_figures_of_second_order() {
     let mut random = Random(6);
     for _ in 0..1000 {
         let (zeta, omega) = (random.magnitude(1e-6, 0.95), random.magnitude(1e-2, 1e3));
-        let final_value = random.between(-5.0, 5.0);
+        let final_value = random.uniform(-5.0, 5.0);
         let square = omega * omega;
         let system = state_space(&[final_value * square], &[1.0, 2.0 * zeta * omega, square]);
         let figures = system.step_figures().unwrap();
@@ -346,8 +346,8 @@ fn stable_gains_by_hurwitz() {
     for (one, other, expected) in cases {
         let found = stable_gains(one, other);
         let same = |(found, (low, high)): (&GainRange, &(f64, f64))| {
-            let near = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
-            near(found.low, *low) && near(found.high, *high)
+            let agree = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
+            agree(found.low, *low) && agree(found.high, *high)
         };
         assert!(
             found.len() == expected.len() && found.iter().zip(expected).all(same),
@@ -362,12 +362,12 @@ fn stable_gains_by_roots() {
     let mut random = Random(8);
     for round in 0..600 {
         let mut polynomial = |degree: usize| {
-            let mut product = Polynomial::constant(random.between(0.5, 2.0));
+            let mut product = Polynomial::constant(random.uniform(0.5, 2.0));
             while product.degree() < degree {
                 let w = random.magnitude(0.1, 10.0);
                 let factor = match (random.unit(), degree - product.degree()) {
                     (x, 2..) if x < 0.3 => Polynomial::new([1.0, 0.0, w * w]),
-                    (x, 2..) if x < 0.7 => Polynomial::new([1.0, random.between(-0.4, 2.0) * w, w * w]),
+                    (x, 2..) if x < 0.7 => Polynomial::new([1.0, random.uniform(-0.4, 2.0) * w, w * w]),
                     (x, _) if x < 0.2 => Polynomial::new([1.0, 0.0]),
                     _ => Polynomial::new([1.0, w]),
                 };

@@ -175,18 +175,19 @@ struct DampedRotor {
 #[test]
 fn rotor_with_internal_damping() {
     let rotor = |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
-    let at = |spin| linear_system(&rotor(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap();
+    let system_of =
+        |spin| linear_system(&rotor(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap();
     for spin in [0.0, 15.0, 40.0] {
         let (m, c) = (3.0, 7.0);
         let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
         for pole in [(root - c) / (2.0 * m), (-root - c) / (2.0 * m)] {
-            contains(&at(spin), pole.re, pole.im);
-            contains(&at(spin), pole.re, -pole.im);
+            contains(&system_of(spin), pole.re, pole.im);
+            contains(&system_of(spin), pole.re, -pole.im);
         }
     }
     let threshold = (1200.0_f64 / 3.0).sqrt() * (1.0 + 2.0 / 5.0);
-    assert!(at(threshold * (1.0 - 1e-6)).is_stable().unwrap());
-    assert!(!at(threshold * (1.0 + 1e-6)).is_stable().unwrap());
+    assert!(system_of(threshold * (1.0 - 1e-6)).is_stable().unwrap());
+    assert!(!system_of(threshold * (1.0 + 1e-6)).is_stable().unwrap());
 }
 
 /// Balanced rotor in massless gimbals.
@@ -339,8 +340,8 @@ fn decaying_constraints_have_their_exponents() {
     contains(&system, 0.0, -own);
     let characteristic = system.channel("place.x", "push").unwrap();
     assert_eq!(system.poles().unwrap().len(), 4);
-    let near = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
-    assert_eq!(system.poles().unwrap().iter().filter(|pole| near(pole)).count(), 2);
+    let is_near = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
+    assert_eq!(system.poles().unwrap().iter().filter(|pole| is_near(pole)).count(), 2);
     // The push does not excite the decaying constraint.
     let (s, answer) = (Complex::new(0.3, 2.0), characteristic.at(Complex::new(0.3, 2.0)).unwrap());
     let expected = (s * s + 2.0 * 9.81).inv() / 2.0;

@@ -378,14 +378,14 @@ fn margins_miss_no_crossing() {
         for w in one {
             assert!(margins.phase.iter().any(|m| (m.frequency / w - 1.0).abs() < 1e-2), "{k}: phase at {w}");
         }
-        let at = |w: f64| loose.at(C::new(0.0, w)).unwrap()[(0, 0)];
+        let response = |w: f64| loose.at(C::new(0.0, w)).unwrap()[(0, 0)];
         for m in &margins.gain {
-            assert!((at(m.frequency) * m.factor + 1.0).norm() < 1e-6, "{k}: {m:?}");
+            assert!((response(m.frequency) * m.factor + 1.0).norm() < 1e-6, "{k}: {m:?}");
         }
         for m in &margins.phase {
-            assert!((at(m.frequency).norm() - 1.0).abs() < 1e-9, "{k}: {m:?}");
+            assert!((response(m.frequency).norm() - 1.0).abs() < 1e-9, "{k}: {m:?}");
         }
-        let ends = [at(0.0), at(1e9 * grid[grid.len() - 1])];
+        let ends = [response(0.0), response(1e9 * grid[grid.len() - 1])];
         let least = values.iter().chain(&ends).map(|x| (x + 1.0).norm()).fold(f64::INFINITY, f64::min);
         assert!(
             margins.stability.distance <= least * (1.0 + 1e-9),

@@ -141,7 +141,7 @@ where
     let (every, samples) = (motion.every, &mut *motion.samples);
     let (control, count) = (&mut *motion.control, &mut motion.count);
     let failure = std::cell::RefCell::new(None);
-    let asked = |t: N, q: &SVector<N, NQ>, v: &SVector<N, NV>| {
+    let query_control = |t: N, q: &SVector<N, NQ>, v: &SVector<N, NV>| {
         let mut u = SVector::<N, NU>::zeros();
         let mut failed = failure.borrow_mut();
         if failed.is_none()
@@ -154,8 +154,8 @@ where
         if failed.is_some() { u.map(|_| N::NAN) } else { u }
     };
     let ended = match every {
-        Every::Evaluation => collect(begun.inputs(asked), samples, count),
-        Every::Period(period) => collect(begun.control_every(period, asked), samples, count),
+        Every::Evaluation => collect(begun.inputs(query_control), samples, count),
+        Every::Period(period) => collect(begun.control_every(period, query_control), samples, count),
     };
     match failure.into_inner() {
         Some(failure) => Err(failure),

@@ -16,7 +16,7 @@ trait Laned<T: Real, const L: usize> {
     fn none() -> Self::All;
 
     /// Writes the result to lane `k`.
-    fn put(self, all: &mut Self::All, k: usize);
+    fn write_lane(self, all: &mut Self::All, k: usize);
 }
 
 impl<T: Real, const L: usize, const R: usize, const C: usize> Laned<T, L> for SMatrix<T, R, C> {
@@ -26,7 +26,7 @@ impl<T: Real, const L: usize, const R: usize, const C: usize> Laned<T, L> for SM
         zeros()
     }
 
-    fn put(self, all: &mut Self::All, k: usize) {
+    fn write_lane(self, all: &mut Self::All, k: usize) {
         set_lane(all, k, &self);
     }
 }
@@ -38,9 +38,9 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>> Laned<T, L> for (A
         (A::none(), B::none())
     }
 
-    fn put(self, all: &mut Self::All, k: usize) {
-        self.0.put(&mut all.0, k);
-        self.1.put(&mut all.1, k);
+    fn write_lane(self, all: &mut Self::All, k: usize) {
+        self.0.write_lane(&mut all.0, k);
+        self.1.write_lane(&mut all.1, k);
     }
 }
 
@@ -51,10 +51,10 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
         (A::none(), B::none(), C::none())
     }
 
-    fn put(self, all: &mut Self::All, k: usize) {
-        self.0.put(&mut all.0, k);
-        self.1.put(&mut all.1, k);
-        self.2.put(&mut all.2, k);
+    fn write_lane(self, all: &mut Self::All, k: usize) {
+        self.0.write_lane(&mut all.0, k);
+        self.1.write_lane(&mut all.1, k);
+        self.2.write_lane(&mut all.2, k);
     }
 }
 
@@ -62,7 +62,7 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
 fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
     let mut all = R::none();
     for k in 0..L {
-        of(k).put(&mut all, k);
+        of(k).write_lane(&mut all, k);
     }
     all
 }

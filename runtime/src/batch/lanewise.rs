@@ -201,10 +201,10 @@ where
         }
         let nothing = M::Scalar::zero() / M::Scalar::zero();
         let lost = Touched::free(SVector::repeat(nothing), SVector::repeat(nothing));
-        let of = |k: usize| results[k].unwrap_or(lost);
-        let [v, held] = [lane_by_lane(|k| of(k).v), lane_by_lane(|k| of(k).held)];
-        let violation = Lanes(core::array::from_fn(|k| of(k).violation));
-        Ok(Touched { q: lane_by_lane(|k| of(k).q), v, held, violation })
+        let result = |k: usize| results[k].unwrap_or(lost);
+        let [v, held] = [lane_by_lane(|k| result(k).v), lane_by_lane(|k| result(k).held)];
+        let violation = Lanes(core::array::from_fn(|k| result(k).violation));
+        Ok(Touched { q: lane_by_lane(|k| result(k).q), v, held, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

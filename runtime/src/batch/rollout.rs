@@ -275,9 +275,9 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
                     return group;
                 }
             }
-            let lanes = lost(&group.end).0.into_iter().zip(begin.t.0);
-            for (failure, (lost, t)) in group.failures.iter_mut().zip(lanes) {
-                if failure.is_none() && !lost.is_finite() {
+            let lanes = nan_mask(&group.end).0.into_iter().zip(begin.t.0);
+            for (failure, (mask, t)) in group.failures.iter_mut().zip(lanes) {
+                if failure.is_none() && !mask.is_finite() {
                     *failure = Some(integrate::Error::NotFinite { t: to_f64(t) });
                 }
             }
@@ -333,7 +333,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
 }
 
 /// Returns zero in the lanes whose state is finite, and NaN in the others.
-fn lost<T: Real, const L: usize, const NQ: usize, const NV: usize>(
+fn nan_mask<T: Real, const L: usize, const NQ: usize, const NV: usize>(
     state: &State<Lanes<T, L>, NQ, NV>,
 ) -> Lanes<T, L> {
     state.q.iter().chain(state.v.iter()).fold(Lanes::default(), |sum, x| sum + *x * T::zero())

@@ -79,7 +79,7 @@ pub(super) struct Displacement<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Displacement<T, NV> {
-    pub(super) fn of<M, const NQ: usize, const NU: usize>(m: &M, dv: &SVector<T, NV>) -> Self
+    pub(super) fn new<M, const NQ: usize, const NU: usize>(m: &M, dv: &SVector<T, NV>) -> Self
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {

@@ -48,7 +48,7 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
 
     /// Returns a function of two such vectors, given its value and its derivatives with respect to both
     /// (chain rule).
-    pub(super) fn of(
+    pub(super) fn compose(
         value: SVector<T, NV>,
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
         (by_b, b): (&SMatrix<T, NV, NV>, &Self),
@@ -77,7 +77,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     /// Returns the configuration `q ⊕ displacement` and the derivatives of its motion.
-    pub(super) fn moved(
+    pub(super) fn displace(
         &self,
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
@@ -107,7 +107,7 @@ where
         v: &Sensitive<T, NV, NU>,
     ) -> Sensitive<T, NV, NU> {
         let own = self.accelerated(h, (q, &v.value));
-        let mut found = Sensitive::of(own.value, (&own.by_q, motion), (&own.by_v, v));
+        let mut found = Sensitive::compose(own.value, (&own.by_q, motion), (&own.by_v, v));
         add_multiple(&mut found.by_u, T::one(), &own.by_u);
         found
     }
@@ -131,7 +131,7 @@ where
         displacement: &Sensitive<T, NV, NU>,
         v: &Sensitive<T, NV, NU>,
     ) -> Transition<T, NQ, NV, NU> {
-        let (q, motion) = self.moved(displacement);
+        let (q, motion) = self.displace(displacement);
         Transition {
             q,
             v: v.value,
@@ -299,11 +299,11 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
             let (by_q, by_dv, by_v) =
                 mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
-            let mut rate = Sensitive::of(value, (&by_dv, &displacement), (&by_v, &v));
+            let mut rate = Sensitive::compose(value, (&by_dv, &displacement), (&by_v, &v));
             if mechanism.features().speeds {
                 rate.by_q += by_q;
             }
-            (rate, start.acceleration(h, &start.moved(&displacement), &v))
+            (rate, start.acceleration(h, &start.displace(&displacement), &v))
         };
         let half = h * constant(0.5);
         let k1 = (v, start.acceleration(T::zero(), &start.here(), &v));

@@ -234,7 +234,7 @@ where
         self.transition(&Free { matrix: self.matrix(), mass, momentum_by_q })
     }
 
-    fn held<const NH: usize, const NC: usize>(
+    fn constrained_transition<const NH: usize, const NC: usize>(
         &self,
         gain: &SVector<T, NV>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
@@ -320,7 +320,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
         let made = self.made(m, t, q, v, u)?;
         let (now, middle) = (t + made.half(), made.middle);
         let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
-        made.held(&(force * made.half()))
+        made.constrained_transition(&(force * made.half()))
     }
 }
 
@@ -404,7 +404,7 @@ where
     };
     let rest = m.momentum_rate(t + half, &middle, &still);
     let gain = m.momentum_rate(t + half, &middle, &w) - rest;
-    made.held(&(gain * half))
+    made.constrained_transition(&(gain * half))
 }
 
 /// Solves `m x = b` by Gaussian elimination with complete pivoting. Unknowns whose pivots are below rounding

@@ -128,7 +128,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
 {
     let here = m.integrate(q, &displacement.value);
-    let moved = moved(m, q, displacement);
+    let derivatives = configuration_derivatives(m, q, displacement);
     let motion = at(m, t).linear_motion(&here, &v.value, u);
     let tau = m.generalized_forces(t, &here, &v.value, u);
     let mut by = m.forward_dynamics_by_parameters(t, &here, &v.value, &tau);
@@ -137,13 +137,13 @@ where
         let (.., inverse) = m.forward_dynamics_derivatives(t, &here, &v.value, &tau);
         add_product(&mut by, &inverse, &pushes);
     }
-    add_product(&mut by, &motion.by_q, &moved);
+    add_product(&mut by, &motion.by_q, &derivatives);
     add_product(&mut by, &motion.by_v, &v.by);
     Changing { value: motion.acceleration, by }
 }
 
 /// Returns the derivatives of the configuration after a displacement.
-fn moved<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+fn configuration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     q: &SVector<T, NQ>,
     displacement: &Changing<T, NV, NP>,
@@ -172,7 +172,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     {
         let (h, v) = (self.length(), Changing::fixed(v));
         let after = v.plus(h, &acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
-        (moved(m, q, &after.scaled(h)), after.by)
+        (configuration_derivatives(m, q, &after.scaled(h)), after.by)
     }
 }
 
@@ -204,6 +204,6 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
         let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
         let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
-        (moved(m, q, &displacement), change.by)
+        (configuration_derivatives(m, q, &displacement), change.by)
     }
 }

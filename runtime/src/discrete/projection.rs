@@ -133,7 +133,7 @@ where
     m.check_regular(t, &q)?;
     // Intermediate configurations of the projection, with their derivatives with respect to the first. In
     // coordinates that are a vector space, the derivative of a displacement is the identity.
-    let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::of(m, x));
+    let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::new(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
     for stage in &mut way {

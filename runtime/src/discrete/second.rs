@@ -115,9 +115,9 @@ where
         let added = projection::curvature(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
-        let moved = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
-        let displacement = moved(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
-        let velocity = moved(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
+        let sensitive = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
+        let displacement = sensitive(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
+        let velocity = sensitive(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
         added.second.add_to(&mut sum, &displacement, &velocity);
         Ok(sum)
     }
@@ -179,7 +179,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
         let change =
             Sensitive { value: motion.acceleration, by_q: motion.by_q, by_v: motion.by_v, by_u: motion.by_u };
         let displacement = first.plus(h, &change).scaled(h);
-        let moved = Displacement::of(mechanism, &displacement.value);
+        let moved = Displacement::new(mechanism, &displacement.value);
         let of_displacement = moved.by_dv.tr_mul(by_q);
         let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
         moved.curvature(mechanism, by_q).add_to(&mut sum, &Sensitive::displacement(), &displacement);
@@ -277,7 +277,7 @@ where
     T: Real,
     M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    let moved = Displacement::of(mechanism, &displacement.value);
+    let moved = Displacement::new(mechanism, &displacement.value);
     moved.curvature(mechanism, lambda).add_to(sum, &Sensitive::displacement(), displacement);
     moved.by_dv.tr_mul(lambda)
 }
@@ -297,7 +297,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (now, q): (At<'_, M, T>, _) = (at(start.mechanism, start.t + after), start.moved(&displacement));
+        let (now, q): (At<'_, M, T>, _) =
+            (at(start.mechanism, start.t + after), start.displace(&displacement));
         let motion = now.linear_motion(&q.0, &v.value, start.u);
         Self { after, displacement, q, v, motion }
     }
@@ -314,13 +315,13 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         let (way, v) = (&self.displacement, &self.v);
         let (by_way, by_v) = start.mechanism.tangent_rate_derivatives(&way.value, &v.value);
         let value = start.mechanism.tangent_rate(&way.value, &v.value);
-        Sensitive::of(value, (&by_way, way), (&by_v, v))
+        Sensitive::compose(value, (&by_way, way), (&by_v, v))
     }
 
     /// Returns the acceleration, with its derivatives with respect to the start of the step.
     fn acceleration(&self) -> Sensitive<T, NV, NU> {
         let LinearMotion { acceleration, by_q, by_v, by_u, .. } = &self.motion;
-        let found = Sensitive::of(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
+        let found = Sensitive::compose(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
         Sensitive { by_u: found.by_u + by_u, ..found }
     }
 

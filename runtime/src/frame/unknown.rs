@@ -20,17 +20,17 @@ impl Message {
     /// Returns the message that a mechanism has no frame of this name, with the most similar names, or all
     /// names if there are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
-        let start = Message::empty().with("`").with(mechanism).with("` has no frame `").with(name).with("`");
+        let start = Message::empty().add("`").add(mechanism).add("` has no frame `").add(name).add("`");
         match start.nearest(frames, name) {
             (message, true) => message,
-            (message, false) => message.with("; `").with(mechanism).with("::FRAMES` lists those that it has"),
+            (message, false) => message.add("; `").add(mechanism).add("::FRAMES` lists those that it has"),
         }
     }
 
     /// Returns the message that a list does not contain this name, with the most similar names, or all names
     /// if there are few.
     pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
-        let start = Message::empty().with("`").with(list).with("` has no entry `").with(name).with("`");
+        let start = Message::empty().add("`").add(list).add("` has no entry `").add(name).add("`");
         start.nearest(names, name).0
     }
 
@@ -48,7 +48,7 @@ impl Message {
             let mut k = 0;
             while k < names.len() {
                 if distance(names[k].as_bytes(), name.as_bytes()) == edits {
-                    message = message.with(if first { "; did you mean `" } else { "` or `" }).with(names[k]);
+                    message = message.add(if first { "; did you mean `" } else { "` or `" }).add(names[k]);
                     first = false;
                 }
                 k += 1;
@@ -57,17 +57,17 @@ impl Message {
             edits = if first { edits + 1 } else { EDITS + 2 };
         }
         if !first {
-            return (message.with("`?"), true);
+            return (message.add("`?"), true);
         }
         if names.len() > LISTED {
             return (message, false);
         }
         let mut k = 0;
         while k < names.len() {
-            message = message.with(if k == 0 { "; expected `" } else { "`, `" }).with(names[k]);
+            message = message.add(if k == 0 { "; expected `" } else { "`, `" }).add(names[k]);
             k += 1;
         }
-        (if names.is_empty() { message } else { message.with("`") }, true)
+        (if names.is_empty() { message } else { message.add("`") }, true)
     }
 
     /// Returns the text of the message.
@@ -79,7 +79,7 @@ impl Message {
         }
     }
 
-    const fn with(mut self, text: &str) -> Message {
+    const fn add(mut self, text: &str) -> Message {
         let text = text.as_bytes();
         if self.length + text.len() > Message::CAPACITY {
             return self;
@@ -172,36 +172,39 @@ mod tests {
     use super::*;
     use std::string::ToString;
 
-    fn told(frames: &[&str], name: &str) -> std::string::String {
+    fn message(frames: &[&str], name: &str) -> std::string::String {
         Message::unknown_frame("Arm", frames, name).text().to_string()
     }
 
     #[test]
     fn the_nearest_names_are_told() {
         let frames = ["base", "panda_link1", "panda_link2", "panda_hand", "tool"];
-        assert_eq!(told(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
+        assert_eq!(message(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
         assert_eq!(
-            told(&frames, "panda_lnik1"),
+            message(&frames, "panda_lnik1"),
             "`Arm` has no frame `panda_lnik1`; did you mean `panda_link1`?"
         );
         assert_eq!(
-            told(&frames, "pandalink2"),
+            message(&frames, "pandalink2"),
             "`Arm` has no frame `pandalink2`; did you mean `panda_link2`?"
         );
-        assert_eq!(told(&frames, "bas"), "`Arm` has no frame `bas`; did you mean `base`?");
+        assert_eq!(message(&frames, "bas"), "`Arm` has no frame `bas`; did you mean `base`?");
         let two = "`Arm` has no frame `panda_link`; did you mean `panda_link1` or `panda_link2`?";
-        assert_eq!(told(&frames, "panda_link"), two);
-        assert_eq!(told(&frames, "hand"), "`Arm` has no frame `hand`; did you mean `panda_hand`?");
-        assert_eq!(told(&["a", "b"], "elbow"), "`Arm` has no frame `elbow`; expected `a`, `b`");
-        assert_eq!(told(&[], "elbow"), "`Arm` has no frame `elbow`");
+        assert_eq!(message(&frames, "panda_link"), two);
+        assert_eq!(message(&frames, "hand"), "`Arm` has no frame `hand`; did you mean `panda_hand`?");
+        assert_eq!(message(&["a", "b"], "elbow"), "`Arm` has no frame `elbow`; expected `a`, `b`");
+        assert_eq!(message(&[], "elbow"), "`Arm` has no frame `elbow`");
         let many = ["a"; 9];
-        assert_eq!(told(&many, "elbow"), "`Arm` has no frame `elbow`; `Arm::FRAMES` lists those that it has");
+        assert_eq!(
+            message(&many, "elbow"),
+            "`Arm` has no frame `elbow`; `Arm::FRAMES` lists those that it has"
+        );
     }
 
     #[test]
     fn long_names_do_no_harm() {
         let long = "ü".repeat(600);
-        assert!(told(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
-        assert!(told(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));
+        assert!(message(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
+        assert!(message(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));
     }
 }

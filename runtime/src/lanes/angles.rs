@@ -10,7 +10,7 @@ use core::any::Any;
 #[inline(always)]
 pub(super) fn of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
     let (s, c, shifted) = kernel::<A, _>(Vector::<A, f64, L>::of(*x));
-    A::turned(s.numbers(), c.numbers(), shifted.numbers())
+    A::rotate_quadrants(s.numbers(), c.numbers(), shifted.numbers())
 }
 
 /// Replaces the angles by their sines and returns the cosines.

@@ -50,7 +50,7 @@ pub trait Registers: Copy + 'static {
     /// Returns sines and cosines, given those of the reduced angles; the last bits of `shifted` are the
     /// quadrants.
     #[cfg(feature = "std")]
-    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
+    fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
     /// Returns sines and cosines of angles within the range of the reduction.
     #[cfg(feature = "std")]
     fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2];
@@ -133,7 +133,7 @@ impl Registers for Compiled {
     #[cfg(feature = "std")]
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+    fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
         macro_rules! case {
             ($lanes:literal $register:ident $bits:ident) => {
                 if L == $lanes

@@ -56,7 +56,7 @@ fn of_brackets<T: Real, const N: usize>(
     factors: [Factor<T>; 2],
 ) -> Block<T, N> {
     let two = constant::<T>(2.0);
-    let along = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
+    let weighted_sum = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
     let sum = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
     // adᵏ v, and its derivatives along each direction.
@@ -82,9 +82,11 @@ fn of_brackets<T: Real, const N: usize>(
             let [value, slope, curvature] = factors[k / 2 - 1];
             let bent = if i == j && i + 3 >= N { two * slope } else { T::zero() };
             total = total
-                + value * along(&second)
-                + slope * (by_square(i) * along(&changes[k][j]) + by_square(j) * along(&changes[k][i]))
-                + (curvature * by_square(i) * by_square(j) + bent) * along(&powers[k]);
+                + value * weighted_sum(&second)
+                + slope
+                    * (by_square(i) * weighted_sum(&changes[k][j])
+                        + by_square(j) * weighted_sum(&changes[k][i]))
+                + (curvature * by_square(i) * by_square(j) + bent) * weighted_sum(&powers[k]);
         }
         total
     };
@@ -152,11 +154,11 @@ mod tests {
     fn slope<const N: usize>(lambda: [f64; N], f: impl Fn([f64; N]) -> Block<f64, N>) -> Block<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
-            let at = |x: f64| {
+            let value = |x: f64| {
                 f(core::array::from_fn(|i| if i == j { x } else { 0.0 }))
                     .map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum::<f64>())
             };
-            let (a, b, c, d) = (at(-2.0 * h), at(-h), at(h), at(2.0 * h));
+            let (a, b, c, d) = (value(-2.0 * h), value(-h), value(h), value(2.0 * h));
             core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
         })
     }

@@ -204,8 +204,8 @@ mod tests {
     fn slope<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
         let h = 1e-3;
         core::array::from_fn(|j| {
-            let at = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
-            let (a, b, c, d) = (at(-2.0 * h), at(-h), at(h), at(2.0 * h));
+            let value = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
+            let (a, b, c, d) = (value(-2.0 * h), value(-h), value(h), value(2.0 * h));
             core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
         })
     }
@@ -261,15 +261,15 @@ mod tests {
     /// Checks that series and closed forms agree on both sides of the limits.
     #[test]
     fn series_meet_closed_forms() {
-        let near = |f: fn(f64) -> [f64; 2], x: f64| {
+        let assert_continuous = |f: fn(f64) -> [f64; 2], x: f64| {
             let (below, above) = (f(x * (1.0 - 1e-12)), f(x * (1.0 + 1e-12)));
             below
                 .iter()
                 .zip(&above)
                 .for_each(|(a, b)| assert!((a - b).abs() < 1e-13 + 1e-11 * a.abs(), "{a} {b}"));
         };
-        near(even_slopes, super::super::SERIES_ANGLE);
-        near(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
-        near(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
+        assert_continuous(even_slopes, super::super::SERIES_ANGLE);
+        assert_continuous(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
+        assert_continuous(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
     }
 }

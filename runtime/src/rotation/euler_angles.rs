@@ -18,7 +18,7 @@ pub struct Angles<T> {
 
 impl EulerSequence {
     pub(super) fn standard(self) -> Standard {
-        Standard::of(self)
+        Standard::new(self)
     }
 
     /// Returns the rotation matrix of Euler angles `[t₁, t₂, t₃]`, rad, of any magnitude.

@@ -21,7 +21,7 @@ pub(super) struct Standard {
 }
 
 impl Standard {
-    pub(super) fn of(sequence: EulerSequence) -> Self {
+    pub(super) fn new(sequence: EulerSequence) -> Self {
         let reversed = sequence.fixed_in() == FixedIn::Space;
         let [a, second, c] = sequence.axes();
         let first = if reversed { c } else { a };

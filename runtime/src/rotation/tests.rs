@@ -49,18 +49,18 @@ impl Random {
 }
 
 /// Returns the largest difference of two entries.
-fn far<const N: usize, const M: usize>(a: &SMatrix<f64, N, M>, b: &SMatrix<f64, N, M>) -> f64 {
+fn difference<const N: usize, const M: usize>(a: &SMatrix<f64, N, M>, b: &SMatrix<f64, N, M>) -> f64 {
     (a - b).iter().fold(0.0, |far: f64, x| if x.is_nan() { f64::INFINITY } else { far.max(x.abs()) })
 }
 
 /// Returns the largest difference of two numbers.
-fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    far(&Vector3::from(a), &Vector3::from(b))
+fn angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+    difference(&Vector3::from(a), &Vector3::from(b))
 }
 
 /// Returns the largest entry of `Rᵀ R − 1`.
 fn skewed(rotation: &Rotation3<f64>) -> f64 {
-    far(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
+    difference(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
 }
 
 /// Returns the derivative of `f` at zero, by differences of order eight; the error is of order 1e-13 if `f`
@@ -76,7 +76,7 @@ fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) 
 }
 
 /// Asserts that an error is below a bound; the message contains `place`.
-fn below(error: f64, bound: f64, place: impl core::fmt::Debug) {
+fn assert_below(error: f64, bound: f64, place: impl core::fmt::Debug) {
     assert!(error <= bound, "{error:e} > {bound:e} at {place:?}");
 }
 

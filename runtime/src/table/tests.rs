@@ -98,11 +98,11 @@ fn lanes_look_up_each_for_itself() {
 
 #[test]
 fn single_precision_looks_up_too() {
-    fn at<T: Real>(x: f64) -> f64 {
+    fn lookup<T: Real>(x: f64) -> f64 {
         let x = crate::private::constant::<T>(x);
         crate::private::to_f64(cube().smooth().value([x, x, x]))
     }
-    assert!((at::<f32>(0.7) - at::<f64>(0.7)).abs() < 1e-5);
+    assert!((lookup::<f32>(0.7) - lookup::<f64>(0.7)).abs() < 1e-5);
 }
 
 #[test]
@@ -111,12 +111,12 @@ fn figures_that_are_no_table_are_told() {
     static BACK: [f64; 3] = [0.0, 2.0, 1.0];
     static HOLE: [f64; 2] = [0.0, f64::NAN];
     static TWO: [f64; 2] = [0.0, 1.0];
-    let of = |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
-    assert_eq!(of([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
-    assert_eq!(of([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
-    assert_eq!(of([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
-    assert_eq!(of([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
-    assert_eq!(of([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
+    let error = |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
+    assert_eq!(error([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
+    assert_eq!(error([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
+    assert_eq!(error([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
+    assert_eq!(error([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
+    assert_eq!(error([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
     let said = std::string::ToString::to_string(&TableError::Size { expected: 2, found: 3 });
     assert_eq!(said, "the grid of the table has 2 points, but there are 3 values");
 }

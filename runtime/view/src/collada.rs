@@ -29,12 +29,12 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
         None => Some(1.0),
     };
     let metres = metres.ok_or("the `meter` of the unit is no length")?;
-    let named = |library: &'static str, of: &'static str| {
+    let elements_by_id = |library: &'static str, of: &'static str| {
         let libraries = children(root, library).flat_map(move |all| children(all, of));
         libraries.filter_map(|node| Some((node.attribute("id")?, node))).collect::<HashMap<_, _>>()
     };
     let mut reader = Reader {
-        geometries: named("library_geometries", "geometry"),
+        geometries: elements_by_id("library_geometries", "geometry"),
         // An instance may refer to any node with an `id`, in a library or in a scene.
         nodes: root
             .descendants()
@@ -45,7 +45,7 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
         instances: 0,
         corners: Vec::new(),
     };
-    let scenes = named("library_visual_scenes", "visual_scene");
+    let scenes = elements_by_id("library_visual_scenes", "visual_scene");
     let shown = child(root, "scene").and_then(|scene| child(scene, "instance_visual_scene"));
     let to_metres = Matrix4::new_scaling(metres);
     match shown {
@@ -185,15 +185,15 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
 
 /// Returns the positions of vertices from the source that their `POSITION` input refers to.
 fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
-    let within = |of: &str, name: &str| {
+    let find_child = |of: &str, name: &str| {
         mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
     };
     let name = vertices.attribute("source").unwrap_or_default();
     let missing = || format!("no source of positions at `{name}`");
-    let vertices = within("vertices", name.trim_start_matches('#')).ok_or_else(missing)?;
+    let vertices = find_child("vertices", name.trim_start_matches('#')).ok_or_else(missing)?;
     let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
     let source = input.and_then(|input| input.attribute("source")).unwrap_or_default();
-    let source = within("source", source.trim_start_matches('#')).ok_or_else(missing)?;
+    let source = find_child("source", source.trim_start_matches('#')).ok_or_else(missing)?;
     let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing)?)?;
     let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
     let count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {

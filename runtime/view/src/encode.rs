@@ -50,8 +50,8 @@ pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
-        let at = |k: usize| u32::from(group.get(k).copied().unwrap_or(0));
-        let word = at(0) << 16 | at(1) << 8 | at(2);
+        let byte = |k: usize| u32::from(group.get(k).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
         for k in 0..4 {
             let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
             out.push(if k <= group.len() { char::from(digit) } else { '=' });

@@ -241,28 +241,30 @@ impl Shape {
     /// beyond it.
     pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
-        let at = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+        let vector = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
         let [a, b] = self.frames;
         let ends = |half: f64, radius: f64| {
-            vec![(a, at(0) - at(3) * half, radius), (a, at(0) + at(3) * half, radius)]
+            vec![(a, vector(0) - vector(3) * half, radius), (a, vector(0) + vector(3) * half, radius)]
         };
-        let norm = |k: usize| at(k).norm();
+        let norm = |k: usize| vector(k).norm();
         match self.kind {
             Kind::Rod => ends(n[6] / 2.0, 0.0),
             Kind::Cylinder | Kind::Capsule => ends(n[7] / 2.0, n[6]),
             Kind::Cone => ends(n[7] * 0.75, n[6]),
             Kind::Tube => ends(n[8] / 2.0, n[7]),
-            Kind::Ring | Kind::Disk => vec![(a, at(0), n[6])],
-            Kind::Torus => vec![(a, at(0), n[6] + n[7])],
-            Kind::Sphere => vec![(a, at(0), n[3])],
-            Kind::Cuboid => vec![(a, at(0), norm(12) / 2.0)],
-            Kind::Ellipsoid => vec![(a, at(0), n[12].max(n[13]).max(n[14]))],
-            Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, at(0), 0.0), (b, at(3), 0.0)],
+            Kind::Ring | Kind::Disk => vec![(a, vector(0), n[6])],
+            Kind::Torus => vec![(a, vector(0), n[6] + n[7])],
+            Kind::Sphere => vec![(a, vector(0), n[3])],
+            Kind::Cuboid => vec![(a, vector(0), norm(12) / 2.0)],
+            Kind::Ellipsoid => vec![(a, vector(0), n[12].max(n[13]).max(n[14]))],
+            Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, vector(0), 0.0), (b, vector(3), 0.0)],
             Kind::Terrain(_) => Vec::new(),
             // A surface has no definite size, like a plane.
             Kind::Mesh(_) if self.role == Role::Surface => Vec::new(),
             Kind::Mesh(_) => match &self.mesh {
-                Some(mesh) => vec![(a, at(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))],
+                Some(mesh) => {
+                    vec![(a, vector(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))]
+                }
                 None => Vec::new(),
             },
             Kind::Plane | Kind::Funnel | Kind::Pipe | Kind::Bowl | Kind::Gravity | Kind::Inertia => {
@@ -275,7 +277,7 @@ impl Shape {
             | Kind::Spiral
             | Kind::Brake
             | Kind::Force(_)
-            | Kind::Torque(_) => vec![(a, at(0), 0.0)],
+            | Kind::Torque(_) => vec![(a, vector(0), 0.0)],
         }
     }
 

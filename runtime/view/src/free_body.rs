@@ -86,7 +86,7 @@ impl Side {
 /// ```
 #[must_use]
 pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -> String {
-    let all: Vec<Shown> = diagram.actions.iter().map(|action| Shown::of(action, side)).collect();
+    let all: Vec<Shown> = diagram.actions.iter().map(|action| Shown::new(action, side)).collect();
     let height = HEIGHT.max(LINE * (3.0 * all.len() as f64 + 5.0) + 30.0);
     let width = DRAWING + LIST;
     let mut out = format!(
@@ -112,7 +112,7 @@ struct Shown {
 }
 
 impl Shown {
-    fn of<T: Real>(action: &Action<T>, side: Side) -> Shown {
+    fn new<T: Real>(action: &Action<T>, side: Side) -> Shown {
         let figures = [action.point, action.force, action.torque].map(numbers);
         let [point, force, torque] = figures.map(|v| side.seen(v));
         let colour = match action.origin {
@@ -152,10 +152,10 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     let forces = scale(all.iter().map(|s| norm(s.force)), LONGEST);
     let torques = scale(all.iter().map(|s| norm(s.torque)), LONGEST / 2.0);
     let largest = all.iter().map(|s| norm(s.torque)).fold(0.0, f64::max);
-    let at = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
-    let center = at([0.0; 3]);
+    let to_page = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
+    let center = to_page([0.0; 3]);
     for shown in &all {
-        let (x, y) = at(shown.point);
+        let (x, y) = to_page(shown.point);
         let _ = writeln!(
             out,
             "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{x:.2}\" y2=\"{y:.2}\" stroke=\"#ccc\" stroke-width=\"7\" stroke-linecap=\"round\"/>",
@@ -170,7 +170,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     );
     write_axes(out, side);
     for shown in all {
-        let (x, y) = at(shown.point);
+        let (x, y) = to_page(shown.point);
         let [right, up, _] = shown.force.map(|c| c * forces);
         arrow(out, (x, y), (right, -up), shown.colour, 1);
         let away = if up < 0.0 { 16.0 } else { -8.0 };

@@ -29,9 +29,10 @@ impl Mesh {
                 return Err(format!("expected bounds that increase, found {low} and {high}"));
             }
         }
-        let at = |[low, high]: [f64; 2], k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
+        let interpolate =
+            |[low, high]: [f64; 2], k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
         let corner = |j: u32, k: u32| {
-            let (u, w) = (at(u, j), at(w, k));
+            let (u, w) = (interpolate(u, j), interpolate(w, k));
             let place = place(u, w);
             match place.iter().all(|x| (*x as f32).is_finite()) {
                 true => Ok(place.map(|x| x as f32)),

@@ -160,7 +160,7 @@ impl Motion {
     /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
     /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
-        let size = Scene::of(&self.figure, &self.placements, &self.shown()).size;
+        let size = Scene::new(&self.figure, &self.placements, &self.shown()).size;
         self.figure.raise(&self.placements, size, height);
         self
     }
@@ -346,7 +346,7 @@ impl Motion {
         let used = self.used();
         let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
         let shown = self.shown();
-        let scene = Scene::of(&self.figure, &self.placements, &shown);
+        let scene = Scene::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
         let start = self.times[0];

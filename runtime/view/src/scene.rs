@@ -26,7 +26,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Computes the scene of a drawing whose frames are placed sample by sample. `shown` has the indices of
     /// the samples that are shown, including the first one.
-    pub(crate) fn of(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
+    pub(crate) fn new(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);

@@ -23,8 +23,8 @@ fn arrows(svg: &str, colour: &str) -> Vec<[f64; 2]> {
         rest.split('"').next().and_then(|text| text.parse().ok()).expect("a number")
     };
     let lines = svg.lines().filter(|line| line.starts_with("<line") && line.contains(colour));
-    let along = |line: &str| [["x2", "x1"], ["y1", "y2"]].map(|[a, b]| number(line, a) - number(line, b));
-    lines.map(along).collect()
+    let arrow = |line: &str| [["x2", "x1"], ["y1", "y2"]].map(|[a, b]| number(line, a) - number(line, b));
+    lines.map(arrow).collect()
 }
 
 #[test]

@@ -118,24 +118,27 @@ fn every_solid_has_its_numbers() {
     let numbers = solids.drawing_numbers();
     let counted: usize = Solids::DRAWING.iter().map(|piece| piece.kind.count()).sum();
     assert_eq!(numbers.len(), counted);
-    let of = |name: &str, role: Role| -> Vec<(Kind, &[f64])> {
+    let find_pieces = |name: &str, role: Role| -> Vec<(Kind, &[f64])> {
         let found = Solids::DRAWING.iter().filter(|p| p.name == name && p.role == role);
         found.map(|p| (p.kind, &numbers[p.first..p.first + p.kind.count()])).collect()
     };
-    assert_eq!(of("rod", Role::Body), [(Kind::Rod, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.6][..])]);
-    assert_eq!(of("ring", Role::Body), [(Kind::Ring, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.2][..])]);
-    assert_eq!(of("tube", Role::Body), [(Kind::Tube, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.6][..])]);
-    let kinds = |name| of(name, Role::Body).into_iter().map(|(kind, _)| kind).collect::<Vec<_>>();
+    assert_eq!(find_pieces("rod", Role::Body), [(Kind::Rod, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.6][..])]);
+    assert_eq!(find_pieces("ring", Role::Body), [(Kind::Ring, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.2][..])]);
+    assert_eq!(
+        find_pieces("tube", Role::Body),
+        [(Kind::Tube, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.6][..])]
+    );
+    let kinds = |name| find_pieces(name, Role::Body).into_iter().map(|(kind, _)| kind).collect::<Vec<_>>();
     assert_eq!(kinds("disk"), [Kind::Disk, Kind::Cylinder]);
     assert_eq!(kinds("sphere"), [Kind::Sphere; 2]);
     assert_eq!(kinds("plate"), [Kind::Cuboid, Kind::Ellipsoid]);
     assert_eq!(kinds("figures"), [Kind::Inertia]);
     // A rotation by 90° about z maps the first edge to y.
-    let cuboid = of("cuboid", Role::Body)[0].1;
+    let cuboid = find_pieces("cuboid", Role::Body)[0].1;
     assert!((Vector3::new(cuboid[3], cuboid[6], cuboid[9]) - Vector3::y()).norm() < 1e-12);
     assert_eq!(cuboid[12..], [0.2, 0.4, 0.6]);
-    assert_eq!(of("drive", Role::Input)[0].0, Kind::Force(0));
-    assert_eq!(of("gravity", Role::Gravity)[0].1[3..], [0.0, 0.0, -9.81]);
+    assert_eq!(find_pieces("drive", Role::Input)[0].0, Kind::Force(0));
+    assert_eq!(find_pieces("gravity", Role::Gravity)[0].1[3..], [0.0, 0.0, -9.81]);
 }
 
 /// Checks that the bar of a child ends at the joint that is drawn on its parent, in an arbitrary
@@ -151,16 +154,16 @@ fn joints_and_links_meet() {
         let point = Point3::new(n[0], n[1], n[2]);
         frame.map_or(point, |k| frames[k] * point)
     };
-    let of = |name: &str, role: Role| {
+    let find_piece = |name: &str, role: Role| {
         let piece = Solids::DRAWING.iter().find(|p| p.name == name && p.role == role).unwrap();
         (piece.frames, &numbers[piece.first..])
     };
-    let (hinge, ring) = (of("b", Role::Joint), of("rod", Role::Link));
+    let (hinge, ring) = (find_piece("b", Role::Joint), find_piece("rod", Role::Link));
     // The bars of the rod begin at its joint with the ground, and lead to its joint with the ring.
     assert!((place(hinge.0[0], hinge.1) - place(ring.0[1], &ring.1[3..])).norm() < 1e-12);
     let ring = solids.frame_placement(linkwork::frame!(Solids, "ring"), &q).translation.vector;
     assert!((place(hinge.0[0], hinge.1).coords - ring).norm() < 1e-12);
-    let damper = of("damper", Role::Element);
+    let damper = find_piece("damper", Role::Element);
     assert!((place(damper.0[0], damper.1).coords - ring).norm() < 1e-12);
     let figures = solids.frame_placement(linkwork::frame!(Solids, "figures"), &q).translation.vector;
     assert!((place(damper.0[1], &damper.1[3..]).coords - figures).norm() < 1e-12);
@@ -234,12 +237,14 @@ fn missing_meshes_are_replaced_and_listed() {
 /// Checks that a log has the errors of a page: no samples, and times that decrease.
 #[test]
 fn logs_and_pages_agree_on_errors() {
-    let at = |t: f64| Sample::new(&Shapes, t, [0.1, 0.2], [0.0; 2], [0.0; 2]).unwrap();
-    for samples in [vec![], vec![at(1.0), at(0.5)]] {
+    let sample_at = |t: f64| Sample::new(&Shapes, t, [0.1, 0.2], [0.0; 2], [0.0; 2]).unwrap();
+    for samples in [vec![], vec![sample_at(1.0), sample_at(0.5)]] {
         let [log, html] = [csv(&Shapes, &samples), page("", &Shapes, &samples)].map(Result::unwrap_err);
         assert_eq!(std::mem::discriminant(&log), std::mem::discriminant(&html), "{log} {html}");
     }
-    assert!(csv(&Shapes, &[at(0.5), at(0.5)]).unwrap().ends_with("\r\n0.5,0.1,0.2,0,0,0,0\r\n"));
+    assert!(
+        csv(&Shapes, &[sample_at(0.5), sample_at(0.5)]).unwrap().ends_with("\r\n0.5,0.1,0.2,0,0,0,0\r\n")
+    );
 }
 
 #[mechanism(mjcf = "tests/shapes.xml", drawing)]

@@ -64,7 +64,7 @@ where
         Some(State { q, v, a, tau })
     };
     let mut random = Random::new(7);
-    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.within(limit));
+    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform(limit));
     let mut states = Vec::from_iter(state(&middle, &start));
     while states.len() < STATES {
         let speed = start.amax().max(1.0);

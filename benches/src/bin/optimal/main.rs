@@ -235,11 +235,14 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 
 fn main() {
     let method = SemiImplicitEuler::step(PERIOD);
-    let at = |x: f64| SVector::<f64, 7>::repeat(x);
+    let uniform = |x: f64| SVector::<f64, 7>::repeat(x);
     // Torques that hold the arm at rest in its initial configuration.
-    let held = Panda.inverse_dynamics(&at(0.1), &SVector::zeros(), &SVector::zeros());
-    let panda =
-        Problem { mechanism: &Panda, method, goal: at(-0.2) }.measure("panda", at(0.1), vec![held; NODES]);
+    let held = Panda.inverse_dynamics(&uniform(0.1), &SVector::zeros(), &SVector::zeros());
+    let panda = Problem { mechanism: &Panda, method, goal: uniform(-0.2) }.measure(
+        "panda",
+        uniform(0.1),
+        vec![held; NODES],
+    );
 
     // A flying body moves its legs and rotates by reaction.
     let flying = |x: f64| {

@@ -35,7 +35,7 @@ pub struct Robot {
 }
 
 /// Returns a generated function as a contender.
-fn own<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
+fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
     (owner, mechanism): (Owner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
     function: Function,
@@ -50,9 +50,13 @@ macro_rules! functions {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
         [
-            own(from, $states, Function::Inverse, |m: &$type, s| m.inverse_dynamics(&s.q, &s.v, &s.a)),
-            own(from, $states, Function::Mass, |m: &$type, s| m.mass_matrix(&s.q)),
-            own(from, $states, Function::Forward, |m: &$type, s| m.forward_dynamics(&s.q, &s.v, &s.tau)),
+            linkwork_contender(from, $states, Function::Inverse, |m: &$type, s| {
+                m.inverse_dynamics(&s.q, &s.v, &s.a)
+            }),
+            linkwork_contender(from, $states, Function::Mass, |m: &$type, s| m.mass_matrix(&s.q)),
+            linkwork_contender(from, $states, Function::Forward, |m: &$type, s| {
+                m.forward_dynamics(&s.q, &s.v, &s.tau)
+            }),
         ]
     }};
 }
@@ -62,10 +66,10 @@ macro_rules! derivatives {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
         [
-            own(from, $states, Function::InverseDerivatives, |m: &$type, s| {
+            linkwork_contender(from, $states, Function::InverseDerivatives, |m: &$type, s| {
                 m.inverse_dynamics_derivatives(&s.q, &s.v, &s.a)
             }),
-            own(from, $states, Function::ForwardDerivatives, |m: &$type, s| {
+            linkwork_contender(from, $states, Function::ForwardDerivatives, |m: &$type, s| {
                 m.forward_dynamics_derivatives(&s.q, &s.v, &s.tau)
             }),
         ]

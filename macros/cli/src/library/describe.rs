@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// Returns the description as JSON.
 pub fn description(known: &Known<'_, '_>) -> String {
     let m = known.model;
-    let named = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
+    let label = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
         let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
         names.into_iter().zip(units).map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
     };
@@ -27,11 +27,11 @@ pub fn description(known: &Known<'_, '_>) -> String {
         "version": env!("CARGO_PKG_VERSION"),
         "number": known.number(),
         "documentation": without_links(&docs.join("\n\n")),
-        "configuration": named(plain(&m.configuration), &m.units.configuration),
-        "velocities": named(m.velocities.iter().map(|(name, _)| name.as_str()).collect(), &m.units.velocities),
-        "inputs": named(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
-        "parameters": named(plain(&m.parameters), &m.units.parameters),
-        "outputs": named(m.outputs.iter().map(|output| output.name.as_str()).collect(), &m.units.outputs),
+        "configuration": label(plain(&m.configuration), &m.units.configuration),
+        "velocities": label(m.velocities.iter().map(|(name, _)| name.as_str()).collect(), &m.units.velocities),
+        "inputs": label(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
+        "parameters": label(plain(&m.parameters), &m.units.parameters),
+        "outputs": label(m.outputs.iter().map(|output| output.name.as_str()).collect(), &m.units.outputs),
         "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
         "limits": m.limits.iter().map(limit).collect::<Vec<_>>(),
         "constraints": m.constraints.len(),
@@ -54,7 +54,7 @@ fn limit(limit: &Limit<'_>) -> Value {
 }
 
 fn of_function(f: &Function, unit: Option<String>) -> Value {
-    let (docs, errors) = super::functions::spoken(&f.docs);
+    let (docs, errors) = super::functions::plain_docs(&f.docs);
     let arguments: Vec<Value> = f
         .arguments
         .iter()

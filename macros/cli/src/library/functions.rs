@@ -105,7 +105,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     for input in function.sig.inputs.iter().skip(1) {
         let FnArg::Typed(typed) = input else { return None };
         let kind = match &*typed.ty {
-            Type::Reference(reference) if reference.mutability.is_none() => behind(&reference.elem)?,
+            Type::Reference(reference) if reference.mutability.is_none() => referenced_kind(&reference.elem)?,
             plain => (is_number(plain)).then_some(Kind::Number)?,
         };
         arguments.push((typed.pat.to_token_stream().to_string(), kind));
@@ -152,7 +152,7 @@ pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
 }
 
 /// Converts documentation for readers without Rust: the paragraphs, and the description of errors.
-pub fn spoken(docs: &[String]) -> (Vec<String>, String) {
+pub fn plain_docs(docs: &[String]) -> (Vec<String>, String) {
     let plain: Vec<String> = docs.iter().map(|paragraph| without_links(&without_trait(paragraph))).collect();
     let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
     let (about, errors) = plain.split_at(begin);
@@ -176,14 +176,14 @@ fn without_trait(paragraph: &str) -> String {
 /// becomes "for an index".
 fn without_variants(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
-    let told = |k: usize| {
+    let has_condition = |k: usize| {
         parts.get(k + 1).is_some_and(|next| [" where ", " for "].iter().any(|word| next.starts_with(word)))
     };
     let mut out = String::new();
     for (k, part) in parts.iter().enumerate() {
         match k % 2 {
-            0 if k > 0 && told(k - 1) => out.push_str(part.trim_start()),
-            1 if !told(k) => {
+            0 if k > 0 && has_condition(k - 1) => out.push_str(part.trim_start()),
+            1 if !has_condition(k) => {
                 let _ = write!(out, "`{part}`");
             }
             0 => out.push_str(part),
@@ -208,7 +208,7 @@ fn is_optional_sign(kind: &Type) -> bool {
     })
 }
 
-fn behind(kind: &Type) -> Option<Kind> {
+fn referenced_kind(kind: &Type) -> Option<Kind> {
     if let Type::Slice(slice) = kind {
         return (slice.elem.to_token_stream().to_string() == "usize").then_some(Kind::Marks);
     }

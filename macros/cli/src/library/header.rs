@@ -68,7 +68,7 @@ fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
 
 fn write_function(text: &mut String, f: &Function, known: &Known<'_, '_>, number: &str) {
     let nv = known.model.nv();
-    let (mut docs, errors) = super::functions::spoken(&f.docs);
+    let (mut docs, errors) = super::functions::plain_docs(&f.docs);
     if !errors.is_empty() {
         docs.push(format!("Returns 1 {errors}"));
     }

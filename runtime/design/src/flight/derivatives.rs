@@ -108,10 +108,10 @@ impl Derivatives {
         for k in [0, 3] {
             (turn[(k, k)], turn[(k, k + 2)], turn[(k + 2, k)], turn[(k + 2, k + 2)]) = (c, s, -s, c);
         }
-        let turned = |m: &DMatrix<f64>| &turn * m * turn.transpose();
+        let rotate = |m: &DMatrix<f64>| &turn * m * turn.transpose();
         Self {
-            by_velocity: turned(&self.by_velocity),
-            by_acceleration: turned(&self.by_acceleration),
+            by_velocity: rotate(&self.by_velocity),
+            by_acceleration: rotate(&self.by_acceleration),
             by_input: &turn * &self.by_input,
             forces: &turn * &self.forces,
             velocity: &turn * &self.velocity,

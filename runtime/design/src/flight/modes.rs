@@ -49,10 +49,10 @@ impl FlightModes {
             return Err(Error::Unknown { kind: "state", name: LONGITUDINAL.join(", "), known });
         }
         let mut modes = system.modes()?;
-        let along = |mode: &Mode| share(mode, &LONGITUDINAL);
-        let across = |mode: &Mode| share(mode, &LATERAL);
-        let in_plane = |mode: &Mode| along(mode) > 0.5;
-        let sideways = |mode: &Mode| across(mode) > 0.5;
+        let longitudinal_share = |mode: &Mode| share(mode, &LONGITUDINAL);
+        let lateral_share = |mode: &Mode| share(mode, &LATERAL);
+        let in_plane = |mode: &Mode| longitudinal_share(mode) > 0.5;
+        let sideways = |mode: &Mode| lateral_share(mode) > 0.5;
         let swings = |mode: &Mode| mode.exponent.im > 0.0;
         let pitches = |mode: &Mode| share(mode, &["w", "q"]);
         let surges = |mode: &Mode| share(mode, &["u", "theta", "h"]);

@@ -58,7 +58,7 @@ struct Attitude {
 }
 
 impl Attitude {
-    fn of(q: &[f64]) -> Result<Self, Error> {
+    fn from_configuration(q: &[f64]) -> Result<Self, Error> {
         let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
         let axes = turn.to_rotation_matrix().into_inner();
         let (sine, across) = (-axes[(2, 0)], axes[(2, 1)].hypot(axes[(2, 2)]));
@@ -94,7 +94,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
     check_free(&M::VELOCITIES)?;
-    let attitude = Attitude::of(q.as_slice())?;
+    let attitude = Attitude::from_configuration(q.as_slice())?;
     let forces = Mechanism::generalized_forces(m, 0.0, q, v, u);
     let acceleration = Mechanism::forward_dynamics(m, 0.0, q, v, &forces);
     let turning = attitude.rates * v.fixed_rows::<3>(3);

@@ -21,7 +21,7 @@ struct Rotation {
 }
 
 impl Rotation {
-    fn of(x: C, y: C) -> Self {
+    fn givens(x: C, y: C) -> Self {
         let (a, b) = (x.norm(), y.norm());
         if b == 0.0 {
             return Self { c: 1.0, s: C::new(0.0, 0.0) };
@@ -132,7 +132,7 @@ impl Schur {
     fn swap(&mut self, k: usize) {
         let n = self.t.nrows();
         let (first, second) = (self.t[(k, k)], self.t[(k + 1, k + 1)]);
-        let rotation = Rotation::of(self.t[(k, k + 1)], second - first);
+        let rotation = Rotation::givens(self.t[(k, k + 1)], second - first);
         rotation.rows(&mut self.t, k, k..n);
         rotation.columns(&mut self.t, k, 0..k + 2);
         rotation.columns(&mut self.q, k, 0..n);
@@ -143,7 +143,7 @@ impl Schur {
 
     /// Returns the unit right eigenvector of the eigenvalue in column `k`. Several eigenvectors of a
     /// defective matrix coincide.
-    pub fn right(&self, k: usize) -> CMatrix {
+    pub fn right_eigenvector(&self, k: usize) -> CMatrix {
         let n = self.t.nrows();
         let lambda = self.t[(k, k)];
         let least = f64::EPSILON * self.t.norm().max(f64::MIN_POSITIVE);
@@ -159,7 +159,7 @@ impl Schur {
     }
 
     /// Returns the unit left eigenvector `wᴴ A = λ wᴴ` of the eigenvalue in column `k`.
-    pub fn left(&self, k: usize) -> CMatrix {
+    pub fn left_eigenvector(&self, k: usize) -> CMatrix {
         let n = self.t.nrows();
         let lambda = self.t[(k, k)];
         let least = f64::EPSILON * self.t.norm().max(f64::MIN_POSITIVE);
@@ -213,7 +213,7 @@ fn step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shift: C) {
     let n = t.nrows();
     let (mut x, mut y) = (t[(low, low)] - shift, t[(low + 1, low)]);
     for k in low..high {
-        let rotation = Rotation::of(x, y);
+        let rotation = Rotation::givens(x, y);
         rotation.rows(t, k, k.saturating_sub(1).max(low)..n);
         rotation.columns(t, k, 0..(k + 3).min(high + 1));
         rotation.columns(q, k, 0..n);

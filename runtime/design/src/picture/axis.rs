@@ -14,7 +14,7 @@ pub struct Axis {
 impl Axis {
     /// Returns the axis that spans the finite values, extended at both ends by the fraction `margin` of its
     /// length; `None` without finite values.
-    pub fn of(values: impl Iterator<Item = f64>, margin: f64, logarithmic: bool) -> Option<Self> {
+    pub fn fit(values: impl Iterator<Item = f64>, margin: f64, logarithmic: bool) -> Option<Self> {
         let (low, high) = values
             .filter(|v| v.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -145,8 +145,8 @@ mod tests {
         assert_eq!(labels(&axis(-16.0, -4.0, true), 3), ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴"]);
         assert_eq!(labels(&axis(0.0, 4e6, false), 4), ["0", "1·10⁶", "2·10⁶", "3·10⁶", "4·10⁶"]);
         // The range of a constant value is not empty.
-        let flat = Axis::of([3.0, 3.0].into_iter(), 0.06, false).unwrap();
+        let flat = Axis::fit([3.0, 3.0].into_iter(), 0.06, false).unwrap();
         assert!(flat.low < 3.0 && flat.high > 3.0 && !flat.ticks(6).is_empty());
-        assert!(Axis::of([f64::NAN].into_iter(), 0.0, false).is_none());
+        assert!(Axis::fit([f64::NAN].into_iter(), 0.0, false).is_none());
     }
 }

@@ -78,15 +78,15 @@ impl Panel {
     /// Returns both axes for an area of this size. With equal scales, the shorter axis is extended to the
     /// aspect ratio of the area.
     fn axes(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
-        let within = |k: usize| {
+        let window_test = |k: usize| {
             let window = self.window.map(|window| window[k]);
             move |v: f64| window.is_none_or(|(low, high)| (low..=high).contains(&v))
         };
         let along = if self.equal { 0.06 } else { 0.0 };
-        let (in_x, in_y) = (within(0), within(1));
+        let (in_x, in_y) = (window_test(0), window_test(1));
         let shown: Vec<_> = self.points().filter(|(x, y)| in_x(*x) && in_y(*y)).collect();
-        let x = Axis::of(shown.iter().map(|p| p.0), along, self.logarithmic)?;
-        let y = Axis::of(shown.iter().map(|p| p.1), 0.06, self.decades)?;
+        let x = Axis::fit(shown.iter().map(|p| p.0), along, self.logarithmic)?;
+        let y = Axis::fit(shown.iter().map(|p| p.1), 0.06, self.decades)?;
         if !self.equal {
             return Some((x, y));
         }
@@ -264,9 +264,9 @@ fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64
             last = last.min(room / rate);
         }
     }
-    let at = |part: f64| (a.0 + part * dx, a.1 + part * dy);
-    let from = if first > 0.0 { at(first) } else { a };
-    (first <= last).then(|| (from, if last < 1.0 { at(last) } else { b }))
+    let point = |part: f64| (a.0 + part * dx, a.1 + part * dy);
+    let from = if first > 0.0 { point(first) } else { a };
+    (first <= last).then(|| (from, if last < 1.0 { point(last) } else { b }))
 }
 
 fn failed(error: impl std::fmt::Display) -> Error {

@@ -3,7 +3,7 @@
 use super::problem::{Place, Problem, dynamic};
 use super::solve::check_steady;
 use super::{SteadyState, Trim};
-use crate::mechanism::{displacements, effective_mass, input_names, named, state_names};
+use crate::mechanism::{displacements, effective_mass, input_names, signals, state_names};
 use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{Derivatives, OutputDerivatives};
 use nalgebra::{DMatrix, SVector};
@@ -50,7 +50,7 @@ struct Dependence {
 }
 
 impl Dependence {
-    fn of(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
+    fn eliminate(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
         let (rows, columns) = left.shape();
         let mut pivots: Vec<(usize, usize)> = Vec::new();
         let small = ROUNDING * left.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -113,7 +113,7 @@ where
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
     check_steady(&problem, &place)?;
     let motion = problem.motion(&place)?;
-    let (mass, turning) = trim.with(&place.parameters, |m| {
+    let (mass, turning) = trim.with_mechanism(&place.parameters, |m| {
         let turning = Derivatives::turning(m, &place.q, &place.v);
         (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning))
     });
@@ -131,10 +131,10 @@ where
     let placeless: Vec<usize> = held.iter().copied().chain(NV.saturating_sub(M::FIRST_ORDER)..NV).collect();
     let on_configurations = with_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
     let rows = on_configurations.nrows();
-    let positions = Dependence::of(on_configurations, DMatrix::zeros(rows, NV));
+    let positions = Dependence::eliminate(on_configurations, DMatrix::zeros(rows, NV));
     let on_velocities = with_rows(jacobian, NV, held);
     let right = (-rates_by_q).resize(on_velocities.nrows(), NV, 0.0);
-    let velocities = Dependence::of(on_velocities, right);
+    let velocities = Dependence::eliminate(on_velocities, right);
     let ((coordinates, shape), (speeds, gamma)) = (positions.free(), velocities.free());
     let carried = velocities.particular() * &shape;
     let drift = turning * &shape + &carried;
@@ -247,7 +247,7 @@ where
         let Seen { velocities: [carried, gamma], accelerations: [by_position, by_speed, by_u], .. } =
             &linear.motion;
         let a = SVector::from_iterator(linear.motion.acceleration.iter().copied());
-        let seen = self.with(&linear.motion.parameters, |m| {
+        let seen = self.with_mechanism(&linear.motion.parameters, |m| {
             m.output_derivatives(self.t, &found.q, &found.v, &a, &found.u)
         });
         let [of_q, of_v, of_a] = [&seen.by_q, &seen.by_v, &seen.by_a].map(dynamic);
@@ -260,7 +260,7 @@ where
         let d = dynamic(&seen.by_u) + of_a * by_u;
         let names = Self::system(&linear)?;
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
-        let outputs = named(&M::OUTPUTS, &M::OUTPUT_UNITS);
+        let outputs = signals(&M::OUTPUTS, &M::OUTPUT_UNITS);
         system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 
@@ -308,7 +308,7 @@ where
         }
         let Linear { coordinates, speeds, a, b, mass, motion, .. } = linear(self, found)?;
         let (np, ns) = (coordinates.len(), speeds.len());
-        let named = |k: usize| M::VELOCITIES.get(k).copied().unwrap_or_default().to_owned();
+        let speed_name = |k: usize| M::VELOCITIES.get(k).copied().unwrap_or_default().to_owned();
         // For each independent velocity, the position of its coordinate among the independent ones, if
         // any.
         let own: Vec<Option<usize>> =
@@ -319,11 +319,11 @@ where
             !own.contains(&Some(*i)) && row.amax() > size
         });
         if let Some(i) = alone {
-            return Err(Error::NoSecondOrderForm { coordinate: named(coordinates[i]) });
+            return Err(Error::NoSecondOrderForm { coordinate: speed_name(coordinates[i]) });
         }
         let lost = speeds.iter().zip(&own).find(|(_, place)| place.is_none());
         if let Some((speed, _)) = lost {
-            return Err(Error::NoSecondOrderForm { coordinate: named(*speed) });
+            return Err(Error::NoSecondOrderForm { coordinate: speed_name(*speed) });
         }
         let own: Vec<usize> = own.into_iter().flatten().collect();
         let gamma = &motion.velocities[1];

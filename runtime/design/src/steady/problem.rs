@@ -58,8 +58,8 @@ where
 {
     let mut rates_by_q = DMatrix::zeros(NC, NV);
     for j in 0..NV {
-        let at = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
-        rates_by_q.set_column(j, &vector(&((at(STEP) - at(-STEP)) / (2.0 * STEP))));
+        let rates = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
+        rates_by_q.set_column(j, &vector(&((rates(STEP) - rates(-STEP)) / (2.0 * STEP))));
     }
     Bounds {
         names: &const { M::CONSTRAINTS },
@@ -213,8 +213,9 @@ where
         if let Some(outputs) = trim.outputs {
             let start = problem.start();
             let zero = SVector::zeros();
-            let seen =
-                trim.with(&start.parameters, |m| outputs(m, trim.t, &start.q, &start.v, &zero, &start.u));
+            let seen = trim.with_mechanism(&start.parameters, |m| {
+                outputs(m, trim.t, &start.q, &start.v, &zero, &start.u)
+            });
             for (name, value) in &trim.conditions {
                 problem.outputs.push((index("output", name, &seen.names)?, *value));
             }
@@ -229,7 +230,7 @@ where
     }
 
     /// Returns the state after a change of the unknowns.
-    pub fn moved(&self, from: &Place<NQ, NV, NU>, by: &DVector<f64>) -> Place<NQ, NV, NU> {
+    pub fn displace(&self, from: &Place<NQ, NV, NU>, by: &DVector<f64>) -> Place<NQ, NV, NU> {
         let (mut to, mut dq) = (from.clone(), SVector::zeros());
         for (unknown, by) in self.unknowns.iter().zip(by.iter()) {
             match *unknown {
@@ -240,7 +241,7 @@ where
                 Unknown::Parameter(k) => to.parameters[k] += by,
             }
         }
-        to.q = self.trim.with(&to.parameters, |m| m.integrate(&from.q, &dq));
+        to.q = self.trim.with_mechanism(&to.parameters, |m| m.integrate(&from.q, &dq));
         to
     }
 
@@ -282,12 +283,12 @@ where
 
     pub fn bounds(&self, place: &Place<NQ, NV, NU>) -> Option<Bounds> {
         let (bounds, _) = self.trim.constraints?;
-        Some(self.trim.with(&place.parameters, |m| bounds(m, self.trim.t, &place.q, &place.v)))
+        Some(self.trim.with_mechanism(&place.parameters, |m| bounds(m, self.trim.t, &place.q, &place.v)))
     }
 
     pub fn motion(&self, place: &Place<NQ, NV, NU>) -> Result<Accelerated<NV, NU>, Error> {
         let (t, Place { q, v, u, holding, parameters }) = (self.trim.t, place);
-        self.trim.with(parameters, |m| {
+        self.trim.with_mechanism(parameters, |m| {
             let tau = Mechanism::generalized_forces(m, t, q, v, u) + holding;
             let value = Mechanism::try_forward_dynamics(m, t, q, v, &tau)?;
             let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(m, t, q, v, &tau);
@@ -312,12 +313,12 @@ where
         for (j, unknown) in self.unknowns.iter().enumerate() {
             let Unknown::Parameter(k) = *unknown else { continue };
             let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
-            let at = |h: f64| {
+            let residuals = |h: f64| {
                 let mut place = place.clone();
                 place.parameters[k] += h;
                 Ok::<_, Error>(self.generated(&place)?.residuals)
             };
-            equations.jacobian.set_column(j, &((at(step)? - at(-step)?) / (2.0 * step)));
+            equations.jacobian.set_column(j, &((residuals(step)? - residuals(-step)?) / (2.0 * step)));
         }
         Ok(equations)
     }
@@ -336,7 +337,8 @@ where
         }
         if let Some(outputs) = self.trim.outputs {
             let Place { q, v, u, parameters, .. } = place;
-            let seen = self.trim.with(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
+            let seen =
+                self.trim.with_mechanism(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
             self.push_outputs(&motion, &seen, &mut rows);
         }
         self.push_quantities(place, &mut rows);
@@ -348,25 +350,25 @@ where
     fn push_bounds(&self, bounds: &Bounds, rows: &mut Vec<Row>) {
         let floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
         for (i, residual) in bounds.residuals.iter().enumerate() {
-            let by = |unknown| match unknown {
+            let derivative = |unknown| match unknown {
                 Unknown::Coordinate(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
-            rows.push(Row { residual: *residual, by: self.row(by), floor: floor(i) });
+            rows.push(Row { residual: *residual, by: self.row(derivative), floor: floor(i) });
         }
         for (i, rate) in bounds.rates.iter().enumerate() {
-            let by = |unknown| match unknown {
+            let derivative = |unknown| match unknown {
                 Unknown::Coordinate(k) => bounds.rates_by_q[(i, k)],
                 Unknown::Speed(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
-            rows.push(Row { residual: *rate, by: self.row(by), floor: floor(i) });
+            rows.push(Row { residual: *rate, by: self.row(derivative), floor: floor(i) });
         }
     }
 
     fn push_outputs(&self, motion: &Accelerated<NV, NU>, seen: &Measured, rows: &mut Vec<Row>) {
         for (i, value) in &self.outputs {
-            let by = |unknown| {
+            let derivative = |unknown| {
                 let direct = match unknown {
                     Unknown::Coordinate(k) => seen.by_q[(*i, k)],
                     Unknown::Speed(k) => seen.by_v[(*i, k)],
@@ -375,16 +377,16 @@ where
                 };
                 (0..NV).fold(direct, |sum, a| sum + seen.by_a[(*i, a)] * entry(motion, a, unknown))
             };
-            let all = [&seen.by_q, &seen.by_v, &seen.by_u].map(|by| by.row(*i).norm());
+            let all = [&seen.by_q, &seen.by_v, &seen.by_u].map(|derivative| derivative.row(*i).norm());
             let floor = BESIDE * all.into_iter().fold(0.0, f64::max);
-            rows.push(Row { residual: seen.values[*i] - value, by: self.row(by), floor });
+            rows.push(Row { residual: seen.values[*i] - value, by: self.row(derivative), floor });
         }
     }
 
     fn push_quantities(&self, place: &Place<NQ, NV, NU>, rows: &mut Vec<Row>) {
         for (_, wanted, quantity) in &self.trim.quantities {
-            let at = |place: &Place<NQ, NV, NU>| {
-                self.trim.with(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
+            let value = |place: &Place<NQ, NV, NU>| {
+                self.trim.with_mechanism(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
             };
             let by: Vec<f64> = (0..self.unknowns.len())
                 .map(|k| {
@@ -394,7 +396,7 @@ where
                     }
                     let step = STEP * self.size(place, unknown);
                     let side = |h: f64| {
-                        at(&self.moved(
+                        value(&self.displace(
                             place,
                             &DVector::from_fn(self.unknowns.len(), |i, _| if i == k { h } else { 0.0 }),
                         ))
@@ -403,9 +405,9 @@ where
                 })
                 .collect();
             // Differences of values leave this much rounding.
-            let rounding = f64::EPSILON * (at(place).abs() + wanted.abs()) / STEP;
+            let rounding = f64::EPSILON * (value(place).abs() + wanted.abs()) / STEP;
             let floor = BESIDE * by.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + rounding;
-            rows.push(Row { residual: at(place) - wanted, by, floor });
+            rows.push(Row { residual: value(place) - wanted, by, floor });
         }
     }
 

@@ -112,16 +112,16 @@ where
             residual: residuals[row],
             conditions: residuals.len(),
             unknowns: problem.unknowns.len(),
-            place: named(&problem, place),
+            place: named_unknowns(&problem, place),
         });
     }
     let open = open_directions(&problem, &scales.scaled(jacobian));
     if !trim.nearest && !open.is_empty() {
-        return Err(Error::Undetermined { unknowns: open, place: named(&problem, place) });
+        return Err(Error::Undetermined { unknowns: open, place: named_unknowns(&problem, place) });
     }
     let motion = problem.motion(place)?;
     let multipliers = trim.constraints.map_or(Vec::new(), |(_, multipliers)| {
-        trim.with(&place.parameters, |m| multipliers(m, trim.t, &place.q, &place.v, &motion.tau))
+        trim.with_mechanism(&place.parameters, |m| multipliers(m, trim.t, &place.q, &place.v, &motion.tau))
     });
     let Place { q, v, u, holding, parameters } = ended.place.clone();
     let holding = problem.held.iter().map(|k| (M::VELOCITIES[*k].to_string(), holding[*k])).collect();
@@ -130,7 +130,7 @@ where
     Ok(SteadyState { q, v, u, acceleration, parameters, holding, multipliers, iterations, residual })
 }
 
-fn named<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn named_unknowns<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &Problem<'_, '_, M, NQ, NV, NU>,
     place: &Place<NQ, NV, NU>,
 ) -> Vec<(String, f64)>
@@ -183,7 +183,7 @@ where
         let longest = longest.map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let part = if longest > LONGEST { LONGEST / longest } else { 1.0 };
         change *= part;
-        let next = problem.moved(&place, &change);
+        let next = problem.displace(&place, &change);
         // If friction jams or a value is not finite, the step was too long.
         let trial = problem.equations(&next).ok();
         let size = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();

@@ -113,7 +113,11 @@ mod with_features {
 
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+    pub(super) fn rotate_quadrants<const L: usize>(
+        s: &[f64; L],
+        c: &[f64; L],
+        shifted: &[f64; L],
+    ) -> [[f64; L]; 2] {
         macro_rules! case {
             ($lanes:literal in $count:literal) => {
                 if L == $lanes
@@ -144,7 +148,7 @@ mod with_features {
         }
         case!(4 in 1);
         case!(8 in 2);
-        Compiled::turned(s, c, shifted)
+        Compiled::rotate_quadrants(s, c, shifted)
     }
 
     #[inline]
@@ -203,9 +207,9 @@ impl Registers for Avx2 {
     }
 
     #[inline(always)]
-    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+    fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
         // SAFETY: the processor has the instructions.
-        unsafe { with_features::turned(s, c, shifted) }
+        unsafe { with_features::rotate_quadrants(s, c, shifted) }
     }
 
     #[inline(always)]

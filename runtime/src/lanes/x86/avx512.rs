@@ -95,8 +95,8 @@ impl Registers for Avx512 {
     }
 
     #[inline(always)]
-    fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
-        Avx2::turned(s, c, shifted)
+    fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2] {
+        Avx2::rotate_quadrants(s, c, shifted)
     }
 
     #[inline(always)]

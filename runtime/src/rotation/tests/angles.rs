@@ -16,32 +16,32 @@ fn all_sequences_agree_with_the_table() {
         let [m0, m1, m2] = row.matrix.map(nalgebra::RowVector3::from);
         let matrix = Matrix3::from_rows(&[m0, m1, m2]);
         let rotation = sequence.rotation(ANGLES);
-        below(far(rotation.matrix(), &matrix), 3e-16, name);
+        assert_below(difference(rotation.matrix(), &matrix), 3e-16, name);
 
         let [w, x, y, z] = row.quaternion;
         let quaternion = shorter(&sequence.quaternion(ANGLES));
         let expected = Quaternion::new(w, x, y, z);
-        below(far(&quaternion.coords, &expected.coords), 3e-16, name);
-        below(far(&quaternion_of_rotation(&rotation).coords, &expected.coords), 3e-16, name);
-        below(far(quaternion.to_rotation_matrix().matrix(), &matrix), 1e-15, name);
+        assert_below(difference(&quaternion.coords, &expected.coords), 3e-16, name);
+        assert_below(difference(&quaternion_of_rotation(&rotation).coords, &expected.coords), 3e-16, name);
+        assert_below(difference(quaternion.to_rotation_matrix().matrix(), &matrix), 1e-15, name);
 
         let vector = Vector3::from(row.rotation_vector);
-        below(far(&RotationVector::from_rotation(&rotation).0, &vector), 1e-15, name);
-        below(far(&RotationVector::from_quaternion(&quaternion).0, &vector), 1e-15, name);
-        below(far(RotationVector(vector).rotation().matrix(), &matrix), 1e-15, name);
+        assert_below(difference(&RotationVector::from_rotation(&rotation).0, &vector), 1e-15, name);
+        assert_below(difference(&RotationVector::from_quaternion(&quaternion).0, &vector), 1e-15, name);
+        assert_below(difference(RotationVector(vector).rotation().matrix(), &matrix), 1e-15, name);
 
         let (body, space) = (Vector3::from(row.omega_body), Vector3::from(row.omega_space));
-        below(far(&sequence.omega_body(ANGLES, RATES), &body), 5e-16, name);
-        below(far(&sequence.omega_space(ANGLES, RATES), &space), 5e-16, name);
+        assert_below(difference(&sequence.omega_body(ANGLES, RATES), &body), 5e-16, name);
+        assert_below(difference(&sequence.omega_space(ANGLES, RATES), &space), 5e-16, name);
         for found in [sequence.rates_from_body(ANGLES, &body), sequence.rates_from_space(ANGLES, &space)] {
-            below(apart(found.unwrap(), RATES), 1e-15, name);
+            assert_below(angle_difference(found.unwrap(), RATES), 1e-15, name);
         }
 
         let found = sequence.angles(&rotation);
         assert!(!found.singular);
         // The symmetric sequences have the negative middle angle in their second solution.
         let angles = if sequence.is_symmetric() { sequence.other_angles(found.angles) } else { found.angles };
-        below(apart(angles, ANGLES), 1e-15, name);
+        assert_below(angle_difference(angles, ANGLES), 1e-15, name);
     }
 }
 
@@ -68,10 +68,14 @@ fn a_sequence_is_a_product_of_elementary_rotations() {
                 FixedIn::Space => c_turn * b_turn * a_turn,
             };
             let rotation = sequence.rotation([a, b, c]);
-            below(far(rotation.matrix(), product.matrix()), 4e-16, sequence);
+            assert_below(difference(rotation.matrix(), product.matrix()), 4e-16, sequence);
             let quaternion = sequence.quaternion([a, b, c]);
-            below(far(quaternion.to_rotation_matrix().matrix(), product.matrix()), 1e-15, sequence);
-            below((quaternion.norm() - 1.0).abs(), 5e-16, sequence);
+            assert_below(
+                difference(quaternion.to_rotation_matrix().matrix(), product.matrix()),
+                1e-15,
+                sequence,
+            );
+            assert_below((quaternion.norm() - 1.0).abs(), 5e-16, sequence);
         }
     }
 }
@@ -87,11 +91,15 @@ fn angles_give_random_rotations_back() {
             assert!(!found.singular && a.abs() <= PI && c.abs() <= PI);
             let range = if sequence.is_symmetric() { 0.0..=PI } else { -FRAC_PI_2..=FRAC_PI_2 };
             assert!(range.contains(&b), "{sequence} {b}");
-            below(far(sequence.rotation(found.angles).matrix(), rotation.matrix()), 1.5e-15, sequence);
+            assert_below(
+                difference(sequence.rotation(found.angles).matrix(), rotation.matrix()),
+                1.5e-15,
+                sequence,
+            );
             let other = sequence.other_angles(found.angles);
             assert!(other.iter().all(|t| t.abs() <= PI));
-            below(far(sequence.rotation(other).matrix(), rotation.matrix()), 2e-15, sequence);
-            below(apart(sequence.other_angles(other), found.angles), 1e-15, sequence);
+            assert_below(difference(sequence.rotation(other).matrix(), rotation.matrix()), 2e-15, sequence);
+            assert_below(angle_difference(sequence.other_angles(other), found.angles), 1e-15, sequence);
         }
     }
 }
@@ -113,17 +121,21 @@ fn angles_near_the_singularities_give_the_rotation_back() {
                 let rotation = sequence.rotation([a, middle, c]);
                 let found = sequence.angles(&rotation);
                 let back = sequence.rotation(found.angles);
-                below(far(back.matrix(), rotation.matrix()), 2.5e-15, (sequence, middle, a, c, found));
+                assert_below(
+                    difference(back.matrix(), rotation.matrix()),
+                    2.5e-15,
+                    (sequence, middle, a, c, found),
+                );
 
                 let sine = if sequence.is_symmetric() { middle.sin() } else { middle.cos() };
                 let [_, b, third] = found.angles;
-                below((b - middle).abs(), 1.5e-15, (sequence, middle));
+                assert_below((b - middle).abs(), 1.5e-15, (sequence, middle));
                 assert_eq!(found.singular, sine.abs() <= 4.0 * f64::EPSILON, "{sequence} {middle}");
                 if found.singular {
                     assert_eq!(third, 0.0);
                 } else {
                     let off = [found.angles[0] - a, third - c].map(|x| x.sin().abs().max(1.0 - x.cos()));
-                    below(off[0].max(off[1]) * sine, 1e-15, (sequence, middle));
+                    assert_below(off[0].max(off[1]) * sine, 1e-15, (sequence, middle));
                 }
             }
         }
@@ -139,7 +151,11 @@ fn rotations_with_noise_at_the_singularity_give_themselves_back() {
             let turn = random.rotation();
             let noisy = turn.inverse() * (turn * rotation);
             let found = sequence.angles(&noisy);
-            below(far(sequence.rotation(found.angles).matrix(), noisy.matrix()), 4e-15, (sequence, middle));
+            assert_below(
+                difference(sequence.rotation(found.angles).matrix(), noisy.matrix()),
+                4e-15,
+                (sequence, middle),
+            );
         }
     }
 }
@@ -148,10 +164,10 @@ fn rotations_with_noise_at_the_singularity_give_themselves_back() {
 fn a_singular_rotation_has_all_in_the_first_angle() {
     let found = EulerSequence::BODY_ZYX.angles(&EulerSequence::BODY_ZYX.rotation([0.3, FRAC_PI_2, 1.0]));
     assert!(found.singular);
-    below(apart(found.angles, [-0.7, FRAC_PI_2, 0.0]), 3e-16, found);
+    assert_below(angle_difference(found.angles, [-0.7, FRAC_PI_2, 0.0]), 3e-16, found);
     let found = EulerSequence::SPACE_ZXZ.angles(&EulerSequence::SPACE_ZXZ.rotation([0.3, 0.0, 1.0]));
     assert!(found.singular);
-    below(apart(found.angles, [1.3, 0.0, 0.0]), 3e-16, found);
+    assert_below(angle_difference(found.angles, [1.3, 0.0, 0.0]), 3e-16, found);
     for sequence in EulerSequence::ALL {
         let found = sequence.angles(&Rotation3::<f64>::identity());
         assert_eq!(found, Angles { angles: [0.0; 3], singular: sequence.is_symmetric() });

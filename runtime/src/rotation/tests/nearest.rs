@@ -8,8 +8,8 @@ fn a_rotation_is_its_own_nearest() {
         let rotation = random.rotation();
         for scale in [1e-300, 1e-3, 1.0, 7.0, 1e300] {
             let found = nearest_rotation(&(rotation.matrix() * scale)).unwrap();
-            below(far(found.matrix(), rotation.matrix()), 2e-15, scale);
-            below(skewed(&found), 2e-15, scale);
+            assert_below(difference(found.matrix(), rotation.matrix()), 2e-15, scale);
+            assert_below(skewed(&found), 2e-15, scale);
         }
     }
 }
@@ -22,10 +22,10 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
             let rotation = random.rotation();
             let matrix = rotation.matrix() + Matrix3::from_fn(|_, _| noise * random.number());
             let found = nearest_rotation(&matrix).unwrap();
-            below(skewed(&found), 2e-15, noise);
-            below((found.matrix().determinant() - 1.0).abs(), 2e-15, noise);
+            assert_below(skewed(&found), 2e-15, noise);
+            assert_below((found.matrix().determinant() - 1.0).abs(), 2e-15, noise);
             // Rᵀ M is symmetric at every stationary point.
-            below(axial(&(found.inverse() * matrix)).norm(), 3e-15 * (1.0 + noise), noise);
+            assert_below(axial(&(found.inverse() * matrix)).norm(), 3e-15 * (1.0 + noise), noise);
             let distance = |r: &Rotation3<f64>| (r.matrix() - matrix).norm_squared();
             let least = distance(&found) * (1.0 - 1e-12);
             assert!(least <= distance(&rotation));
@@ -44,7 +44,7 @@ fn small_noise_moves_by_its_skew_part() {
     let noise = Matrix3::from_fn(|_, _| 1e-8 * random.number());
     let found = nearest_rotation(&(rotation.matrix() + rotation.matrix() * noise)).unwrap();
     let moved = RotationVector::from_rotation(&(rotation.inverse() * found));
-    below(far(&moved.0, &axial(&noise)), 2e-15, noise);
+    assert_below(difference(&moved.0, &axial(&noise)), 2e-15, noise);
 }
 
 #[test]
@@ -55,7 +55,11 @@ fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
     let best = r * s;
     for values in [[3.0, 2.0, 0.0], [3.0, 2.0, 1.0], [3.0, 2.0, -1.0], [1.0, 1e-3, 0.0], [1.0, 1.0, -0.9]] {
         let found = nearest_rotation(&product(values)).unwrap();
-        below(far(found.matrix(), best.matrix()), 3e-15 * values[0] / (values[1] + values[2]), values);
+        assert_below(
+            difference(found.matrix(), best.matrix()),
+            3e-15 * values[0] / (values[1] + values[2]),
+            values,
+        );
     }
     for values in [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, -1.0], [-1.0; 3], [f64::NAN, 1.0, 1.0]] {
         assert_eq!(nearest_rotation(&product(values)), None, "{values:?}");

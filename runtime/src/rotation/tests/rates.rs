@@ -17,9 +17,9 @@ fn omega_of_euler_angles_is_that_of_the_turning_matrix() {
             let rate = slope(|t| *sequence.rotation((angles + rates * t).into()).matrix());
             let body = sequence.omega_body(angles.into(), rates.into());
             let space = sequence.omega_space(angles.into(), rates.into());
-            below(far(&rotation_omega_body(&rotation, &rate), &body), 1e-12, sequence);
-            below(far(&rotation_omega_space(&rotation, &rate), &space), 1e-12, sequence);
-            below(far(&(rotation * body), &space), 2e-15, sequence);
+            assert_below(difference(&rotation_omega_body(&rotation, &rate), &body), 1e-12, sequence);
+            assert_below(difference(&rotation_omega_space(&rotation, &rate), &space), 1e-12, sequence);
+            assert_below(difference(&(rotation * body), &space), 2e-15, sequence);
         }
     }
 }
@@ -38,11 +38,19 @@ fn rates_of_euler_angles_invert_omega() {
                 for found in
                     [sequence.rates_from_body(angles, &body), sequence.rates_from_space(angles, &space)]
                 {
-                    below(apart(found.unwrap(), rates) * offset, 1.5e-15, (sequence, offset));
+                    assert_below(
+                        angle_difference(found.unwrap(), rates) * offset,
+                        1.5e-15,
+                        (sequence, offset),
+                    );
                 }
                 let omega = random.vector();
                 let rates = sequence.rates_from_body(angles, &omega).unwrap();
-                below(far(&sequence.omega_body(angles, rates), &omega) * offset, 1.5e-15, (sequence, offset));
+                assert_below(
+                    difference(&sequence.omega_body(angles, rates), &omega) * offset,
+                    1.5e-15,
+                    (sequence, offset),
+                );
             }
         }
     }
@@ -63,9 +71,9 @@ fn euler_angles_report_their_singularity() {
             assert_eq!(sequence.rates_from_space(angles, &omega), Err(Singular::ParallelAxes));
             // The forward matrices are correct: their third column is the first one or its opposite.
             for matrix in [sequence.body_rate_matrix(angles), sequence.space_rate_matrix(angles)] {
-                below(matrix.determinant().abs(), 1e-9, sequence);
+                assert_below(matrix.determinant().abs(), 1e-9, sequence);
                 let parallel = matrix.column(0).dot(&matrix.column(2)).abs();
-                below((parallel - 1.0).abs(), 1e-12, sequence);
+                assert_below((parallel - 1.0).abs(), 1e-12, sequence);
             }
         }
         let nan = sequence.rates_from_body([0.0, f64::NAN, 0.0], &omega).unwrap();
@@ -80,22 +88,22 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
         let (q, omega) = (random.quaternion(), random.vector());
         let rotation = q.to_rotation_matrix();
         let space = rotation * omega;
-        let turned = |t: f64| q * RotationVector(omega * t).quaternion();
+        let attitude = |t: f64| q * RotationVector(omega * t).quaternion();
 
         let rate = quaternion_rate_from_body(&q, &omega);
-        below(far(&rate.coords, &slope(|t| turned(t).coords)), 1e-12, omega);
-        below(far(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
-        below(far(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
-        below(far(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
-        below(rate.coords.dot(&q.coords).abs(), 3e-16, omega);
+        assert_below(difference(&rate.coords, &slope(|t| attitude(t).coords)), 1e-12, omega);
+        assert_below(difference(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
+        assert_below(difference(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
+        assert_below(difference(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
+        assert_below(rate.coords.dot(&q.coords).abs(), 3e-16, omega);
         let other = quaternion_rate_from_body(&antipode(&q), &omega);
-        below(far(&other.coords, &-rate.coords), 0.0, omega);
+        assert_below(difference(&other.coords, &-rate.coords), 0.0, omega);
 
         let rate = rotation_rate_from_body(&rotation, &omega);
-        below(far(&rate, &slope(|t| *turned(t).to_rotation_matrix().matrix())), 2e-12, omega);
-        below(far(&rate, &rotation_rate_from_space(&rotation, &space)), 1e-15, omega);
-        below(far(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
-        below(far(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
+        assert_below(difference(&rate, &slope(|t| *attitude(t).to_rotation_matrix().matrix())), 2e-12, omega);
+        assert_below(difference(&rate, &rotation_rate_from_space(&rotation, &space)), 1e-15, omega);
+        assert_below(difference(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
+        assert_below(difference(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
     }
 }
 
@@ -112,12 +120,20 @@ fn rates_of_rotation_vectors_agree_with_the_motion() {
             let vector = RotationVector(random.axis() * length);
             let (rate, rotation) = (random.vector(), vector.rotation());
             let body = vector.omega_body(&rate);
-            below(far(&body, &turning(|t| RotationVector(vector.0 + rate * t).quaternion())), 2e-12, length);
-            below(far(&(rotation * body), &vector.omega_space(&rate)), 2e-15, length);
+            assert_below(
+                difference(&body, &turning(|t| RotationVector(vector.0 + rate * t).quaternion())),
+                2e-12,
+                length,
+            );
+            assert_below(difference(&(rotation * body), &vector.omega_space(&rate)), 2e-15, length);
             // The inverse grows towards 2π.
             let bound = 2e-15 * (1.0 + length) / if length > 1.0 { (length / 2.0).sin().abs() } else { 1.0 };
-            below(far(&vector.rate_from_body(&body).unwrap(), &rate), bound, length);
-            below(far(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate), bound, length);
+            assert_below(difference(&vector.rate_from_body(&body).unwrap(), &rate), bound, length);
+            assert_below(
+                difference(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate),
+                bound,
+                length,
+            );
         }
     }
     for turns in [1.0, 2.0, 7.0] {
@@ -137,14 +153,14 @@ fn rates_of_gibbs_vectors_agree_with_the_motion() {
             let (omega, rotation) = (random.vector(), g.rotation());
             let rate = g.rate_from_body(&omega);
             let relative = 1.0 + size * size;
-            below(far(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
-            below(far(&g.omega_space(&rate), &(rotation * omega)), 2e-15 * (1.0 + size), size);
-            below(far(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
+            assert_below(difference(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
+            assert_below(difference(&g.omega_space(&rate), &(rotation * omega)), 2e-15 * (1.0 + size), size);
+            assert_below(difference(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
             // Differences are accurate only where the vector is of order one.
             if size <= 1.0 {
                 let rate = random.vector();
                 let found = turning(|t| Gibbs(g.0 + rate * t).quaternion());
-                below(far(&g.omega_body(&rate), &found), 1e-11, size);
+                assert_below(difference(&g.omega_body(&rate), &found), 1e-11, size);
             }
         }
     }
@@ -159,18 +175,26 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
             let (omega, rotation) = (random.vector(), sigma.rotation());
             let rate = sigma.rate_from_body(&omega);
             let relative = 1.0 + size * size;
-            below(far(&rate, &sigma.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
-            below(far(&sigma.omega_body(&rate), &omega), 2e-15, size);
-            below(far(&sigma.omega_space(&rate), &(rotation * omega)), 2e-15, size);
+            assert_below(
+                difference(&rate, &sigma.rate_from_space(&(rotation * omega))) / relative,
+                2e-15,
+                size,
+            );
+            assert_below(difference(&sigma.omega_body(&rate), &omega), 2e-15, size);
+            assert_below(difference(&sigma.omega_space(&rate), &(rotation * omega)), 2e-15, size);
             if size <= 3.0 {
                 let rate = random.vector();
                 let found = turning(|t| Mrp(sigma.0 + rate * t).quaternion());
-                below(far(&sigma.omega_body(&rate), &found), 1e-9, size);
+                assert_below(difference(&sigma.omega_body(&rate), &found), 1e-9, size);
             }
             // The shadow has the same angular velocity as the vector itself.
             if let (Ok(shadow), Ok(shadow_rate)) = (sigma.shadow(), sigma.shadow_rate(&rate)) {
                 let relative = 1.0 + shadow.0.norm_squared();
-                below(far(&shadow_rate, &shadow.rate_from_body(&omega)) / relative, 2e-15, size);
+                assert_below(
+                    difference(&shadow_rate, &shadow.rate_from_body(&omega)) / relative,
+                    2e-15,
+                    size,
+                );
             }
         }
     }
@@ -192,5 +216,5 @@ fn integrated_with_switching_the_vector_stays_in_the_ball() {
         assert!(sigma.0.norm() <= 1.0);
     }
     let exact = RotationVector(omega * (h * f64::from(steps))).rotation();
-    below(far(sigma.rotation().matrix(), exact.matrix()), 1e-10, sigma);
+    assert_below(difference(sigma.rotation().matrix(), exact.matrix()), 1e-10, sigma);
 }
