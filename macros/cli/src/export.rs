@@ -11,7 +11,6 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
 use linkwork_compiler::syntax::{Inertias, ScalarType};
 use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Writes a C source file and a header.

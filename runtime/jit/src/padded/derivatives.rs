@@ -154,7 +154,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
         self.call(Internal::MotionDerivatives, state, &mut found);
         let mut rest = &found[..];
-        let mut next = |rows: usize| {
+        let next = |rows: usize| {
             let (own, others) = rest.split_at(n * rows);
             rest = others;
             let mut all = Square::<NV>::zeros();
