@@ -42,7 +42,7 @@ fn mcap(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
         Ok(Instant { t, q, v: [v, x].concat(), u, placements })
     };
     let instants = samples.into_iter().map(instant).collect::<Result<Vec<_>, Stop>>()?;
-    Ok(mcap_of(&names, instants.into_iter())?)
+    Ok(mcap_of(&names, instants)?)
 }
 
 fn csv(start: &Start<'_, '_>, samples: &[Sample]) -> String {
