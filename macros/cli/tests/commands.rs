@@ -94,8 +94,8 @@ fn what_cannot_be_done_is_said() {
     std::fs::write(here.join("leg.urdf"), "<robot name='leg'><link name='a'/></robot>").unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
-    let closed = "#[mechanism] pub struct Loop { #[particle(mass = 1)] bob: Particle, \
-        #[joint(ground -> bob)] plane: Planar, #[constraint(sum = plane.x + plane.y)] line: Holonomic }";
+    let closed = "#[mechanism] pub struct Loop { #[body(mass = 1, com = x, inertia = rod(1, 1, x))] bob: Body, \
+        #[joint(ground -> bob, about = z)] plane: Planar, #[constraint(plane.x = plane.y)] line: Holonomic }";
     std::fs::write(here.join("loop.rs"), closed).unwrap();
     for (arguments, status, stderr) in [
         (&["check", "robot.urdf"][..], 2, "there is no such file"),
@@ -198,7 +198,7 @@ fn missing_meshes_are_listed() {
 fn shaders_are_written_for_straight_line_functions() {
     let here = folder("shaders");
     let sled = "#[mechanism] pub struct Sled { pub m: f64, pub drag: Table<1>, #[particle(mass = m)] block: Particle, \
-        #[joint(ground -> block, along = x)] rail: Slider, \
+        #[joint(ground -> block, along = x)] rail: Sleeve, \
         #[acts(on = rail, value = -drag(rate(rail)))] air: Force }";
     std::fs::write(here.join("sled.rs"), sled).unwrap();
     let (status, stdout, stderr) = linkwork(&here, &["export", "wgsl", "sled.rs"]);
