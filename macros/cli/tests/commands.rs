@@ -264,12 +264,13 @@ fn documentation_is_for_other_readers_too() {
         assert!(!["](", "[`", "::", "# "].iter().any(|part| text.contains(part)), "{text}");
     }
     let assemble = functions.iter().find(|f| f["name"] == "assemble").unwrap();
-    assert_eq!(assemble["errors"], "where none is found, for an index that is none.");
-    assert!(
-        assemble["documentation"].as_str().unwrap().ends_with("Angles are found within half a turn of `q`.")
-    );
+    assert_eq!(assemble["errors"], "if no such configuration is found, for an invalid index.");
+    assert!(assemble["documentation"].as_str().unwrap().ends_with("Angles are within half a turn of `q`."));
     let header = std::fs::read_to_string(here.join("bar/include/four_bar.h")).unwrap();
-    assert!(header.contains("* Returns 1 where none is found, for an index that is none."), "{header}");
+    assert!(
+        header.contains("* Returns 1 if no such configuration is found, for an invalid index."),
+        "{header}"
+    );
 }
 
 /// Checks that with `--expanded` the crate contains the generated code instead of the attribute, and is
