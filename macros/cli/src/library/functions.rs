@@ -177,7 +177,7 @@ fn without_trait(paragraph: &str) -> String {
 fn without_variants(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
     let has_condition = |k: usize| {
-        parts.get(k + 1).is_some_and(|next| [" where ", " for "].iter().any(|word| next.starts_with(word)))
+        parts.get(k + 1).is_some_and(|next| [" if ", " for "].iter().any(|word| next.starts_with(word)))
     };
     let mut out = String::new();
     for (k, part) in parts.iter().enumerate() {
