@@ -3,7 +3,7 @@
 
 use super::{Operand, Program};
 use crate::expr::Symbol;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 impl Program {
     /// Reorders the instructions so that few values are live at once. `arrays` are the lengths of the arrays
@@ -68,7 +68,7 @@ struct Needs {
 impl Needs {
     fn from_program(program: &Program) -> Needs {
         let n = program.instructions.len();
-        let mut arguments: HashMap<Symbol, usize> = HashMap::new();
+        let mut arguments: BTreeMap<Symbol, usize> = BTreeMap::new();
         let of = program.instructions.iter().map(|op| {
             let mut list = Vec::new();
             op.operands(|o| {
