@@ -598,6 +598,7 @@ impl Function {
     /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with
     /// the entries of one state is common to all states. Matrices are stored by columns.
     #[pyo3(signature = (robot, frame, arguments, results, states, threads))]
+    #[expect(clippy::too_many_arguments, reason = "they are the arguments of a function for Python")]
     fn evaluate(
         &self,
         py: Python<'_>,

@@ -30,9 +30,12 @@ mod _native {
     #[pymodule_export]
     use super::robot::{Robot, load, roll_back};
 
+    /// Path and text of a file.
+    type File = (&'static str, &'static str);
+
     /// Returns path and text of the Rust files and of the robot files of the gallery.
     #[pyfunction]
-    fn gallery_files() -> (Vec<(&'static str, &'static str)>, Vec<(&'static str, &'static str)>) {
-        (gallery::DECLARATIONS.to_vec(), gallery::ROBOTS.to_vec())
+    fn gallery_files() -> [Vec<File>; 2] {
+        [gallery::DECLARATIONS.to_vec(), gallery::ROBOTS.to_vec()]
     }
 }

@@ -47,7 +47,7 @@ pub fn simulate<'py>(
             u.copy_from_slice(&inputs);
             // An interrupt of the user ends the run.
             calls += 1;
-            if calls % 1024 == 0 {
+            if calls.is_multiple_of(1024) {
                 return Python::attach(|py| py.check_signals()).or_else(raise);
             }
             return Ok(());

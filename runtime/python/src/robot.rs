@@ -66,6 +66,9 @@ fn names_and_units(list: &[Quantity]) -> Vec<(&str, &str)> {
     list.iter().map(|entry| (entry.name.as_str(), entry.unit.as_str())).collect()
 }
 
+/// Index of the velocity, lower, upper, velocity and effort limit of a coordinate.
+type LimitValues = (usize, f64, f64, f64, f64);
+
 #[pymethods]
 impl Robot {
     /// Returns names, units and numbers of the mechanism.
@@ -99,7 +102,7 @@ impl Robot {
     }
 
     /// Returns index of the velocity, lower, upper, velocity and effort limit of each limited coordinate.
-    fn limits(&self, py: Python<'_>) -> PyResult<Vec<(usize, f64, f64, f64, f64)>> {
+    fn limits(&self, py: Python<'_>) -> PyResult<Vec<LimitValues>> {
         let limits = self.robot.limits().map_err(|error| exception(py, &error, None))?;
         let values = |limit: linkwork_jit::Limit| {
             (limit.index, limit.lower, limit.upper, limit.velocity, limit.effort)
@@ -339,9 +342,12 @@ fn table(
     }
 }
 
+/// Lists with the same hash.
+type EqualHashes = Vec<&'static [f64]>;
+
 /// Returns a list that lives as long as the process; equal lists are one.
 fn keep(list: &[f64]) -> &'static [f64] {
-    static LISTS: Mutex<Option<HashMap<u64, Vec<&'static [f64]>>>> = Mutex::new(None);
+    static LISTS: Mutex<Option<HashMap<u64, EqualHashes>>> = Mutex::new(None);
     let mut hasher = DefaultHasher::new();
     list.iter().for_each(|x| x.to_bits().hash(&mut hasher));
     let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -261,7 +261,7 @@ where
     let mut rows = [[T::zero(); NV]; NV];
     let mut fixed = (0..NV).filter(|k| is_held(*k));
     for (i, row) in rows.iter_mut().enumerate() {
-        if i < holonomic {
+        if i < NH && i < holonomic {
             *row = core::array::from_fn(|j| open[(i, j)]);
         } else if let Some(own) = fixed.next().and_then(|k| row.get_mut(k)) {
             *own = T::one();
