@@ -9,6 +9,7 @@ import os
 import pickle
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -113,11 +114,13 @@ equations: str = Arm.equations
             (Path(folder) / "bead.pyi").write_text(compiled(BEAD).stub(), encoding="utf-8")
             (Path(folder) / "uses.py").write_text(self.USES, encoding="utf-8")
             (Path(folder) / "wrong.py").write_text("from pendulum import Pendulum\nPendulum(mass=1.0).mass_matrx([0.0])\n")
-            package = Path(linkwork.__file__).parent
+            # A copy, because mypy refuses to check installed packages.
+            package = Path(folder) / "linkwork"
+            shutil.copytree(Path(linkwork.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
             # Modules whose optional dependencies are not installed are not checked.
             absent = [name for name in ("torch", "jax") if importlib.util.find_spec(name) is None]
             modules = [str(path) for path in sorted(package.glob("*.py*")) if path.suffix != ".pyc" and path.stem not in absent]
-            environment = {**os.environ, "MYPYPATH": str(package.parent), "PYTHONPATH": str(package.parent)}
+            environment = {**os.environ, "MYPYPATH": folder}
             for checker, words in checkers.items():
                 if importlib.util.find_spec(checker) is None:
                     continue
