@@ -202,7 +202,7 @@ fn now() -> f64 {
     time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
 }
 
-/// What the runs of a family have shown.
+/// Statistics of the runs of a family.
 #[derive(Default)]
 struct Tally {
     runs: usize,

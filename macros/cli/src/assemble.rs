@@ -27,7 +27,7 @@ fn indices(marks: &[bool]) -> Vec<usize> {
 }
 
 /// Returns a number from −1 to 1 of a sequence that does not repeat (multiples of irrational fractions).
-fn beside(attempt: u8, k: usize) -> f64 {
+fn perturbation(attempt: u8, k: usize) -> f64 {
     2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }
 
@@ -86,19 +86,17 @@ impl Assembly<'_, '_> {
         let n = self.model.nv();
         let mut unreached = [vec![true; n], vec![true; n]];
         for size in [0.0, 0.1] {
-            let dv: Vec<f64> = (0..n).map(|k| size * beside(1, k)).collect();
-            let Ok(beside) = self.robot.integrate(q, &dv) else { continue };
-            let beside = beside.as_slice();
-            let Some(jacobian) = self.evaluated("constraint_jacobian", &[("q", beside)]) else { continue };
+            let dv: Vec<f64> = (0..n).map(|k| size * perturbation(1, k)).collect();
+            let Ok(near) = self.robot.integrate(q, &dv) else { continue };
+            let near = near.as_slice();
+            let Some(jacobian) = self.evaluated("constraint_jacobian", &[("q", near)]) else { continue };
             let rows = self.model.constraints.len();
             let column = |k: usize| &jacobian[k * rows..(k + 1) * rows];
             for k in 0..n {
                 unreached[1][k] &= column(k).iter().all(|entry| *entry == 0.0);
                 let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
                 let speeds = match self.model.speeds.is_some() {
-                    true => {
-                        self.evaluated("speeds_of_rates", &[("q", beside), ("v", &unit), ("rates", &unit)])
-                    }
+                    true => self.evaluated("speeds_of_rates", &[("q", near), ("v", &unit), ("rates", &unit)]),
                     false => Some(unit),
                 };
                 let speeds = speeds.unwrap_or_else(|| vec![1.0; n]);
@@ -145,7 +143,7 @@ impl Assembly<'_, '_> {
             let mut from = q.to_vec();
             let size = 0.02 * f64::from(attempt);
             for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
-                *x += size * beside(attempt, k);
+                *x += size * perturbation(attempt, k);
             }
             crate::motion::normalise(self.model, &mut from).ok()?;
             let found = self.robot.least_violation(&from, &held).ok()?.as_slice().to_vec();

@@ -94,12 +94,11 @@ fn export() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(export_c())
-        .subcommand(for_gpus(
-            Command::new("cuda").about("CUDA: kernels of all functions for many states, and their launchers"),
+        .subcommand(export_kernels(
+            "cuda",
+            "CUDA: kernels of all functions for many states, and their launchers",
         ))
-        .subcommand(for_gpus(
-            Command::new("wgsl").about("WGSL: compute shaders of the functions for many states"),
-        ))
+        .subcommand(export_kernels("wgsl", "WGSL: compute shaders of the functions for many states"))
         .subcommand(export_library())
         .subcommand(
             with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
@@ -107,19 +106,8 @@ fn export() -> Command {
 }
 
 fn export_c() -> Command {
-    with_input(Command::new("c").about("C99: a source file and a header that need libm alone"))
-        .arg(
-            text("out", "FOLDER", "Output folder of the two files")
-                .short('o')
-                .default_value(".")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(text("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
-        .arg(
-            text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
-                .value_parser(["double", "float"]),
-        )
-        .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
+    let command = Command::new("c").about("C99: a source file and a header that need libm alone");
+    with_source_options(command, "Output folder of the two files")
         .arg(switch("casadi", "Writes a third file: the functions in the form that CasADi and acados call"))
         .arg(
             text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
@@ -128,14 +116,14 @@ fn export_c() -> Command {
         )
 }
 
-fn for_gpus(command: Command) -> Command {
+fn export_kernels(name: &'static str, about: &'static str) -> Command {
+    with_source_options(Command::new(name).about(about), "Output folder of the files")
+}
+
+/// Adds the options of exported sources.
+fn with_source_options(command: Command, folder: &'static str) -> Command {
     with_input(command)
-        .arg(
-            text("out", "FOLDER", "Output folder of the files")
-                .short('o')
-                .default_value(".")
-                .value_parser(value_parser!(PathBuf)),
-        )
+        .arg(text("out", "FOLDER", folder).short('o').default_value(".").value_parser(value_parser!(PathBuf)))
         .arg(text("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
         .arg(
             text("scalar", "TYPE", "Type of numbers [default: that of the struct]")

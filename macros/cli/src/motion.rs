@@ -151,7 +151,9 @@ impl<'a, 'g> Start<'a, 'g> {
 
     /// Returns the reason why the mechanism has no motion, if any.
     pub fn obstacle(&self) -> Option<&'static str> {
-        self.model.kinematic.then_some("it has no masses (`inertia = none`), so nothing tells how it moves")
+        self.model
+            .kinematic
+            .then_some("it has no masses (`inertia = none`), so it has no equations of motion")
     }
 
     /// Returns the placement of every frame for a time, a configuration and states of first order.

@@ -6,10 +6,9 @@ use crate::library::docs;
 use crate::motion::{Start, normalise};
 use crate::table::Table;
 use clap::ArgMatches;
-use linkwork::drawing::{Kind, Piece, Role};
 use linkwork_compiler::export::without_links;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{self, PieceKind};
+use linkwork_compiler::mechanism;
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
@@ -140,59 +139,9 @@ fn curves<'n>(
 fn figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
-        let (name, kind) = (&*piece.name.clone().leak(), kind(&piece.kind));
-        pieces.push(Piece { name, role: role(piece.role), kind, frames: piece.frames, first: numbers.len() });
+        pieces.push(linkwork_jit::drawn(piece, numbers.len()));
         numbers.extend(piece.numbers.iter().map(|e| start.value(*e)));
     }
     let frames = model.frames.iter().map(|frame| frame.name.clone()).collect();
     Figure::from_pieces(frames, &pieces, &numbers)
-}
-
-fn role(role: mechanism::Role) -> Role {
-    match role {
-        mechanism::Role::Body => Role::Body,
-        mechanism::Role::Link => Role::Link,
-        mechanism::Role::Visual => Role::Visual,
-        mechanism::Role::Joint => Role::Joint,
-        mechanism::Role::Surface => Role::Surface,
-        mechanism::Role::Element => Role::Element,
-        mechanism::Role::Input => Role::Input,
-        mechanism::Role::Gravity => Role::Gravity,
-    }
-}
-
-/// Converts the kind of a piece; paths of meshes are leaked and live as long as the process.
-fn kind(kind: &PieceKind) -> Kind {
-    match kind {
-        PieceKind::Rod => Kind::Rod,
-        PieceKind::Ring => Kind::Ring,
-        PieceKind::Disk => Kind::Disk,
-        PieceKind::Cylinder => Kind::Cylinder,
-        PieceKind::Tube => Kind::Tube,
-        PieceKind::Cone => Kind::Cone,
-        PieceKind::Capsule => Kind::Capsule,
-        PieceKind::Sphere => Kind::Sphere,
-        PieceKind::Cuboid => Kind::Cuboid,
-        PieceKind::Ellipsoid => Kind::Ellipsoid,
-        PieceKind::Inertia => Kind::Inertia,
-        PieceKind::Plane => Kind::Plane,
-        PieceKind::Funnel => Kind::Funnel,
-        PieceKind::Pipe => Kind::Pipe,
-        PieceKind::Torus => Kind::Torus,
-        PieceKind::Bowl => Kind::Bowl,
-        PieceKind::Point => Kind::Point,
-        PieceKind::Bar => Kind::Bar,
-        PieceKind::Hinge => Kind::Hinge,
-        PieceKind::Slide => Kind::Slide,
-        PieceKind::Ball => Kind::Ball,
-        PieceKind::Coil => Kind::Coil,
-        PieceKind::Spiral => Kind::Spiral,
-        PieceKind::Damper => Kind::Damper,
-        PieceKind::Brake => Kind::Brake,
-        PieceKind::Force(k) => Kind::Force(*k),
-        PieceKind::Torque(k) => Kind::Torque(*k),
-        PieceKind::Gravity => Kind::Gravity,
-        PieceKind::Terrain(k) => Kind::Terrain(*k),
-        PieceKind::Mesh(path) => Kind::Mesh(path.clone().leak()),
-    }
 }

@@ -42,14 +42,7 @@ impl Loader {
         let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
-            let (name, kind) = (interned(&piece.name), kind(&piece.kind));
-            pieces.push(Piece {
-                name,
-                role: role(piece.role),
-                kind,
-                frames: piece.frames,
-                first: numbers.len(),
-            });
+            pieces.push(drawn(piece, numbers.len()));
             numbers.extend(piece.numbers.iter().copied());
         }
         Ok(Drawing { pieces, numbers: lower(&numbers), heights: lower(&model.heights) })
@@ -90,6 +83,18 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
         robot.table_values().get(lookup.table()).map_or(f64::NAN, |table| table.value(x, orders))
     };
     program.run_with(&symbol, &table)
+}
+
+/// Returns a piece of the compiler's drawing as one of the runtime's, whose numbers begin at the index `first`.
+/// Its texts live as long as the process.
+pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
+    Piece {
+        name: interned(&piece.name),
+        role: role(piece.role),
+        kind: kind(&piece.kind),
+        frames: piece.frames,
+        first,
+    }
 }
 
 /// Returns a text that lives as long as the process; equal texts are one.

@@ -35,6 +35,8 @@ mod table;
 pub use adjoint::VectorJacobian;
 pub use adjoint_steps::{AdjointStepper, Sensitivity};
 pub use drawing::Drawing;
+#[doc(hidden)]
+pub use drawing::drawn;
 pub use error::Error;
 pub use functions::Matrix;
 pub use load::{Loader, declare, load};

@@ -122,7 +122,7 @@ pub enum Inputs<'a> {
     Sampled(f64, Controller<'a>),
 }
 
-/// PaddedState and inputs at an instant.
+/// State and inputs at an instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Time, s.
@@ -578,7 +578,7 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
     }
 }
 
-/// PaddedState at the end of an integration; after an error the last sample before it.
+/// State at the end of an integration; after an error that of the last sample before it.
 type Reached<const N: usize> = (PaddedState<N>, Result<(), Error>);
 
 /// Maximum number of steps of an explicit method before an implicit one is tried.

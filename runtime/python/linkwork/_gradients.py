@@ -143,6 +143,46 @@ class Rollout:
         return [_sum(array.reshape(lead + array.shape[1:]), np.shape(value)) for array, value in zip(found, given)]
 
 
+class BaseOperations:
+    """The functions of a class as operations of a library with gradients, which subclasses apply."""
+
+    def __init__(self, kind: type[Mechanism]) -> None:
+        self.kind = kind
+
+    def _apply(self, operation: Operation | Rollout, given: Sequence[Any]) -> Any:
+        """Applies an operation to its arguments, which follow the parameters."""
+        raise NotImplementedError
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        takes_frame = Operation(self.kind, name, 0).takes_frame if name.startswith("frame_") else False
+
+        def call(*given: Any) -> Any:
+            operation = Operation(self.kind, name, given[0] if takes_frame else None)
+            return self._apply(operation, given[1:] if takes_frame else given)
+
+        call.__name__ = name
+        call.__doc__ = getattr(self.kind, name).__doc__
+        return call
+
+    def roll_out(self, q: Any, v: Any, inputs: Any, *, h: float, start: float = 0.0) -> Any:
+        """Simulates motions by steps of the classical Runge–Kutta method, with inputs that are constant during each
+        step. Gradients are those of adjoint steps.
+
+        Args:
+            q: initial configurations, (…, nq).
+            v: initial velocities, (…, nv).
+            inputs: inputs of each step, (…, steps, nu).
+            h: step size, s.
+            start: initial time, s.
+
+        Returns:
+            Configurations (…, steps + 1, nq) and velocities (…, steps + 1, nv), including the initial ones.
+        """
+        return self._apply(Rollout(self.kind, h, start), (q, v, inputs))
+
+
 def _robot(kind: type[Mechanism], parameters: Array, states: int) -> Robot:
     loaded = kind._loaded
     assert loaded is not None

@@ -15,7 +15,7 @@ from typing import Any
 
 import torch
 
-from ._gradients import Operation, Rollout, parameter_values
+from ._gradients import BaseOperations, Rollout, parameter_values
 from ._mechanism import Mechanism
 
 
@@ -48,42 +48,13 @@ class _Call(torch.autograd.Function):
         return None, *[_like(array, tensor) for array, tensor in zip(found, given)]
 
 
-class Operations:
+class Operations(BaseOperations):
     """The functions of a class as operations, with values of its parameters: numbers or tensors."""
 
     def __init__(self, kind: type[Mechanism], **parameters: Any) -> None:
-        self.kind = kind
+        super().__init__(kind)
         values = [torch.as_tensor(value, dtype=torch.float64) for value in parameter_values(kind, parameters)]
         self.parameters = torch.stack(torch.broadcast_tensors(*values), dim=-1) if values else torch.zeros(0, dtype=torch.float64)
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        takes_frame = Operation(self.kind, name, 0).takes_frame if name.startswith("frame_") else False
-
-        def call(*given: Any) -> Any:
-            operation = Operation(self.kind, name, given[0] if takes_frame else None)
-            return self._apply(operation, given[1:] if takes_frame else given)
-
-        call.__name__ = name
-        call.__doc__ = getattr(self.kind, name).__doc__
-        return call
-
-    def roll_out(self, q: Any, v: Any, inputs: Any, *, h: float, start: float = 0.0) -> Any:
-        """Simulates motions by steps of the classical Runge–Kutta method, with inputs that are constant during each
-        step. Gradients are those of adjoint steps.
-
-        Args:
-            q: initial configurations, (…, nq).
-            v: initial velocities, (…, nv).
-            inputs: inputs of each step, (…, steps, nu).
-            h: step size, s.
-            start: initial time, s.
-
-        Returns:
-            Configurations (…, steps + 1, nq) and velocities (…, steps + 1, nv), including the initial ones.
-        """
-        return self._apply(Rollout(self.kind, h, start), (q, v, inputs))
 
     def _apply(self, operation: Any, given: Any) -> Any:
         tensors = [value if isinstance(value, torch.Tensor) else torch.as_tensor(value, dtype=torch.float64) for value in given]

@@ -69,7 +69,7 @@ pub enum OnConstraints {
     CompleteVelocity,
 }
 
-/// What all objects of a function have in common.
+/// Name, documentation, arguments, results and computation of a function, which its objects share.
 struct Signature {
     name: String,
     documentation: String,

@@ -309,7 +309,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// # Errors
     ///
-    /// Those of [`solve`](Self::solve).
+    /// As [`solve`](Self::solve).
     pub(super) fn solve_sticking(&mut self) -> Result<List<T, NR>, usize> {
         loop {
             let impulses = self.solve()?;

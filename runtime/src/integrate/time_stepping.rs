@@ -44,8 +44,8 @@ use nalgebra::SVector;
 /// `Λ₀` are the impulses of the previous step if these have hardly changed; otherwise they are computed
 /// again.
 ///
-/// Where no impulses satisfy the contact conditions, or none are found in a bounded number of iterations, a
-/// step takes those that violate the conditions least, and reports by how much
+/// If no impulses satisfy the contact conditions, or none are found in a bounded number of iterations, a step
+/// takes those that violate the conditions least, and reports the violation, m/s
 /// ([`Sample::violation`](crate::simulate::Sample::violation)).
 ///
 /// A step takes four evaluations of the dynamics, [two](Self::midpoint) or [one](Self::leapfrog). With closed

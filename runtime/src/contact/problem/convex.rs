@@ -6,8 +6,8 @@
 //! min ½ |w|² + max over Λ in K of { −Λ·(u₀ + B w + s) − ½ (Λ − Λ̄)·R (Λ − Λ̄) },   W = B Bᵀ
 //! ```
 //!
-//! It is strictly convex in `w`, the change of the velocity in the metric of the kinetic energy, whatever the
-//! rank of `W`, and Newton's method with a line search finds its minimum from anywhere. Without `s` and with
+//! It is strictly convex in `w`, the change of the velocity in the metric of the kinetic energy, for any rank
+//! of `W`, and Newton's method with a line search finds its minimum from any start. Without `s` and with
 //! `Λ̄ = 0` it is Anitescu's relaxation, regularised (Castro, Permenter and Han, *An unconstrained convex
 //! formulation of compliant contact*, IEEE Trans. Robot. 39, 2023). `Λ̄`, the impulses of the problem before,
 //! removes the effect of the regularisation `R` (method of multipliers), and `s = μ |uₜ|`, from the slip
@@ -62,7 +62,7 @@ struct Cone<T> {
     floor: T,
     /// Smallest normal rate.
     least: T,
-    /// What raises the normal rate.
+    /// Increase `s` of the normal rate.
     raised: T,
 }
 

@@ -12,7 +12,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// # Errors
     ///
-    /// Those of [`solve`](Self::solve).
+    /// As [`solve`](Self::solve).
     pub(in super::super) fn compress(
         &mut self,
         laws: &[Law<T>; NK],

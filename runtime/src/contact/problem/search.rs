@@ -60,7 +60,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// # Errors
     ///
-    /// Those of [`solve`](Self::solve).
+    /// As [`solve`](Self::solve).
     pub(in super::super) fn solve_from(
         &mut self,
         start: Option<&Start<T, NR>>,
@@ -85,7 +85,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if self.is_exhaustive() && !(self.is_relaxed && is_found(self, &found)) && !self.solves(&found) {
             let other = self.exhaustive(found.impulses);
             let other = self.tried(other);
-            // What rounding leaves of the map under very different masses says little.
+            // The rates of the map are dominated by rounding errors if masses differ by many powers of ten.
             let is_better = self.is_smooth() && is_found(self, &other);
             if is_better || other.worst.0 < found.worst.0 {
                 found = other;
