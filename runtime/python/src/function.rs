@@ -4,7 +4,7 @@ use crate::arrays;
 use crate::error::exception;
 use crate::robot::{Robot, set_parameters};
 use crate::shared::{Failed, distribute};
-use linkwork_jit::{AdjointStepper, Error, Sensitivity, Stepper, VectorJacobian};
+use linkwork_jit::{Error, Stepper};
 use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -13,6 +13,11 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
+
+mod adjoint;
+mod evaluator;
+
+use evaluator::placement;
 
 /// Maximum number of arguments of a function.
 const ARGUMENTS: usize = 12;
@@ -303,127 +308,6 @@ fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
 /// Name of an argument that selects velocities by nonzero entries.
 const HELD: &str = "held";
 
-/// A computation with its work space.
-pub enum Evaluator {
-    Generated(linkwork_jit::Robot, linkwork_jit::Function),
-    Placement(linkwork_jit::Robot, linkwork_jit::Function),
-    Step(Box<Stepper>, bool),
-    Derivatives(linkwork_jit::Robot, bool),
-    Constraint(linkwork_jit::Robot, OnConstraints),
-}
-
-impl Signature {
-    /// Returns the computation, for a frame where the function takes one.
-    fn evaluator(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Evaluator, Error> {
-        let robot = || robot.clone();
-        Ok(match &self.kind {
-            Kind::Generated(f) => Evaluator::Generated(robot(), f.clone()),
-            Kind::Frames(all) => Evaluator::Generated(robot(), all[frame].clone()),
-            Kind::Placements(all) => Evaluator::Placement(robot(), all[frame].clone()),
-            Kind::Step => Evaluator::Step(Box::new(Stepper::new(&robot())?), false),
-            Kind::Transition => Evaluator::Step(Box::new(Stepper::new(&robot())?), true),
-            Kind::IntegrateDerivatives => Evaluator::Derivatives(robot(), false),
-            Kind::TangentRateDerivatives => Evaluator::Derivatives(robot(), true),
-            Kind::Constraint(which) => Evaluator::Constraint(robot(), *which),
-        })
-    }
-
-    fn length(&self) -> usize {
-        self.results.iter().map(Output::length).sum()
-    }
-}
-
-impl Evaluator {
-    fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
-        match self {
-            Evaluator::Generated(robot, _)
-            | Evaluator::Placement(robot, _)
-            | Evaluator::Derivatives(robot, _)
-            | Evaluator::Constraint(robot, _) => robot,
-            Evaluator::Step(stepper, _) => stepper.robot_mut(),
-        }
-    }
-
-    /// Writes the results one after the other, matrices by columns.
-    fn evaluate(&mut self, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
-        match self {
-            Evaluator::Generated(robot, f) => robot.evaluate_into(f, arguments, out),
-            Evaluator::Placement(robot, f) => placement(robot, f, arguments, out),
-            Evaluator::Step(stepper, jacobians) => step(stepper, *jacobians, arguments, out),
-            Evaluator::Constraint(robot, which) => satisfy(robot, *which, arguments, out),
-            Evaluator::Derivatives(robot, of_rate) => {
-                let found = match *of_rate {
-                    true => robot.tangent_rate_derivatives(arguments[0], arguments[1])?,
-                    false => robot.integrate_derivatives(arguments[1])?,
-                };
-                let entries = found.iter().flat_map(|matrix| matrix.as_slice());
-                out.iter_mut().zip(entries).for_each(|(to, from)| *to = *from);
-                Ok(())
-            }
-        }
-    }
-}
-
-/// Writes the placement of a frame as a matrix of four rows.
-fn placement(
-    robot: &linkwork_jit::Robot,
-    f: &linkwork_jit::Function,
-    arguments: &[&[f64]],
-    out: &mut [f64],
-) -> Result<(), Error> {
-    let mut values = [0.0; 12];
-    robot.evaluate_into(f, arguments, &mut values)?;
-    for (k, (column, own)) in out.chunks_exact_mut(4).zip(values.chunks_exact(3)).enumerate() {
-        column[..3].copy_from_slice(own);
-        column[3] = f64::from(u8::from(k == 3));
-    }
-    Ok(())
-}
-
-/// Writes a configuration or velocity that satisfies the constraints.
-fn satisfy(
-    robot: &mut linkwork_jit::Robot,
-    which: OnConstraints,
-    arguments: &[&[f64]],
-    out: &mut [f64],
-) -> Result<(), Error> {
-    let mut rest = arguments;
-    if robot.depends_on_time() {
-        robot.set_time(arguments[0][0]);
-        rest = &arguments[1..];
-    }
-    let marked = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
-    let found = match (which, rest) {
-        (OnConstraints::Assemble, [q, held]) => robot.assemble(q, &marked(held)),
-        (OnConstraints::ProjectConfiguration, [q]) => robot.project_configuration(q),
-        (OnConstraints::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
-        (OnConstraints::CompleteVelocity, [q, v, held]) => robot.complete_velocity(q, v, &marked(held)),
-        _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
-    }?;
-    out.copy_from_slice(found.as_slice());
-    Ok(())
-}
-
-/// Writes the state after a step, and its Jacobians if they are wanted.
-fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
-    let (t, rest) = match arguments {
-        [t, rest @ ..] if rest.len() == 4 => (t[0], rest),
-        rest => (0.0, rest),
-    };
-    let [q, v, u, h] = rest else {
-        return Err(Error::Internal("the arguments of a step".to_string()));
-    };
-    let (end_q, rest) = out.split_at_mut(q.len());
-    let (end_v, rest) = rest.split_at_mut(v.len());
-    if !jacobians {
-        return stepper.step(t, [q, v, u], h[0], [end_q, end_v]);
-    }
-    let found = stepper.differentiate(t, [q, v, u], h[0], [end_q, end_v])?;
-    let entries = found.q.iter().chain(&found.v).flat_map(|matrix| matrix.as_slice());
-    rest.iter_mut().zip(entries).for_each(|(to, from)| *to = *from);
-    Ok(())
-}
-
 thread_local! {
     /// Results of the last call of the thread.
     static RESULTS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
@@ -632,106 +516,7 @@ impl Function {
     }
 }
 
-/// Derivatives of one state: by the arguments one after the other, then by the parameters.
-enum Adjoint {
-    Product(linkwork_jit::Robot, VectorJacobian),
-    /// With the placement of a frame as a matrix of four rows, whose last row is constant.
-    Placement(linkwork_jit::Robot, VectorJacobian),
-    Step(Box<AdjointStepper>),
-}
-
-impl Adjoint {
-    fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
-        match self {
-            Adjoint::Product(robot, _) | Adjoint::Placement(robot, _) => robot,
-            Adjoint::Step(stepper) => stepper.robot_mut(),
-        }
-    }
-
-    fn evaluate(&mut self, arguments: &[&[f64]], factors: &[f64], out: &mut [f64]) -> Result<(), Error> {
-        match self {
-            Adjoint::Product(robot, product) => product.evaluate_into(robot, arguments, factors, out),
-            Adjoint::Placement(robot, product) => {
-                let mut own = [0.0; 12];
-                for (column, factors) in own.chunks_exact_mut(3).zip(factors.chunks_exact(4)) {
-                    column.copy_from_slice(&factors[..3]);
-                }
-                product.evaluate_into(robot, arguments, &own, out)
-            }
-            Adjoint::Step(stepper) => {
-                let (t, rest, first) = match arguments {
-                    [t, rest @ ..] if rest.len() == 4 => (t[0], rest, 1),
-                    rest => (0.0, rest, 0),
-                };
-                let [q, v, u, h] = rest else {
-                    return Err(Error::Internal("the arguments of a step".to_string()));
-                };
-                out.fill(0.0);
-                let (time, own) = out.split_at_mut(first);
-                let (by_q, rest) = own.split_at_mut(q.len());
-                let (by_v, rest) = rest.split_at_mut(v.len());
-                let (by_u, rest) = rest.split_at_mut(u.len());
-                by_q.copy_from_slice(&factors[..q.len()]);
-                by_v.copy_from_slice(&factors[q.len()..]);
-                let (length, parameters) = rest.split_at_mut(1);
-                let mut derivatives = Sensitivity { q: by_q, v: by_v, u: by_u, parameters };
-                let [by_t, by_h] = stepper.step(t, [q, v, u], h[0], &mut derivatives)?;
-                time.fill(by_t);
-                length.fill(by_h);
-                Ok(())
-            }
-        }
-    }
-}
-
 impl Signature {
-    /// Writes the derivatives of consecutive states.
-    fn differentiate(
-        &self,
-        robot: &Robot,
-        frame: usize,
-        lists: &[&[f64]],
-        states: Range<usize>,
-        factors: &[f64],
-        out: &mut [f64],
-    ) -> Failed {
-        let mut adjoint = match self.adjoint(&robot.robot, frame) {
-            Ok(adjoint) => adjoint,
-            Err(error) => return Some((states.start, error)),
-        };
-        let length = self.length();
-        let width =
-            robot.robot.parameters().len() + self.arguments.iter().map(Argument::length).sum::<usize>();
-        let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
-        let mut failed = None;
-        for (k, state) in states.enumerate() {
-            for ((slice, list), argument) in slices.iter_mut().zip(lists).zip(&self.arguments) {
-                let length = argument.length();
-                let at = if list.len() == length { 0 } else { state * length };
-                *slice = &list[at..at + length];
-            }
-            let own = &mut out[k * width..(k + 1) * width];
-            let set = set_parameters(adjoint.robot_mut(), robot.sets.as_ref(), state);
-            let factors = &factors[state * length..(state + 1) * length];
-            let done = set.and_then(|()| adjoint.evaluate(&slices[..self.arguments.len()], factors, own));
-            if let Err(error) = done {
-                failed.get_or_insert((state, error));
-            }
-        }
-        failed
-    }
-
-    /// Returns the derivatives, for a frame where the function takes one.
-    fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
-        Ok(match &self.kind {
-            Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),
-            Kind::Frames(all) => Adjoint::Product(robot.clone(), all[frame].vector_jacobian()?),
-            Kind::Placements(all) => Adjoint::Placement(robot.clone(), all[frame].vector_jacobian()?),
-            Kind::Step => Adjoint::Step(Box::new(AdjointStepper::new(robot)?)),
-            _ => return Err(Error::Value(format!("`{}` has no vector–Jacobian product", self.name))),
-        })
-    }
-
     /// Evaluates consecutive states.
     fn many(
         &self,

@@ -1,0 +1,88 @@
+//! Integration methods by name.
+
+use crate::error::Error;
+
+/// Integration method, with its tolerance (relative and absolute) or its step, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Method {
+    /// [`DormandPrince`](linkwork::integrate::DormandPrince) with a tolerance, and
+    /// [`Rodas`](linkwork::integrate::Rodas) from where the motion is stiff. Mechanisms with contacts have
+    /// [`TimeStepping`](linkwork::integrate::TimeStepping) with steps of 1 ms.
+    Automatic(f64),
+    /// [`DormandPrince`](linkwork::integrate::DormandPrince) with a tolerance.
+    DormandPrince(f64),
+    /// [`DormandPrince8`](linkwork::integrate::DormandPrince8) with a tolerance.
+    DormandPrince8(f64),
+    /// [`Rodas`](linkwork::integrate::Rodas) with a tolerance.
+    Rodas(f64),
+    /// [`Rk4`](linkwork::integrate::Rk4) with a step.
+    Rk4(f64),
+    /// [`ImplicitMidpoint`](linkwork::integrate::ImplicitMidpoint) with a step.
+    ImplicitMidpoint(f64),
+    /// [`Rosenbrock`](linkwork::integrate::Rosenbrock) with a step.
+    Rosenbrock(f64),
+    /// [`SemiImplicitEuler`](linkwork::integrate::SemiImplicitEuler) with a step.
+    SemiImplicitEuler(f64),
+    /// [`TimeStepping`](linkwork::integrate::TimeStepping) with a step.
+    TimeStepping(f64),
+    /// [`TimeStepping::midpoint`](linkwork::integrate::TimeStepping::midpoint) with a step.
+    TimeSteppingMidpoint(f64),
+    /// [`EventDriven`](linkwork::integrate::EventDriven) with a tolerance.
+    EventDriven(f64),
+}
+
+/// Tolerance of adaptive methods, unless another one is set.
+const TOLERANCE: f64 = 1e-9;
+/// Step of methods with fixed steps, s, unless another one is set.
+pub(super) const STEP: f64 = 1e-3;
+
+impl Method {
+    /// Names of the methods, whether their setting is a step, and whether they treat contacts.
+    pub const NAMES: [(&'static str, bool, bool); 11] = [
+        ("automatic", false, true),
+        ("dormand_prince", false, false),
+        ("dormand_prince8", false, false),
+        ("rodas", false, false),
+        ("rk4", true, false),
+        ("implicit_midpoint", true, false),
+        ("rosenbrock", true, false),
+        ("semi_implicit_euler", true, false),
+        ("time_stepping", true, true),
+        ("time_stepping_midpoint", true, true),
+        ("event_driven", false, true),
+    ];
+
+    /// Returns the method of a name of [`NAMES`](Self::NAMES) with its tolerance or step; without one the
+    /// tolerance is `1e-9`, and the step 1 ms.
+    ///
+    /// # Errors
+    ///
+    /// There is no such method.
+    pub fn named(name: &str, setting: Option<f64>) -> Result<Method, Error> {
+        let names = || Self::NAMES.iter().map(|(name, ..)| *name);
+        let Some((_, has_step, _)) = Self::NAMES.iter().find(|(known, ..)| *known == name) else {
+            return Err(Error::unknown("method", name, names()));
+        };
+        let setting = setting.unwrap_or(if *has_step { STEP } else { TOLERANCE });
+        Ok(match name {
+            "dormand_prince" => Method::DormandPrince(setting),
+            "dormand_prince8" => Method::DormandPrince8(setting),
+            "rodas" => Method::Rodas(setting),
+            "rk4" => Method::Rk4(setting),
+            "implicit_midpoint" => Method::ImplicitMidpoint(setting),
+            "rosenbrock" => Method::Rosenbrock(setting),
+            "semi_implicit_euler" => Method::SemiImplicitEuler(setting),
+            "time_stepping" => Method::TimeStepping(setting),
+            "time_stepping_midpoint" => Method::TimeSteppingMidpoint(setting),
+            "event_driven" => Method::EventDriven(setting),
+            _ => Method::Automatic(setting),
+        })
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Method::Automatic(TOLERANCE)
+    }
+}
