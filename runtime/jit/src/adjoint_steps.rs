@@ -64,13 +64,13 @@ fn add(to: &mut [f64], terms: &[f64]) {
 /// Derivatives of a function of a motion.
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
-    /// By the configuration: after the step, and before it once the step is done.
+    /// By the configuration, `nq` entries: after the step, and before it once the step is done.
     pub q: &'a mut [f64],
-    /// By the velocity: after the step, and before it once the step is done.
+    /// By the velocity, `nv` entries: after the step, and before it once the step is done.
     pub v: &'a mut [f64],
-    /// By the inputs during the step, to which those of the step are added.
+    /// By the inputs during the step, `nu` entries, to which those of the step are added.
     pub u: &'a mut [f64],
-    /// By the parameters, to which those of the step are added.
+    /// By the parameters, one entry each, to which those of the step are added.
     pub parameters: &'a mut [f64],
 }
 

@@ -79,12 +79,13 @@ impl Robot {
         Ok((DVector::from_vec(found), mode))
     }
 
-    /// Returns a configuration near `q` that satisfies the constraints; coordinates whose joint velocities
-    /// have the indices `held` do not change, see [`Constrained::assemble`].
+    /// Returns a configuration near `q` (`nq` entries) that satisfies the constraints; coordinates whose joint
+    /// velocities have the indices `held` do not change, see [`Constrained::assemble`].
     ///
     /// # Errors
     ///
-    /// There are no constraints, or no configuration is found ([`Error::Motion`]).
+    /// There are no constraints, a slice has the wrong length, or no configuration is found
+    /// ([`Error::Motion`]).
     pub fn assemble(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
         Ok(self.ask(Question::Assemble(None), q, held)?.0)
     }
@@ -110,7 +111,7 @@ impl Robot {
         Ok(self.ask(Question::LeastViolation, q, held)?.0)
     }
 
-    /// Returns the heights of terrain at a place, for drawings.
+    /// Returns the heights of terrain, m, at a position along its first two axes, m, for drawings.
     #[doc(hidden)]
     #[must_use]
     pub fn terrain_heights(&self, place: [f64; 2]) -> Option<Vec<f64>> {
@@ -136,8 +137,8 @@ impl Robot {
         Ok(self.ask(Question::Mode, q, held)?.1)
     }
 
-    /// Returns the configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic
-    /// energy.
+    /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric of
+    /// the kinetic energy.
     ///
     /// # Errors
     ///
@@ -146,8 +147,8 @@ impl Robot {
         Ok(self.ask(Question::Project, q, &[])?.0)
     }
 
-    /// Returns the velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic
-    /// energy.
+    /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the metric
+    /// of the kinetic energy.
     ///
     /// # Errors
     ///
@@ -156,7 +157,7 @@ impl Robot {
         Ok(self.ask(Question::ProjectVelocity(v), q, &[])?.0)
     }
 
-    /// Returns the velocity with the entries `held` of `v` that satisfies the constraints, see
+    /// Returns the velocity (`nv` entries) with the entries `held` of `v` that satisfies the constraints, see
     /// [`Constrained::complete_velocity`].
     ///
     /// # Errors

@@ -50,19 +50,19 @@ impl Loader {
 }
 
 impl Drawing {
-    /// Returns the pieces.
+    /// Returns the pieces, in the order of their declaration.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Returns the numbers of all pieces for the values of the parameters of a robot.
+    /// Returns the numbers of all pieces, m and rad, for the values of the parameters of a robot.
     #[must_use]
     pub fn numbers(&self, robot: &Robot) -> Vec<f64> {
         evaluate(&self.numbers, robot, [f64::NAN; 2])
     }
 
-    /// Returns the height of each terrain at a position along its first two axes.
+    /// Returns the height of each terrain, m, at a position along its first two axes, m.
     #[must_use]
     pub fn heights(&self, robot: &Robot, position: [f64; 2]) -> Vec<f64> {
         evaluate(&self.heights, robot, position)

@@ -404,7 +404,7 @@ fn reaction(out: &mut String, f: &Function, model: &Model<'_>, o: &Outline<'_>, 
     );
 }
 
-/// StraightBodies in C of functions without calls of other functions and without loops.
+/// Bodies in C of functions without calls of other functions and without loops.
 pub struct StraightBodies {
     /// Prefix of all names.
     pub prefix: String,
