@@ -2,7 +2,9 @@
 //! dynamic programming, whose iterations converge quadratically.
 
 use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork::optimal::{Indefinite, Policy, Quadratic, Value, backward};
+use linkwork::optimal::{
+    EmptyRange, Indefinite, Limits, Policy, Quadratic, Value, backward, backward_within,
+};
 use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
@@ -325,4 +327,114 @@ fn dynamic_programming_converges_quadratically() {
     assert!(quadratic && newton[newton.len() - 1] < 1e-12 && newton.len() < 10, "{newton:?}");
     // Without curvature each iteration reduces the gradient by a factor of 2 to 4.
     assert!(gauss.len() > 20 && gauss[8..].windows(2).all(|w| w[1] > 0.2 * w[0]), "{gauss:?}");
+}
+
+/// Within limits the change of two inputs is the best one of nine: each input is free or at one of its limits.
+/// The cost-to-go predicts the costs of a displaced state under the policy.
+#[test]
+fn limits_bound_the_change_of_inputs() {
+    let mut random = Random::new(5);
+    let m = Flyer {};
+    let q = Flyer::neutral(&m);
+    let zero = SVector::zeros();
+    let step =
+        discrete::transition(&m, &Rk4::step(0.1), 0.0, &q, &zero, &SVector::zeros()).expect("it moves");
+    let mut kinds = [0; 3];
+    for _ in 0..300 {
+        let mut cost = Quadratic::zeros();
+        (cost.uu, cost.u) = (positive::<2>(&mut random), random.vector(2.0));
+        (cost.qq, cost.vv) = (positive::<6>(&mut random), positive::<6>(&mut random));
+        cost.qu = SMatrix::from_fn(|_, _| random.uniform(0.3));
+        let (u, reach) = (random.vector::<2>(0.5), SVector::from([0.6, f64::INFINITY]));
+        let limits = Limits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
+        let (mut policy, mut to_go) = (Policy::zeros(), Value::zeros());
+        backward_within(&step, &cost, 0.0, &limits, &mut policy, &mut to_go).expect("it is convex");
+        let total = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
+        let mut best = f64::INFINITY;
+        for choice in 0..9 {
+            let at = [choice % 3, choice / 3];
+            let (mut system, mut right) = (cost.uu, -cost.u);
+            for i in (0..2).filter(|i| at[*i] > 0) {
+                system.fill_row(i, 0.0);
+                system[(i, i)] = 1.0;
+                let limit = if at[i] == 1 { -reach[i] - u[i] } else { reach[i].min(0.7) - u[i] };
+                right[i] = limit;
+            }
+            let Some(du) = system.lu().solve(&right) else { continue };
+            if du.iter().all(|x| x.is_finite()) && (limits.clamp(&du) - du).amax() < 1e-12 {
+                best = best.min(total(&du));
+            }
+        }
+        assert!((total(&policy.change) - best).abs() < 1e-12, "{} {best}", total(&policy.change));
+        assert!((policy.expected[0] + policy.expected[1] - best).abs() < 1e-12);
+        let held = (0..2).filter(|i| policy.by_q.row(*i).amax() == 0.0).count();
+        kinds[held] += 1;
+        let dq = random.vector::<6>(1e-2);
+        let du = policy.inputs(1.0, &dq, &SVector::zeros());
+        let predicted = total(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
+        assert!((predicted - best - to_go.at(&dq, &SVector::zeros())).abs() < 1e-12);
+    }
+    assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");
+    let contradictory = Limits::around(&SVector::from([0.0, 0.0]), &[0.0, 1.0].into(), &[1.0, 0.5].into());
+    assert_eq!(contradictory, Err(EmptyRange { input: 1 }));
+}
+
+/// At the end of iterations with a weak motor, the gradient of the costs is zero where the torque is within its
+/// limits, and presses it against the limit elsewhere (conditions of Karush, Kuhn and Tucker).
+#[test]
+fn a_weak_motor_is_used_at_its_limits() {
+    let m = Pendubot {};
+    let problem = Problem { method: SemiImplicitEuler::step(0.02), goal: [0.9, 0.4].into() };
+    let reach = SVector::from([2.0]);
+    let mut inputs = vec![SVector::from([0.5]); STEPS];
+    let mut states = vec![(SVector::from([0.0, 0.0]), SVector::from([0.0, 0.0]))];
+    for u in &inputs {
+        let (q, v) = states[states.len() - 1];
+        states.push(discrete::step(&m, &problem.method, 0.0, &q, &v, u).expect("it moves"));
+    }
+    let mut policies = vec![Policy::zeros(); STEPS];
+    let mut violation = f64::INFINITY;
+    let (mut at_limit, mut regularisation) = (0, 1e-6);
+    for _ in 0..600 {
+        let (mut to_go, mut adjoint) = (problem.last(&states[STEPS]), (SVector::zeros(), SVector::zeros()));
+        adjoint = (to_go.q + adjoint.0, to_go.v + adjoint.1);
+        (violation, at_limit) = (0.0, 0);
+        for (k, ((q, v), u)) in states.iter().zip(&inputs).enumerate().rev() {
+            let step = discrete::transition(&m, &problem.method, 0.0, q, v, u).expect("it moves");
+            let mut cost = Quadratic::zeros();
+            (cost.u, cost.uu[0]) = (u * 1e-3, 1e-3);
+            let (by_q, by_v, by_u) = step.adjoint(&adjoint.0, &adjoint.1);
+            let slope = by_u[0] + cost.u[0];
+            let is_held = u[0].abs() > reach[0] - 1e-12;
+            at_limit += usize::from(is_held);
+            violation = violation.max(if is_held { (slope * u[0].signum()).max(0.0) } else { slope.abs() });
+            adjoint = (by_q, by_v);
+            let limits = Limits::around(u, &-reach, &reach).expect("they are consistent");
+            backward_within(&step, &cost, regularisation, &limits, &mut policies[k], &mut to_go)
+                .expect("it is convex");
+        }
+        if violation < 1e-9 {
+            break;
+        }
+        let now = problem.total(&states, &inputs);
+        let mut tried = (0..20).map(|k| {
+            let (mut all, mut new) = (vec![states[0]], Vec::new());
+            for ((policy, u), (q, v)) in policies.iter().zip(&inputs).zip(&states) {
+                let (now_q, now_v) = all[all.len() - 1];
+                let change = policy.inputs(0.5_f64.powi(k), &(now_q - q), &(now_v - v));
+                let next = (u + change).map(|u| u.clamp(-reach[0], reach[0]));
+                new.push(next);
+                all.push(discrete::step(&m, &problem.method, 0.0, &now_q, &now_v, &next).expect("it moves"));
+            }
+            (all, new)
+        });
+        let next = tried.find(|(states, inputs)| problem.total(states, inputs) < now + 1e-13);
+        // With more regularisation the change of the inputs is shorter, and its gains are smaller.
+        match next {
+            Some(next) => ((states, inputs), regularisation) = (next, (regularisation * 0.2).max(1e-6)),
+            None => regularisation *= 10.0,
+        }
+    }
+    assert!(violation < 1e-7, "{violation:e}");
+    assert!((5..STEPS - 5).contains(&at_limit), "{at_limit}");
 }

@@ -9,6 +9,8 @@
 //! (1966); Tassa, Erez and Todorov, *Synthesis and stabilization of complex behaviors through online
 //! trajectory optimization* (2012).
 //!
+//! [`backward_within`] takes limits of the inputs into account.
+//!
 //! The functions allocate no memory: the caller stores the trajectories.
 //!
 //! ```
@@ -66,6 +68,10 @@ use crate::discrete::{Chained, Transition};
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
 use nalgebra::{SMatrix, SVector};
+
+mod limits;
+
+pub use limits::{EmptyRange, Limits};
 
 /// Second-order model of the costs about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) ·
 /// Hessian (δq, δv, δu)`. The unit of the costs is the user's choice. Displacements of ball and free joints
@@ -322,14 +328,42 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
-    // Costs as a function of the state before the step and the inputs, including the cost-to-go after the
-    // step.
+    minimised(&mut accumulated(step, cost, to_go), regularisation, policy, to_go)
+}
+
+/// Computes [`backward_into`] for inputs with limits: the change of the inputs minimises the costs to second
+/// order within `limits` ([`Limits::around`]). Inputs at a limit have no feedback gains. The search begins at
+/// `policy.change`, for example that of the previous iteration, or zero. The inputs that the policy returns for
+/// other states must be clamped ([`Limits::clamp`]). The costs-to-go do not contain this clamping: if a line
+/// search fails, more regularisation reduces the gains. Source: Tassa, Mansard and Todorov, *Control-limited
+/// differential dynamic programming* (2014).
+///
+/// # Errors
+///
+/// The errors of [`backward`]; `policy` and `to_go` are then unchanged.
+pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    step: &Transition<T, NQ, NV, NU>,
+    cost: &Quadratic<T, NV, NU>,
+    regularisation: T,
+    limits: &Limits<T, NU>,
+    policy: &mut Policy<T, NV, NU>,
+    to_go: &mut Value<T, NV>,
+) -> Result<(), Indefinite> {
+    limits::minimised(&mut accumulated(step, cost, to_go), regularisation, limits, policy, to_go)
+}
+
+/// Returns the costs as a function of the state before a step and the inputs, with the cost-to-go after it.
+fn accumulated<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    step: &Transition<T, NQ, NV, NU>,
+    cost: &Quadratic<T, NV, NU>,
+    after: &Value<T, NV>,
+) -> Quadratic<T, NV, NU> {
     let mut before = *cost;
     match &step.chained {
-        Some(chain) => chained(&mut before, step, to_go, chain),
-        None => general(&mut before, step, to_go),
+        Some(chain) => chained(&mut before, step, after, chain),
+        None => general(&mut before, step, after),
     }
-    minimised(&mut before, regularisation, policy, to_go)
+    before
 }
 
 /// Adds the cost-to-go after a step of any method to the costs before it.
