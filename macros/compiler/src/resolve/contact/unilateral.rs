@@ -357,7 +357,7 @@ impl<'g> Builder<'_, 'g> {
             return self.box_contacts(pair, lengths, c);
         }
         let SurfaceForm::Plane(n) = &pair.b.form else {
-            return self.curved_contact(pair, c, &rotate_b).into_iter().collect();
+            return self.curved_contacts(pair, c, &rotate_b);
         };
         let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
         let normal = rotate_b(*n);
@@ -416,13 +416,14 @@ impl<'g> Builder<'_, 'g> {
         touches.collect()
     }
 
-    /// Returns the contact of a sphere, a point or a capsule with a curved surface.
-    fn curved_contact(
+    /// Returns the contacts of a sphere, a point or a capsule with a curved surface. Two capsules touch where
+    /// their axes are closest, and at the spheres at their ends, which carry parallel capsules.
+    fn curved_contacts(
         &self,
         pair: &SurfacePair<'g>,
         c: Vec3<'g>,
         rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
-    ) -> Option<PointContact<'g>> {
+    ) -> Vec<PointContact<'g>> {
         let g = self.scope.graph;
         let half = g.num(0.5);
         let (radius, own) = match &pair.a.form {
@@ -431,19 +432,25 @@ impl<'g> Builder<'_, 'g> {
             SurfaceForm::Capsule(radius, length, axis) => {
                 (*radius, Some((self.first_direction(pair, *axis).value, *length * half)))
             }
-            _ => return None,
+            _ => return Vec::new(),
         };
-        match &pair.b.form {
+        let contact = match &pair.b.form {
             SurfaceForm::Capsule(other, length, axis) => {
                 let (axis, reach) = (rotate_b(*axis), *length * half);
                 let sphere = SurfaceForm::Sphere(*other);
                 let Some((own, own_reach)) = own else {
                     let along = clamp(axis.dot(c), reach);
-                    return sphere_contact(radius, &sphere, c - axis * along, rotate_b);
+                    return sphere_contact(radius, &sphere, c - axis * along, rotate_b).into_iter().collect();
                 };
-                let (near, far) = nearest(c, (own, own_reach), (axis, reach));
-                let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, rotate_b)?;
-                Some(PointContact { point: touch.point + own * near, ..touch })
+                let own_ends =
+                    [-own_reach, own_reach].map(|near| (near, clamp(axis.dot(c + own * near), reach)));
+                let other_ends = [-reach, reach].map(|far| (clamp(own.dot(axis * far - c), own_reach), far));
+                let places = [nearest(c, (own, own_reach), (axis, reach))].into_iter();
+                let touches = places.chain(own_ends).chain(other_ends).filter_map(|(near, far)| {
+                    let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, rotate_b)?;
+                    Some(PointContact { point: touch.point + own * near, ..touch })
+                });
+                return touches.collect();
             }
             SurfaceForm::Drum(wide, length, axis) => {
                 let axis = rotate_b(*axis);
@@ -454,7 +461,8 @@ impl<'g> Builder<'_, 'g> {
                 sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), c - inner, rotate_b)
             }
             form => sphere_contact(radius, form, c, rotate_b),
-        }
+        };
+        contact.into_iter().collect()
     }
 }
 
