@@ -3,7 +3,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{
-    EmptyRange, Indefinite, Limits, Policy, Quadratic, Value, backward, backward_within,
+    EmptyRange, Indefinite, InputLimits, Policy, Quadratic, Value, backward, backward_within,
 };
 use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
@@ -329,8 +329,8 @@ fn dynamic_programming_converges_quadratically() {
     assert!(gauss.len() > 20 && gauss[8..].windows(2).all(|w| w[1] > 0.2 * w[0]), "{gauss:?}");
 }
 
-/// Within limits the change of two inputs is the best one of nine: each input is free or at one of its limits.
-/// The cost-to-go predicts the costs of a displaced state under the policy.
+/// Within limits the change of two inputs is the best one of nine: each input is free or at one of its
+/// limits. The cost-to-go predicts the costs of a displaced state under the policy.
 #[test]
 fn limits_bound_the_change_of_inputs() {
     let mut random = Random::new(5);
@@ -346,7 +346,8 @@ fn limits_bound_the_change_of_inputs() {
         (cost.qq, cost.vv) = (positive::<6>(&mut random), positive::<6>(&mut random));
         cost.qu = SMatrix::from_fn(|_, _| random.uniform(0.3));
         let (u, reach) = (random.vector::<2>(0.5), SVector::from([0.6, f64::INFINITY]));
-        let limits = Limits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
+        let limits =
+            InputLimits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
         let (mut policy, mut to_go) = (Policy::zeros(), Value::zeros());
         backward_within(&step, &cost, 0.0, &limits, &mut policy, &mut to_go).expect("it is convex");
         let total = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
@@ -375,12 +376,13 @@ fn limits_bound_the_change_of_inputs() {
         assert!((predicted - best - to_go.at(&dq, &SVector::zeros())).abs() < 1e-12);
     }
     assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");
-    let contradictory = Limits::around(&SVector::from([0.0, 0.0]), &[0.0, 1.0].into(), &[1.0, 0.5].into());
+    let contradictory =
+        InputLimits::around(&SVector::from([0.0, 0.0]), &[0.0, 1.0].into(), &[1.0, 0.5].into());
     assert_eq!(contradictory, Err(EmptyRange { input: 1 }));
 }
 
-/// At the end of iterations with a weak motor, the gradient of the costs is zero where the torque is within its
-/// limits, and presses it against the limit elsewhere (conditions of Karush, Kuhn and Tucker).
+/// At the end of iterations with a weak motor, the gradient of the costs is zero where the torque is within
+/// its limits, and presses it against the limit elsewhere (conditions of Karush, Kuhn and Tucker).
 #[test]
 fn a_weak_motor_is_used_at_its_limits() {
     let m = Pendubot {};
@@ -409,7 +411,7 @@ fn a_weak_motor_is_used_at_its_limits() {
             at_limit += usize::from(is_held);
             violation = violation.max(if is_held { (slope * u[0].signum()).max(0.0) } else { slope.abs() });
             adjoint = (by_q, by_v);
-            let limits = Limits::around(u, &-reach, &reach).expect("they are consistent");
+            let limits = InputLimits::around(u, &-reach, &reach).expect("they are consistent");
             backward_within(&step, &cost, regularisation, &limits, &mut policies[k], &mut to_go)
                 .expect("it is convex");
         }

@@ -83,7 +83,7 @@ macro_rules! each_function {
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<$scalar, NV, NU>>;
             carry(q: NQ, dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             contact_start(q: NQ, parts: truth) -> Result<$crate::nalgebra::SVector<$scalar, NQ>, $crate::ConstraintError>;
-            contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<$scalar, NQ, NV>, $crate::ConstraintError>;
+            contact_step(start: state, end: state, given: assumed, h: scalar) -> Result<$crate::contact::Touched<$scalar, NQ, NV>, $crate::ConstraintError>;
         }
     };
 }
@@ -118,6 +118,7 @@ macro_rules! write_functions {
 macro_rules! kind {
     ($scalar:ty, scalar) => { $scalar };
     ($scalar:ty, truth) => { bool };
+    ($scalar:ty, assumed) => { $crate::contact::Assumed<'_, $scalar, NV> };
     ($scalar:ty, square) => { &mut $crate::nalgebra::SMatrix<$scalar, NV, NV> };
     ($scalar:ty, state) => { (&$crate::nalgebra::SVector<$scalar, NQ>, &$crate::nalgebra::SVector<$scalar, NV>) };
     ($scalar:ty, $n:ident) => { &$crate::nalgebra::SVector<$scalar, $n> };

@@ -71,7 +71,7 @@ use nalgebra::{SMatrix, SVector};
 
 mod limits;
 
-pub use limits::{EmptyRange, Limits};
+pub use limits::{EmptyRange, InputLimits};
 
 /// Second-order model of the costs about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) ·
 /// Hessian (δq, δv, δu)`. The unit of the costs is the user's choice. Displacements of ball and free joints
@@ -332,11 +332,11 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
 }
 
 /// Computes [`backward_into`] for inputs with limits: the change of the inputs minimises the costs to second
-/// order within `limits` ([`Limits::around`]). Inputs at a limit have no feedback gains. The search begins at
-/// `policy.change`, for example that of the previous iteration, or zero. The inputs that the policy returns for
-/// other states must be clamped ([`Limits::clamp`]). The costs-to-go do not contain this clamping: if a line
-/// search fails, more regularisation reduces the gains. Source: Tassa, Mansard and Todorov, *Control-limited
-/// differential dynamic programming* (2014).
+/// order within `limits` ([`InputLimits::around`]). Inputs at a limit have no feedback gains. The search
+/// begins at `policy.change`, for example that of the previous iteration, or zero. The inputs that the policy
+/// returns for other states must be clamped ([`InputLimits::clamp`]). The costs-to-go do not contain this
+/// clamping: if a line search fails, more regularisation reduces the gains. Source: Tassa, Mansard and
+/// Todorov, *Control-limited differential dynamic programming* (2014).
 ///
 /// # Errors
 ///
@@ -345,7 +345,7 @@ pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usiz
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
     regularisation: T,
-    limits: &Limits<T, NU>,
+    limits: &InputLimits<T, NU>,
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {

@@ -288,8 +288,9 @@ struct Groove {
     right: Contact,
 }
 
-/// A tilted log falls into the groove and comes to rest, parallel to the others, with the centres of three equal
-/// circles at the corners of an equilateral triangle. Logs overlap by less than a thousandth of their radius.
+/// A tilted log falls into the groove and comes to rest, parallel to the others, with the centres of three
+/// equal circles at the corners of an equilateral triangle. Logs overlap by less than a thousandth of their
+/// radius.
 #[test]
 fn a_log_lies_in_a_groove() {
     let m = Groove {};

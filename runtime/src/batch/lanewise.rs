@@ -2,7 +2,7 @@
 
 use super::{Batch, Column};
 use crate::blocks::zeros;
-use crate::contact::Touched;
+use crate::contact::{Assumed, Impulses, Touched};
 use crate::forward::constants;
 use crate::integrate::{Features, Hooks};
 use crate::lanes::{lane, lane_by_lane, set_lane};
@@ -187,12 +187,19 @@ where
         t: Lanes<M::Scalar, L>,
         start: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
         end: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
-        given: &Column<M::Scalar, L, NV>,
+        (given, impulses): Assumed<'_, Lanes<M::Scalar, L>, NV>,
         h: Lanes<M::Scalar, L>,
     ) -> Result<Touched<Lanes<M::Scalar, L>, NQ, NV>, ConstraintError> {
         let results: [_; L] = core::array::from_fn(|k| {
             let [(start, v), (q, free)] = [start, end].map(|(q, v)| (lane(q, k), lane(v, k)));
-            self.mechanism.contact_step(t.0[k], (&start, &v), (&q, &free), &lane(given, k), h.0[k])
+            let impulses = impulses.map(|list| lane(list, k));
+            self.mechanism.contact_step(
+                t.0[k],
+                (&start, &v),
+                (&q, &free),
+                (&lane(given, k), &impulses),
+                h.0[k],
+            )
         });
         if let Some(Err(error)) = results.first()
             && results.iter().all(Result::is_err)
@@ -204,7 +211,8 @@ where
         let result = |k: usize| results[k].unwrap_or(lost);
         let [v, held] = [lane_by_lane(|k| result(k).v), lane_by_lane(|k| result(k).held)];
         let violation = Lanes(core::array::from_fn(|k| result(k).violation));
-        Ok(Touched { q: lane_by_lane(|k| result(k).q), v, held, violation })
+        let impulses = Impulses::from_lists(|i| lane_by_lane(|k| result(k).impulses.list(i)));
+        Ok(Touched { q: lane_by_lane(|k| result(k).q), v, held, impulses, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

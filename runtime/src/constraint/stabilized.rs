@@ -2,7 +2,7 @@
 
 use super::differentiable::{column, each_column, multipliers};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
-use crate::contact::Touched;
+use crate::contact::{Assumed, Touched};
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
@@ -256,7 +256,7 @@ where
         t: M::Scalar,
         start: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
         end: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
-        given: &SVector<M::Scalar, NV>,
+        given: Assumed<'_, M::Scalar, NV>,
         h: M::Scalar,
     ) -> Result<Touched<M::Scalar, NQ, NV>, ConstraintError> {
         self.mechanism.contact_step(t, start, end, given, h)

@@ -2,7 +2,7 @@
 
 use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives, derivatives_into};
 use super::held::{Held, held};
-use super::{Contacts, Touch, Touched};
+use super::{Assumed, Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, Derivatives, unknown};
 use crate::forward::{constants, each_function};
@@ -278,7 +278,7 @@ where
         _t: T,
         _start: (&SVector<T, NQ>, &SVector<T, NV>),
         (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
-        given: &SVector<T, NV>,
+        (given, _): Assumed<'_, T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
         Ok(Touched::free(*q, free + given))

@@ -8,6 +8,7 @@ use crate::private::{constant, epsilon};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
+mod basis;
 mod convex;
 mod islands;
 mod linear;
@@ -17,6 +18,7 @@ mod search;
 mod transport;
 mod trial;
 
+pub(super) use basis::{Basis, dot};
 pub(super) use linear::Equations;
 use trial::{Mode, Trial};
 
@@ -27,6 +29,8 @@ type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
 
 /// Maximum length of a displacement that closes gaps, relative to the largest gap or penetration.
 const FARTHEST: f64 = 8.0;
+/// Number of rows above which the restitution that the energy allows is found less exactly.
+const LARGE: usize = 18;
 /// Rounding errors of contact velocities that a solution may leave in the equations.
 const ROUNDINGS: f64 = 64.0;
 
@@ -59,6 +63,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     free: List<T, NR>,
     /// `W`.
     weights: Square<T, NR>,
+    /// `B` of `W = B Bᵀ`, where it is known.
+    pub(super) basis: Basis<T, NR>,
     /// Smallest normal velocity.
     least: Total<T, NK>,
     /// Part of `base` that is an impulse of restitution; it bounds friction as well.
@@ -82,8 +88,9 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// No contacts.
-    pub(super) fn none() -> Self {
+    /// Returns a problem without contacts. The problem of a relaxed step accepts impulses that violate the
+    /// contact conditions if it finds no others.
+    pub(super) fn empty(is_relaxed: bool) -> Self {
         let none = Rows { first: 0, count: 0 };
         Self {
             contacts: Total::repeat((0, none)),
@@ -98,6 +105,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             base: Total::repeat(T::zero()),
             free: Total::repeat(T::zero()),
             weights: Total::repeat(Total::repeat(T::zero())),
+            basis: Basis::none(),
             least: Total::repeat(T::zero()),
             floor: Total::repeat(T::zero()),
             friction: Total::repeat(T::zero()),
@@ -105,7 +113,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             step: Total::repeat(T::zero()),
             velocities: usize::MAX,
             scale: T::one(),
-            is_relaxed: false,
+            is_relaxed,
             violation: T::zero(),
             closest: Total::repeat(T::zero()),
         }
@@ -118,7 +126,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         closed: &[bool; NK],
         free: &SVector<T, NR>,
     ) -> Self {
-        let mut problem = Self::none();
+        let mut problem = Self::empty(false);
         problem.select(layout, laws, closed, free);
         problem
     }
@@ -196,12 +204,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         found.or_else(|contact| if self.is_relaxed { Ok(self.closest) } else { Err(contact) })
     }
 
-    /// Returns an empty problem of a relaxed step, which accepts impulses that violate the contact conditions
-    /// if it finds no others.
-    pub(super) fn of_step() -> Self {
-        Self { is_relaxed: true, ..Self::none() }
-    }
-
     /// Returns the largest violation of the contact conditions by the impulses found last, as a contact
     /// velocity.
     pub(super) fn violation(&self) -> T {
@@ -211,7 +213,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the number of bisections for the restitution that the energy allows: fewer in large problems,
     /// which bounds the duration of a step.
     pub(super) fn halvings(&self) -> usize {
-        if self.size > newton::LARGE { 5 } else { 12 }
+        if self.size > LARGE { 5 } else { 12 }
     }
 
     /// Whether surfaces approach each other without impulses.
@@ -263,6 +265,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Adds changes by impulses to contact velocities.
     fn added(&self, mut rates: List<T, NR>, impulses: &List<T, NR>) -> List<T, NR> {
+        if self.basis.is_exact() {
+            let changes = self.basis.rates(&self.basis.velocity(impulses));
+            rates.iter_mut().zip(changes.iter()).for_each(|(rate, change)| *rate += *change);
+            return rates;
+        }
         for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
             for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
                 *rate += *weight * *impulse;
@@ -390,7 +397,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // Contacts stay closed if their normal velocity is zero to rounding, whether or not they have an
         // impulse.
         let rest = self.rounding(impulses).max(worst.0) * constant(ROUNDINGS);
-        let (mut kept, mut stay) = (Self::none(), Total::<_, NK>::repeat(false));
+        let (mut kept, mut stay) = (Self::empty(true), Total::<_, NK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::enough(near);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
@@ -429,6 +436,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             normals[c] = kept.rows[c].first;
             kept.rows[c].first = c;
         }
+        kept.basis.select(&self.basis, normals.get(..kept.count).unwrap_or_default());
         // Longest displacement at a contact.
         let farthest = |pushes: &List<T, NR>| {
             let along = |row: &List<T, NR>| {
@@ -457,7 +465,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let left = kept.rates(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = kept.with(left);
-            let more = rest.solve().ok()?;
+            let found = rest.solve();
+            let more = rest.relaxed(found).ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
             let way = farthest(&pushes);
             if way > most {

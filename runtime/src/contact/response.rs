@@ -45,8 +45,8 @@ where
     Responses { velocities, rates }
 }
 
-/// The factor `L` of `M = L Lᵀ` (Cholesky), whose rows begin at their first entry that is not zero: bodies that
-/// no joint connects have blocks of their own.
+/// The factor `L` of `M = L Lᵀ` (Cholesky), whose rows begin at their first entry that is not zero: bodies
+/// that no joint connects have blocks of their own.
 pub(super) struct Factor<T, const N: usize> {
     /// Rows, with the reciprocals of the diagonal.
     rows: [[T; N]; N],
@@ -83,13 +83,24 @@ impl<T: Real, const N: usize> Factor<T, N> {
         Some(Self { rows: m, starts })
     }
 
-    /// `x` of `L Lᵀ x = p`.
-    pub(super) fn solve(&self, mut x: [T; N]) -> [T; N] {
+    /// Returns the solution `x` of `L Lᵀ x = p`.
+    pub(super) fn solve(&self, p: [T; N]) -> [T; N] {
+        self.solve_upper(self.solve_lower(p))
+    }
+
+    /// Returns the solution `y` of `L y = p`.
+    pub(super) fn solve_lower(&self, mut x: [T; N]) -> [T; N] {
         let Self { rows, starts } = self;
         let start = first(&x);
         for i in start..N {
             x[i] = (starts[i].max(start)..i).fold(x[i], |sum, k| sum - rows[i][k] * x[k]) * rows[i][i];
         }
+        x
+    }
+
+    /// Returns the solution `x` of `Lᵀ x = y`.
+    pub(super) fn solve_upper(&self, mut x: [T; N]) -> [T; N] {
+        let Self { rows, starts } = self;
         for i in (0..N).rev() {
             if x[i] != T::zero() {
                 x[i] *= rows[i][i];

@@ -1,12 +1,12 @@
 //! Contacts that take part in a step, numbered among themselves.
 
 use super::layout::Layout;
-use super::problem::{entry, put};
+use super::problem::{Basis, dot, entry, put};
 use super::response::Factor;
 use super::total::Total;
 use super::{Contacts, Law, Responses, Restitution, Rows};
 use crate::Real;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Largest number of contact velocities of a mechanism with generated responses.
 pub(super) const FEW: usize = 36;
@@ -49,6 +49,11 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
     /// Returns the rows of the selected contacts.
     pub(super) fn layout(&self) -> Layout<CK> {
         self.layout
+    }
+
+    /// Returns the number of selected contacts.
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
     /// Returns a selected contact's index in the mechanism.
@@ -95,8 +100,9 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         all
     }
 
-    /// Returns the effects of impulses at the selected contacts.
-    pub(super) fn responses<
+    /// Computes the effects of impulses at the selected contacts, and `B` of `W = B Bᵀ` if it is a
+    /// by-product.
+    pub(super) fn respond<
         M,
         T,
         const NQ: usize,
@@ -107,16 +113,15 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
     >(
         &self,
         mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
+        (t, q): (T, &SVector<T, NQ>),
         closed: &[bool; NK],
-    ) -> Responses<T, NV, CR>
-    where
+        responses: &mut Responses<T, NV, CR>,
+        basis: &mut Basis<T, CR>,
+    ) where
         T: Real,
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let mut found = Responses::zeros();
-        let Responses { velocities, rates } = &mut found;
+        let Responses { velocities, rates } = responses;
         if NR <= FEW {
             let all = mechanism.contact_responses(t, q, closed);
             for (j, (velocities, rates)) in
@@ -134,14 +139,12 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
                     });
                 }
             }
-            return found;
+            return;
         }
         let jacobian = mechanism.contact_jacobian(t, q);
         let features = mechanism.features();
         let is_plain = !features.constrained && !features.feedback;
         let factor = if is_plain { Factor::factorise(mechanism.mass_matrix(t, q)) } else { None };
-        let still = SVector::zeros();
-        let none = if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &still) } else { still };
         // Rows of the Jacobian.
         let mut own = [[T::zero(); NV]; CR];
         for (own, i) in own.iter_mut().zip(self.rows.iter()).take(self.size) {
@@ -149,33 +152,55 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
                 *entry = column.get(*i).copied().unwrap_or(T::zero());
             }
         }
-        for (velocity, own) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
-            *velocity = match &factor {
-                Some(factor) => factor.solve(*own),
-                None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(*own)) - none).data.0[0],
-            };
+        if let Some(factor) = factor {
+            // Rows of `B = G L⁻ᵀ`.
+            own.iter_mut().take(self.size).for_each(|row| *row = factor.solve_lower(*row));
+            for (velocity, row) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
+                *velocity = factor.solve_upper(*row);
+            }
+            self.fill_products(&own, &own, rates);
+            basis.set(own.iter().take(self.size));
+        } else {
+            let still = SVector::zeros();
+            let none = mechanism.impulse(t, q, &still, T::zero(), &still);
+            for (velocity, own) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
+                *velocity =
+                    (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(*own)) - none).data.0[0];
+            }
+            self.fill_products(&own, &velocities.data.0, rates);
         }
+    }
+
+    /// Writes the symmetric matrix of the scalar products of rows on the left and on the right; entries of
+    /// rows without common columns stay as they are.
+    fn fill_products<T: Real, const NV: usize>(
+        &self,
+        left: &[[T; NV]; CR],
+        right: &[[T; NV]; CR],
+        products: &mut SMatrix<T, CR, CR>,
+    ) {
+        let is_same = core::ptr::eq(left, right);
         // Entries of each row that are not zero.
         let mut reach = [(0, 0); CR];
-        for (reach, own) in reach.iter_mut().zip(&own).take(self.size) {
+        for (reach, row) in reach.iter_mut().zip(left).take(self.size) {
             let is_any = |entry: &T| *entry != T::zero();
-            let from = own.iter().position(is_any).unwrap_or(NV);
-            *reach = (from, own.iter().rposition(is_any).map_or(from, |last| last + 1));
+            let from = row.iter().position(is_any).unwrap_or(NV);
+            *reach = (from, row.iter().rposition(is_any).map_or(from, |last| last + 1));
         }
-        // Symmetric: half of it is computed.
-        for j in 0..self.size {
-            let Some(velocity) = velocities.data.0.get(j) else { continue };
-            for (i, (own, (from, to))) in own.iter().zip(&reach).enumerate().take(self.size).skip(j) {
-                let (own, velocity) = (own.get(*from..*to), velocity.get(*from..*to));
-                let terms = own.unwrap_or_default().iter().zip(velocity.unwrap_or_default());
-                let rate = terms.fold(T::zero(), |sum, (a, b)| sum + *a * *b);
+        for (j, (other, own)) in right.iter().zip(&reach).enumerate().take(self.size) {
+            let (first, last) = if is_same { *own } else { (0, NV) };
+            for (i, (row, (from, to))) in left.iter().zip(&reach).enumerate().take(self.size).skip(j) {
+                let (from, to) = (first.max(*from), last.min(*to));
+                // Contacts of different bodies have no common entries.
+                let (Some(row), Some(other)) = (row.get(from..to), other.get(from..to)) else { continue };
+                let product = dot(row, other);
                 for (row, column) in [(i, j), (j, i)] {
-                    if let Some(entry) = rates.data.0.get_mut(column).and_then(|column| column.get_mut(row)) {
-                        *entry = rate;
+                    let column = products.data.0.get_mut(column);
+                    if let Some(entry) = column.and_then(|column| column.get_mut(row)) {
+                        *entry = product;
                     }
                 }
             }
         }
-        found
     }
 }

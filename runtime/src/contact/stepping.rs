@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::problem::{Problem, entry, put};
 use super::selection::{FEW, Selection};
 use super::total::Total;
-use super::{Acted, Contacts, Law, Rows, Touched, act, near};
+use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, near};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, epsilon};
@@ -147,7 +147,7 @@ pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: u
     t: T,
     (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
-    given: &SVector<T, NV>,
+    (given, impulses): Assumed<'_, T, NV>,
     h: T,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
 where
@@ -164,6 +164,7 @@ where
             q: mechanism.integrate(q, &moved),
             v: mechanism.carry(t, q, &moved, after),
             held: *by_contacts,
+            impulses: Impulses::none(),
             violation: T::zero(),
         }
     };
@@ -175,7 +176,7 @@ where
     let (rows, _) = mechanism.contact_tables();
     let rows = rows.iter().zip(&closed).filter(|(_, is_closed)| **is_closed);
     let rows = rows.fold(0, |sum, (rows, _)| sum + rows.count);
-    let run = (came, (start, v), (q, free), given);
+    let run = (came, (start, v), (q, free), (given, impulses));
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
     if const { NR > SMALL } && rows <= SMALL {
         act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, t, run, &closed, led)
@@ -193,7 +194,7 @@ type Run<'a, T, const NQ: usize, const NV: usize, const NR: usize> = (
     Came<'a, T, NQ, NV, NR>,
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    &'a SVector<T, NV>,
+    Assumed<'a, T, NV>,
 );
 
 /// Applies the impulses of closed contacts at the end of a step, in arrays for up to `CK` contacts with `CR`
@@ -212,7 +213,7 @@ fn act_in_step<
 >(
     mechanism: &M,
     t: T,
-    (came, (start, v), (q, free), given): Run<'_, T, NQ, NV, NR>,
+    (came, (start, v), (q, free), (given, recorded)): Run<'_, T, NQ, NV, NR>,
     closed: &[bool; NK],
     led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
@@ -222,13 +223,16 @@ where
 {
     let (h, still) = (came.h, SVector::<T, NV>::zeros());
     let selection = Selection::<CK, CR>::select(Layout::of(mechanism), closed);
-    let mut acted = Acted::nothing(selection, Problem::of_step());
+    let mut acted = Acted::nothing(selection, true);
     let before = || came.rates(mechanism, t, q);
     let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
     let is_moving = moves(near::<T>() * constant(10.0));
-    let after = act(mechanism, t, (q, free), closed, (before, Some((given, is_moving))), &mut acted)?.v;
+    let after =
+        act(mechanism, t, (q, free), closed, (before, Some(((given, recorded), is_moving))), &mut acted)?.v;
     if h == T::zero() {
-        return Ok(Touched { q: *q, v: after, held: after - free, violation: acted.problem.violation() });
+        let (held, violation) = (after - free, acted.problem.violation());
+        let impulses = Impulses::record(&selection, &acted.problem.spread(&acted.impulses));
+        return Ok(Touched { q: *q, v: after, held, impulses, violation });
     }
     let Acted { problem, impulses, free: corrected, responses: Some(responses), .. } = &mut acted else {
         return Ok(led(&after, &still));
@@ -255,6 +259,7 @@ where
         }
     }
     touched.violation = problem.violation();
+    touched.impulses = Impulses::record(&selection, &problem.spread(impulses));
     if !is_moving && !moves(near::<T>() * constant(1e-3)) {
         let states = ((start, v), q, &touched, &after);
         let creep = creep_reversal(mechanism, t, states, h, (problem, &selection));

@@ -2,7 +2,7 @@
 
 use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
-use crate::contact::Touched;
+use crate::contact::{Assumed, Touched};
 use crate::derivatives::ByMotion;
 use crate::integrate::{Features, Hooks};
 use crate::private::put_block;
@@ -320,15 +320,17 @@ where
         t: M::Scalar,
         (q, v): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NE>),
         (end, free): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NE>),
-        given: &SVector<M::Scalar, NE>,
+        (given, impulses): Assumed<'_, M::Scalar, NE>,
         h: M::Scalar,
     ) -> Result<Touched<M::Scalar, NQ, NE>, ConstraintError> {
         let ((m, v), (free, x)) = (self.at(v), apart::<_, NV, NX, NE>(free));
         let (given, added) = apart::<_, NV, NX, NE>(given);
-        let touched = m.contact_step(t, (q, &v), (end, &free), &given, h)?;
-        let held = together(&touched.held, &SVector::<_, NX>::zeros());
+        let impulses = impulses.map(|list| apart::<_, NV, NX, NE>(list).0);
+        let touched = m.contact_step(t, (q, &v), (end, &free), (&given, &impulses), h)?;
+        let padded = |list: &SVector<_, NV>| together(list, &SVector::<_, NX>::zeros());
+        let (held, impulses) = (padded(&touched.held), touched.impulses.map(padded));
         let Touched { q, v, violation, .. } = touched;
-        Ok(Touched { q, v: together(&v, &(x + added)), held, violation })
+        Ok(Touched { q, v: together(&v, &(x + added)), held, impulses, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

@@ -1,7 +1,7 @@
 //! Interface between mechanisms and integration methods, which programs that simulate do not need.
 
 use crate::constraint::{ConstraintError, Projected};
-use crate::contact::Touched;
+use crate::contact::{Assumed, Touched};
 use crate::forward::{constants, each_function};
 use crate::{Mechanism, Real};
 use nalgebra::SVector;
@@ -163,7 +163,8 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
 
     /// Applies the contact impulses of a step of `h` seconds ([`contact::solve`](crate::contact::solve)). The
     /// step starts at the configuration and velocity `start`; without contacts it ends at the configuration
-    /// `q` with the velocity `free`, and during it contacts were assumed to add `given` to the velocity.
+    /// `q` with the velocity `free`, and during it contacts were assumed to add the first
+    /// entry of `given` to the velocity.
     ///
     /// # Errors
     ///
@@ -173,7 +174,7 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
         _t: T,
         _start: (&SVector<T, NQ>, &SVector<T, NV>),
         (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
-        given: &SVector<T, NV>,
+        (given, _): Assumed<'_, T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
         Ok(Touched::free(*q, free + given))

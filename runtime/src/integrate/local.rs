@@ -4,7 +4,7 @@ use super::event_driven::Section;
 use super::{Dynamics, Error, State, Step};
 use crate::Real;
 use crate::constraint::{ConstraintError, Projected};
-use crate::contact::Touched;
+use crate::contact::{Assumed, Touched};
 use nalgebra::{SMatrix, SVector};
 
 /// System with time counted from `origin`. Times that single precision resolves within a step are then
@@ -72,7 +72,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         t: T,
         start: (&SVector<T, NQ>, &SVector<T, NV>),
         end: (&SVector<T, NQ>, &SVector<T, NV>),
-        given: &SVector<T, NV>,
+        given: Assumed<'_, T, NV>,
         h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
         self.system.contact_step(self.origin + t, start, end, given, h)

@@ -4,7 +4,7 @@ use super::event_driven::{Following, Section};
 use super::local::Local;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
-use crate::contact::Touched;
+use crate::contact::{Assumed, Touched};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -184,7 +184,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// Applies the contact impulses of a step of `h` seconds. The step starts at the configuration and
     /// velocity `start`; without contacts it ends at the configuration and velocity `end`, and during it
-    /// contacts were assumed to add `given` to the velocity.
+    /// contacts were assumed to add the first entry of `given` to the velocity.
     ///
     /// # Errors
     ///
@@ -194,7 +194,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         t: T,
         start: (&SVector<T, NQ>, &SVector<T, NV>),
         end: (&SVector<T, NQ>, &SVector<T, NV>),
-        given: &SVector<T, NV>,
+        given: Assumed<'_, T, NV>,
         h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError>;
 
@@ -425,7 +425,7 @@ where
         t: T,
         start: (&SVector<T, NQ>, &SVector<T, NV>),
         end: (&SVector<T, NQ>, &SVector<T, NV>),
-        given: &SVector<T, NV>,
+        given: Assumed<'_, T, NV>,
         h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
         self.mechanism.contact_step(t, start, end, given, h)

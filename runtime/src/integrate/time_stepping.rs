@@ -4,7 +4,7 @@ use super::rk4::through;
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
 use crate::constraint::ConstraintError;
-use crate::contact::Touched;
+use crate::contact::{Impulses, Touched};
 use crate::private::{constant, to_f64};
 use nalgebra::SVector;
 
@@ -42,7 +42,7 @@ use nalgebra::SVector;
 /// without friction.
 ///
 /// `Λ₀` are the impulses of the previous step if these have hardly changed; otherwise they are computed
-/// again.
+/// again. The search for impulses begins at those of the previous step.
 ///
 /// If no impulses satisfy the contact conditions, or none are found in a bounded number of iterations, a step
 /// takes those that violate the conditions least, and reports the violation, m/s
@@ -154,6 +154,8 @@ impl<T: Real> TimeStepping<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct TouchMemory<T, const NV: usize> {
     rate: SVector<T, NV>,
+    /// Impulses of the contacts in the last step.
+    impulses: Impulses<T, NV>,
     /// Whether the contribution is about that of the previous step.
     steady: bool,
     /// Largest violation of the contact conditions that is not reported yet.
@@ -167,16 +169,19 @@ const STEADY: f64 = 0.125;
 
 impl<T: Real, const NV: usize> TouchMemory<T, NV> {
     fn new(rate: SVector<T, NV>) -> Self {
-        Self { rate, steady: false, violation: T::zero(), acceleration: None }
+        let impulses = Impulses::none();
+        Self { rate, impulses, steady: false, violation: T::zero(), acceleration: None }
     }
 
-    /// Records the contribution of the contacts in a step, and its violation of the contact conditions.
-    fn note(&mut self, rate: SVector<T, NV>, violation: T) {
+    /// Records the contribution of the contacts in a step, their impulses, and the violation of the contact
+    /// conditions.
+    fn note(&mut self, rate: SVector<T, NV>, impulses: Impulses<T, NV>, violation: T) {
         let least = |size: T, x: &T| size.max(x.abs());
         let size = rate.iter().fold(T::zero(), least);
         let change = (rate - self.rate).iter().fold(T::zero(), least);
         *self = Self {
             rate,
+            impulses,
             steady: change <= size * constant(STEADY),
             violation: self.violation.max(violation),
             acceleration: self.acceleration,
@@ -223,9 +228,9 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         };
         let earlier = memory.acceleration.take().filter(|_| memory.steady);
         let before = earlier.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
-        let rate = match memory.steady {
-            true => memory.rate,
-            false => holding(system, start, &before, h).map_err(reported)?,
+        let (rate, impulses) = match memory.steady {
+            true => (memory.rate, memory.impulses),
+            false => holding(system, start, &before, &memory.impulses, h).map_err(reported)?,
         };
         let (free, given) = match self.stages {
             Stages::RungeKutta => guided(system, start, (&before, &rate), h, t),
@@ -237,9 +242,10 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         };
         let free = settled(system, free, start.t)?;
         let v = free.v - given;
-        let Touched { q, v, held, violation } =
-            system.contact_step(t, (&start.q, &start.v), (&free.q, &v), &given, h).map_err(reported)?;
-        memory.note(held / h, violation);
+        let Touched { q, v, held, impulses, violation } = system
+            .contact_step(t, (&start.q, &start.v), (&free.q, &v), (&given, &impulses), h)
+            .map_err(reported)?;
+        memory.note(held / h, impulses, violation);
         let end = State { q, v, ..free };
         let end = if end == free { end } else { settled(system, end, start.t)? };
         Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
@@ -247,18 +253,21 @@ impl<T: Real> Method<T> for TimeStepping<T> {
 }
 
 /// Returns the contribution to the velocity, per second, of the impulses that enforce the contacts closed at
-/// the start of a step of `h` seconds; `before` are the accelerations without these impulses.
+/// the start of a step of `h` seconds; `before` are the accelerations without these impulses, and the search
+/// begins at the impulses of the previous step.
 pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     before: &SVector<T, NV>,
+    impulses: &Impulses<T, NV>,
     h: T,
-) -> Result<SVector<T, NV>, ConstraintError> {
+) -> Result<(SVector<T, NV>, Impulses<T, NV>), ConstraintError> {
     let state = (&start.q, &start.v);
     let free = start.v + *before * h;
     // With zero duration the configuration does not change.
-    let held = system.contact_step(start.t, state, (&start.q, &free), &SVector::zeros(), T::zero())?;
-    Ok((held.v - free) / h)
+    let held =
+        system.contact_step(start.t, state, (&start.q, &free), (&SVector::zeros(), impulses), T::zero())?;
+    Ok(((held.v - free) / h, held.impulses))
 }
 
 /// Returns the end of a step of [`Rk4`](super::Rk4) with the accelerations `before` at its start, under

@@ -1,4 +1,4 @@
-//! Limits of inputs in the backward recursion.
+//! InputLimits of inputs in the backward recursion.
 
 use super::{Indefinite, Policy, Quadratic, Value};
 use crate::Real;
@@ -13,9 +13,9 @@ const HALVINGS: usize = 30;
 /// Part of the decrease of a linear model of the costs that a step must reach.
 const DECREASE: f64 = 0.1;
 
-/// Limits of the changes of the inputs at an instant of a trajectory.
+/// InputLimits of the changes of the inputs at an instant of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits<T, const NU: usize> {
+pub struct InputLimits<T, const NU: usize> {
     lower: SVector<T, NU>,
     upper: SVector<T, NU>,
 }
@@ -46,9 +46,9 @@ impl core::fmt::Display for EmptyRange {
 
 impl core::error::Error for EmptyRange {}
 
-impl<T: Real, const NU: usize> Limits<T, NU> {
-    /// Returns the limits of the changes of the inputs `u` that keep them between `lower` and `upper`. An input
-    /// without a limit has an infinite one.
+impl<T: Real, const NU: usize> InputLimits<T, NU> {
+    /// Returns the limits of the changes of the inputs `u` that keep them between `lower` and `upper`. An
+    /// input without a limit has an infinite one.
     ///
     /// # Errors
     ///
@@ -90,8 +90,8 @@ impl<T: Real, const NU: usize> Limits<T, NU> {
         free
     }
 
-    /// Returns the change within the limits that minimises `gradient · δu + ½ δu · hessian δu`, by a projected
-    /// Newton method from a start, and the inputs that are not at a limit.
+    /// Returns the change within the limits that minimises `gradient · δu + ½ δu · hessian δu`, by a
+    /// projected Newton method from a start, and the inputs that are not at a limit.
     fn minimise(
         &self,
         (gradient, hessian): (&SVector<T, NU>, &SMatrix<T, NU, NU>),
@@ -175,7 +175,7 @@ fn mask_columns<T: Real, const NV: usize, const NU: usize>(
 pub(super) fn minimised<T: Real, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     regularisation: T,
-    limits: &Limits<T, NU>,
+    limits: &InputLimits<T, NU>,
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {

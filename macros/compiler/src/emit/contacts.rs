@@ -163,13 +163,13 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         fn contact_start(&self, t: {scalar}, q: &{q}, parts: bool) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::contact::start(self, t, q, parts)
         }}
-        fn contact_step(&self, t: {scalar}, start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
+        fn contact_step(&self, t: {scalar}, start: (&{q}, &{v}), end: (&{q}, &{v}), given: ::linkwork::contact::Assumed<'_, {scalar}, {}>, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
             ::linkwork::contact::step(self, t, start, end, given, h)
         }}
         #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
-        carry(i, s), s.nq, s.nv, s.nq, s.nv, s.nu
+        carry(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
     );
 }
 

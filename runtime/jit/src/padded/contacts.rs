@@ -6,7 +6,7 @@ use crate::internal::Internal;
 use crate::names::{List, numbers};
 use crate::robot::{Robot, State};
 use linkwork::constraint::Projected;
-use linkwork::contact::{self, Law, Responses, Restitution, Rows, Touched, Visitor};
+use linkwork::contact::{self, Assumed, Law, Responses, Restitution, Rows, Touched, Visitor};
 use linkwork::integrate::{Features, Hooks};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{ByMotion, ConstraintError, Contacts, Mechanism};
@@ -137,7 +137,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         t: f64,
         start: (&Vector<NQ>, &Vector<NV>),
         end: (&Vector<NQ>, &Vector<NV>),
-        given: &Vector<NV>,
+        given: Assumed<'_, f64, NV>,
         h: f64,
     ) -> Result<Touched<f64, NQ, NV>, ConstraintError> {
         contact::step(self, t, start, end, given, h)

@@ -14,31 +14,31 @@
 //! before, that of the relaxation (Acary, Cadoux, Lemaréchal and Malick, *A formulation of the linear
 //! discrete Coulomb friction problem via convex optimization*, ZAMM 91, 2011): where both stay the same,
 //! Coulomb's law is satisfied. For every `s ≥ 0` the impulses take energy, so that a sequence that is cut off
-//! adds none. If the violation of Coulomb's law is small, problems contain `s = μ |uₜ|` itself: Newton's
-//! equations are then not symmetric, and convergence is quadratic.
+//! adds none. If the violation of Coulomb's law is small, Newton's method for the natural map continues from
+//! the impulses of a problem.
 
 use super::super::total::Total;
+use super::basis::{Combination, add, add_product, dot};
+use super::linear::{identify, square};
 use super::trial::Trial;
-use super::{List, Problem};
+use super::{List, Problem, Square};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
 /// Problems in a sequence.
 const PROBLEMS: usize = 16;
-/// Steps of Newton's method in all problems of a sequence.
+/// Iterations of Newton's method in all problems of a sequence.
 const STEPS: usize = 48;
-/// Steps of Newton's method in one problem.
+/// Iterations of Newton's method in one problem.
 const STEPS_OF_ONE: usize = 12;
-/// Halvings of a step where a problem is not convex.
-const HALVINGS: usize = 4;
 /// Evaluations of a line search.
 const SEARCHES: usize = 10;
 /// Regularisation of an impulse relative to its own diagonal entry of `W`: in the first problem, its factor
 /// from problem to problem, its smallest value if these converge, and if they do not.
 const REGULARISATIONS: [f64; 4] = [1e-2, 0.3, 1e-4, 1e-8];
-/// Violation of Coulomb's law, relative to the largest contact velocity, below which problems contain
-/// `s = μ |uₜ|` itself instead of its value from the previous problem.
-const SMOOTH: f64 = 1e-2;
+/// Violations of Coulomb's law, relative to the largest contact velocity, below which Newton's method for the
+/// natural map is tried, once for each.
+const NEAR: [f64; 2] = [2e-2, 1e-4];
 /// Violation that counts as zero, likewise, and violation at which a slow sequence ends.
 const ENOUGH: f64 = 1e-12;
 const GOOD: f64 = 1e-10;
@@ -157,83 +157,58 @@ impl<T: Real> Cone<T> {
     }
 }
 
-/// Returns a row of a matrix that is stored row by row.
-fn row<T>(matrix: &[T], width: usize, i: usize) -> &[T] {
-    matrix.get(i * width..(i + 1) * width).unwrap_or_default()
-}
-
-/// Returns a mutable row.
-fn row_mut<T>(matrix: &mut [T], width: usize, i: usize) -> &mut [T] {
-    matrix.get_mut(i * width..(i + 1) * width).unwrap_or_default()
-}
-
-fn dot<T: Real>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
-}
-
-fn add<T: Real>(to: &mut [T], factor: T, from: &[T]) {
-    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * *from);
-}
-
-/// Factorises a symmetric positive definite matrix in place, of which the lower half is read: `L` with the
-/// reciprocals of its diagonal.
-fn cholesky<T: Real>(matrix: &mut [T], size: usize) {
+/// Factorises a symmetric positive definite matrix of `size` rows in place, of which the lower half is read:
+/// `L` with the reciprocals of its diagonal.
+fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, size: usize) {
     for i in 0..size {
-        let (done, rest) = matrix.split_at_mut_checked(i * size).unwrap_or_default();
-        let Some(own) = rest.get_mut(..size) else { return };
-        for j in 0..i {
-            let above = row(done, size, j);
-            let sum = dot(own.get(..j).unwrap_or_default(), above.get(..j).unwrap_or_default());
-            let reciprocal = above.get(j).copied().unwrap_or(T::zero());
-            if let Some(entry) = own.get_mut(j) {
-                *entry = (*entry - sum) * reciprocal;
-            }
+        let (done, rest) = matrix.split_at_mut_checked(i).unwrap_or_default();
+        let Some(own) = rest.first_mut() else { return };
+        // Rows begin at their first entry that is not zero.
+        let first = own.iter().position(|entry| *entry != T::zero()).unwrap_or(i).min(i);
+        for (j, above) in done.iter().enumerate().skip(first) {
+            let sum = dot(own.get(first..j).unwrap_or_default(), above.get(first..j).unwrap_or_default());
+            own[j] = (own[j] - sum) * above[j];
         }
-        let square = own.iter().take(i).fold(T::zero(), |sum, entry| sum + *entry * *entry);
-        if let Some(entry) = own.get_mut(i) {
-            *entry = T::one() / (*entry - square).max(epsilon()).sqrt();
-        }
+        let square = own.iter().take(i).skip(first).fold(T::zero(), |sum, entry| sum + *entry * *entry);
+        own[i] = T::one() / (own[i] - square).max(epsilon()).sqrt();
     }
 }
 
 /// Solves for `x` with the factor of [`cholesky`].
-fn substitute<T: Real>(factor: &[T], size: usize, x: &mut [T]) {
-    for i in 0..size {
-        let own = row(factor, size, i);
-        let sum = dot(own.get(..i).unwrap_or_default(), x);
-        if let (Some(x), Some(reciprocal)) = (x.get_mut(i), own.get(i)) {
-            *x = (*x - sum) * *reciprocal;
-        }
+fn substitute<T: Real, const NR: usize>(factor: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
+    for (i, own) in factor.iter().enumerate().take(size) {
+        let sum = dot(own.get(..i).unwrap_or_default(), x.get(..i).unwrap_or_default());
+        x[i] = (x[i] - sum) * own[i];
     }
-    for i in (0..size).rev() {
-        let own = row(factor, size, i);
-        let Some(reciprocal) = own.get(i) else { continue };
-        let Some((last, rest)) = x.get_mut(..=i).and_then(<[T]>::split_last_mut) else { continue };
-        *last *= *reciprocal;
-        add(rest, -*last, own.get(..i).unwrap_or_default());
+    for (i, own) in factor.iter().enumerate().take(size).rev() {
+        x[i] *= own[i];
+        let value = x[i];
+        add(x.get_mut(..i).unwrap_or_default(), -value, own.get(..i).unwrap_or_default());
     }
 }
 
 /// A convex problem, and the state of its solution.
 struct Convex<'a, T, const NK: usize, const NR: usize> {
     problem: &'a Problem<T, NK, NR>,
-    /// Rows of `B`.
-    basis: &'a [T],
-    rank: usize,
     cones: Total<Cone<T>, NK>,
     count: usize,
     /// `R` and `Λ̄`.
     weights: List<T, NR>,
     center: List<T, NR>,
-    /// Whether `s` is the present slip, and not that of the problem before.
-    is_smooth: bool,
-    /// `w`, in as many entries as the rank.
     w: List<T, NR>,
     rates: List<T, NR>,
     impulses: List<T, NR>,
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
+impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
+    /// Returns the first problem of a sequence, which begins without impulses.
+    fn new(problem: &'a Problem<T, NK, NR>) -> Self {
+        let zeros = List::repeat(T::zero());
+        let (cones, count) = problem.cones();
+        let weights = problem.cone_weights(&cones, count);
+        Self { problem, cones, count, weights, center: zeros, w: zeros, rates: zeros, impulses: zeros }
+    }
+
     fn cones(&self) -> impl Iterator<Item = &Cone<T>> {
         self.cones.iter().take(self.count)
     }
@@ -241,8 +216,8 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
     /// Writes the impulses before their projection for contact velocities `rates`.
     fn predict(&self, cone: &Cone<T>, rates: &List<T, NR>, wanted: &mut List<T, NR>) {
         let prediction = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
-        let (n, raised) = (cone.normal, if self.is_smooth { cone.slip(rates) } else { cone.raised });
-        wanted[n] = prediction(n, rates[n] + raised - cone.least);
+        let n = cone.normal;
+        wanted[n] = prediction(n, rates[n] + cone.raised - cone.least);
         for (_, part) in cone.parts() {
             (part.first..part.first + part.count).for_each(|i| wanted[i] = prediction(i, rates[i]));
         }
@@ -260,157 +235,96 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
 
     /// Begins at given impulses `Λ`: `Λ̄ = Λ` and `w = Bᵀ Λ`.
     fn begin(&mut self, impulses: &List<T, NR>) {
-        (self.center, self.w) = (*impulses, List::repeat(T::zero()));
-        for i in (0..self.problem.size).filter(|i| impulses[*i] != T::zero()) {
-            let w = self.w.get_mut(..self.rank).unwrap_or_default();
-            add(w, impulses[i], row(self.basis, self.rank, i));
-        }
+        (self.center, self.w) = (*impulses, self.problem.basis.velocity(impulses));
     }
 
-    /// Returns `B w`.
-    fn spread_basis(&self, w: &List<T, NR>) -> List<T, NR> {
-        let mut rates = List::repeat(T::zero());
-        for i in 0..self.problem.size {
-            rates[i] = dot(row(self.basis, self.rank, i), w.get(..self.rank).unwrap_or_default());
-        }
-        rates
+    /// Sets the increases of the normal rates to those for contact velocities `rates`.
+    fn raise(&mut self, rates: &List<T, NR>) {
+        (0..self.count).for_each(|k| self.cones[k].raised = self.cones[k].slip(rates));
     }
 
     /// Evaluates contact velocities and impulses at `w`.
     fn evaluate(&mut self) {
-        self.rates = self.spread_basis(&self.w);
+        self.rates = self.problem.basis.rates(&self.w);
         for i in 0..self.problem.size {
             self.rates[i] += self.problem.free[i];
         }
         self.impulses = self.impulses_at(&self.rates);
     }
 
-    /// Writes the derivative of the gradient by `w`: `1 + Bᵀ H B`.
-    fn curvature(&self, matrix: &mut [T]) {
-        let (rank, none) = (self.rank, T::zero());
-        matrix.iter_mut().take(rank * rank).for_each(|entry| *entry = none);
-        (0..rank).for_each(|i| {
-            if let Some(entry) = matrix.get_mut(i * rank + i) {
-                *entry = T::one();
-            }
-        });
-        let (mut wanted, zeros) = (List::repeat(none), List::<T, NR>::repeat(none));
-        let is_smooth = self.is_smooth;
-        let mut add_product = |left: &[T], right: &[T], factor: T| {
-            for (i, value) in left.iter().enumerate().filter(|(_, value)| **value != none) {
-                let width = if is_smooth { rank } else { i + 1 };
-                let own = matrix.get_mut(i * rank..i * rank + width).unwrap_or_default();
-                add(own, factor * *value, right);
-            }
-        };
+    /// Makes `matrix` the derivative of the gradient by `w`: `1 + Bᵀ H B`.
+    fn curvature(&self, matrix: &mut Square<T, NR>) {
+        let (basis, one) = (&self.problem.basis, T::one());
+        identify(matrix, basis.rank());
+        let mut wanted = List::repeat(T::zero());
         for cone in self.cones() {
             self.predict(cone, &self.rates, &mut wanted);
             let found = cone.project(&wanted, &self.weights);
             // Along the cone: the normal rate, and the rates of friction at its bound.
-            let mut along = zeros;
-            along.iter_mut().zip(row(self.basis, rank, cone.normal)).for_each(|(to, from)| *to = *from);
-            let mut slip = zeros;
+            let mut along = Combination::<T, NR>::zero();
+            along.add(one, basis.row(cone.normal));
             for (k, part) in cone.parts() {
                 let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else {
                     continue;
                 };
                 let rows = part.first..part.first + part.count;
                 let weight = self.weights[part.first];
-                if is_smooth && found.is_pressed {
-                    let speed = rows.clone().fold(none, |sum, i| sum + self.rates[i] * self.rates[i]).sqrt();
-                    let slip = slip.get_mut(..rank).unwrap_or_default();
-                    for i in rows.clone().filter(|_| speed > none) {
-                        add(slip, part.friction * self.rates[i] / speed, row(self.basis, rank, i));
-                    }
-                }
                 if !bounded {
-                    if found.is_pressed || cone.floor > none {
-                        rows.for_each(|i| {
-                            let own = row(self.basis, rank, i);
-                            add_product(own, own, T::one() / weight);
-                        });
+                    if found.is_pressed || cone.floor > T::zero() {
+                        rows.for_each(|i| add_product(matrix, one / weight, basis.row(i), basis.row(i)));
                     }
                     continue;
                 }
                 if found.is_pressed {
-                    let along = along.get_mut(..rank).unwrap_or_default();
-                    for i in rows.clone() {
-                        add(along, part.friction * wanted[i] / *size, row(self.basis, rank, i));
-                    }
+                    rows.for_each(|i| along.add(part.friction * wanted[i] / *size, basis.row(i)));
                 }
                 // Across the direction of friction.
                 let bound = part.friction * (found.normal + cone.floor);
-                if part.count == 2 && bound > none {
+                if part.count == 2 && bound > T::zero() {
                     let (x, y) = (wanted[part.first] / *size, wanted[part.first + 1] / *size);
-                    let mut across = zeros;
-                    let across = across.get_mut(..rank).unwrap_or_default();
-                    add(across, -y, row(self.basis, rank, part.first));
-                    add(across, x, row(self.basis, rank, part.first + 1));
-                    add_product(across, across, bound / (*size * weight));
+                    let mut across = Combination::<T, NR>::zero();
+                    across.add(-y, basis.row(part.first));
+                    across.add(x, basis.row(part.first + 1));
+                    add_product(matrix, bound / (*size * weight), across.row(), across.row());
                 }
             }
             if found.is_pressed {
-                let (along, slip) =
-                    (along.get(..rank).unwrap_or_default(), slip.get_mut(..rank).unwrap_or_default());
-                add(slip, T::one(), along);
-                add_product(along, slip, T::one() / found.along);
+                add_product(matrix, one / found.along, along.row(), along.row());
             }
         }
     }
 
     /// Returns the negative gradient, `Bᵀ Λ − w`.
     fn descent(&self) -> List<T, NR> {
-        let mut descent = List::repeat(T::zero());
-        (0..self.rank).for_each(|i| descent[i] = -self.w[i]);
-        for i in (0..self.problem.size).filter(|i| self.impulses[*i] != T::zero()) {
-            let descent = descent.get_mut(..self.rank).unwrap_or_default();
-            add(descent, self.impulses[i], row(self.basis, self.rank, i));
-        }
+        let mut descent = self.problem.basis.velocity(&self.impulses);
+        descent.iter_mut().zip(self.w.iter()).for_each(|(x, w)| *x -= *w);
         descent
     }
 
-    fn largest(&self, x: &List<T, NR>) -> T {
-        x.iter().take(self.rank).fold(T::zero(), |most, x| most.max(x.abs()))
-    }
-
-    /// Newton's method with at most this number of steps, until the gradient is below a part of `w`; returns
-    /// how many there were.
-    fn minimise(&mut self, matrix: &mut [T], most: usize, enough: T) -> usize {
-        let rank = self.rank;
+    /// Takes steps of Newton's method, at most this number, until the gradient is below a part of `w`;
+    /// returns their number.
+    fn minimise(&mut self, matrix: &mut Square<T, NR>, most: usize, enough: T) -> usize {
+        let (rank, size) = (self.problem.basis.rank(), self.problem.size);
         let little = epsilon::<T>().powf(constant(0.72));
+        let largest = |x: &List<T, NR>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
         for step in 0..most {
             let gradient = self.descent();
-            let (left, size) = (self.largest(&gradient), self.largest(&self.w));
-            if left <= size * little || (step > 0 && left <= size * enough) {
+            let (left, reach) = (largest(&gradient), largest(&self.w));
+            if left <= reach * little || (step > 0 && left <= reach * enough) {
                 return step;
             }
             let mut change = gradient;
             self.curvature(matrix);
-            if self.is_smooth {
-                eliminate(matrix, rank, change.get_mut(..rank).unwrap_or_default());
-                let from = self.w;
-                let mut part = T::one();
-                for _ in 0..HALVINGS {
-                    self.w = from;
-                    (0..rank).for_each(|i| self.w[i] += change[i] * part);
-                    self.evaluate();
-                    if self.largest(&self.descent()) < left {
-                        break;
-                    }
-                    part *= constant(0.5);
-                }
-                continue;
-            }
             cholesky(matrix, rank);
-            substitute(matrix, rank, change.get_mut(..rank).unwrap_or_default());
-            let rates = self.spread_basis(&change);
+            substitute(matrix, rank, &mut change);
+            let rates = self.problem.basis.rates(&change);
             let slope = |part: T| {
                 let mut at = self.rates;
-                (0..self.problem.size).for_each(|i| at[i] += rates[i] * part);
+                (0..size).for_each(|i| at[i] += rates[i] * part);
                 let impulses = self.impulses_at(&at);
                 let kinetic =
                     (0..rank).fold(T::zero(), |sum, i| sum + (self.w[i] + change[i] * part) * change[i]);
-                (0..self.problem.size).fold(kinetic, |sum, i| sum - impulses[i] * rates[i])
+                (0..size).fold(kinetic, |sum, i| sum - impulses[i] * rates[i])
             };
             let start = -(0..rank).fold(T::zero(), |sum, i| sum + gradient[i] * change[i]);
             let part = root(start, slope);
@@ -418,53 +332,6 @@ impl<T: Real, const NK: usize, const NR: usize> Convex<'_, T, NK, NR> {
             self.evaluate();
         }
         most
-    }
-}
-
-/// Solves a system of equations in place by Gaussian elimination with pivots of the columns.
-fn eliminate<T: Real>(matrix: &mut [T], size: usize, x: &mut [T]) {
-    for column in 0..size {
-        let entry = |matrix: &[T], i: usize| row(matrix, size, i).get(column).copied().unwrap_or(T::zero());
-        let mut best = column;
-        for i in column + 1..size {
-            if entry(matrix, i).abs() > entry(matrix, best).abs() {
-                best = i;
-            }
-        }
-        if best != column {
-            let (above, below) = matrix.split_at_mut_checked(best * size).unwrap_or_default();
-            let other = below.get_mut(..size).unwrap_or_default();
-            row_mut(above, size, column).iter_mut().zip(other).for_each(|(a, b)| core::mem::swap(a, b));
-            if let Some((above, below)) = x.split_at_mut_checked(best)
-                && let (Some(a), Some(b)) = (above.get_mut(column), below.first_mut())
-            {
-                core::mem::swap(a, b);
-            }
-        }
-        let (done, rest) = matrix.split_at_mut_checked((column + 1) * size).unwrap_or_default();
-        let own = row(done, size, column).get(column..).unwrap_or_default();
-        let (Some(pivot), Some(value)) = (own.first(), x.get(column).copied()) else { return };
-        if *pivot == T::zero() {
-            continue;
-        }
-        for k in 0..size - column - 1 {
-            let below = row_mut(rest, size, k).get_mut(column..).unwrap_or_default();
-            let factor = below.first().map_or(T::zero(), |entry| *entry / *pivot);
-            if factor != T::zero() {
-                add(below, -factor, own);
-                if let Some(x) = x.get_mut(column + 1 + k) {
-                    *x -= factor * value;
-                }
-            }
-        }
-    }
-    for i in (0..size).rev() {
-        let own = row(matrix, size, i);
-        let (known, rest) = (x.get(i + 1..).unwrap_or_default(), own.get(i + 1..).unwrap_or_default());
-        let sum = dot(rest, known);
-        if let (Some(x), Some(pivot)) = (x.get_mut(i), own.get(i)) {
-            *x = if *pivot == T::zero() { T::zero() } else { (*x - sum) / *pivot };
-        }
     }
 }
 
@@ -495,61 +362,8 @@ fn root<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Writes `B` with `W = B Bᵀ` column by column (Cholesky with pivots), and returns its rank.
-    fn basis(&self, basis: &mut [T]) -> usize {
-        let size = self.size;
-        // Columns first, one after another.
-        let mut left = List::<T, NR>::repeat(T::zero());
-        (0..size).for_each(|i| left[i] = self.weights[i][i]);
-        let reach = left.iter().take(size).fold(T::zero(), |most, x| most.max(*x));
-        let mut rank = 0;
-        while rank < size {
-            let mut best = 0;
-            (0..size).for_each(|i| {
-                if left[i] > left[best] {
-                    best = i
-                }
-            });
-            let pivot = left[best];
-            let is_done = pivot <= reach * epsilon::<T>() * constant(64.0);
-            if is_done {
-                break;
-            }
-            let reciprocal = T::one() / pivot.sqrt();
-            let (done, rest) = basis.split_at_mut_checked(rank * size).unwrap_or_default();
-            let column = rest.get_mut(..size).unwrap_or_default();
-            column.iter_mut().zip(self.weights[best].iter()).for_each(|(to, from)| *to = *from);
-            for k in 0..rank {
-                let before = row(done, size, k);
-                let factor = before.get(best).copied().unwrap_or(T::zero());
-                if factor != T::zero() {
-                    add(column, -factor, before);
-                }
-            }
-            for (i, entry) in column.iter_mut().enumerate() {
-                *entry *= reciprocal;
-                left[i] -= *entry * *entry;
-            }
-            left[best] = -T::one();
-            rank += 1;
-        }
-        rank
-    }
-
-    /// Returns the best impulses of a sequence of convex problems that begins at given impulses.
-    #[inline(never)]
-    pub(super) fn by_convex_problems(&self, start: &List<T, NR>) -> Trial<T, NK, NR> {
-        let mut columns = [[T::zero(); NR]; NR];
-        let rank = self.basis(columns.as_flattened_mut());
-        let mut rows = [[T::zero(); NR]; NR];
-        let basis = rows.as_flattened_mut();
-        for i in 0..self.size {
-            for (j, entry) in row_mut(basis, rank, i).iter_mut().enumerate() {
-                *entry = columns.as_flattened().get(j * self.size + i).copied().unwrap_or(T::zero());
-            }
-        }
-        // Not needed any more.
-        let matrix = columns.as_flattened_mut();
+    /// Returns the friction cones, and their number.
+    fn cones(&self) -> (Total<Cone<T>, NK>, usize) {
         let none = TangentRows { first: 0, count: 0, friction: T::zero() };
         let cone =
             Cone { normal: 0, parts: [none; PARTS], floor: T::zero(), least: T::zero(), raised: T::zero() };
@@ -565,18 +379,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     friction: self.friction[other],
                 };
             }
-            cones[count] = Cone {
-                normal: self.rows[k].first,
-                parts,
-                floor: self.floor[k],
-                least: self.least[k],
-                ..cone
-            };
+            let (normal, floor, least) = (self.rows[k].first, self.floor[k], self.least[k]);
+            cones[count] = Cone { normal, parts, floor, least, ..cone };
             count += 1;
         }
+        (cones, count)
+    }
+
+    /// Returns the diagonal entry of `W` for each impulse, the largest one for all of a contact's friction.
+    fn cone_weights(&self, cones: &Total<Cone<T>, NK>, count: usize) -> List<T, NR> {
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
-        let mut weights = List::repeat(T::one());
         let least = reach * epsilon::<T>().sqrt() + epsilon();
+        let mut weights = List::repeat(T::one());
         for cone in cones.iter().take(count) {
             weights[cone.normal] = self.weights[cone.normal][cone.normal].max(least);
             for (_, part) in cone.parts() {
@@ -585,61 +399,55 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 rows.for_each(|i| weights[i] = most);
             }
         }
-        let zeros = List::repeat(T::zero());
-        let mut convex = Convex {
-            problem: self,
-            basis,
-            rank,
-            cones,
-            count,
-            weights,
-            center: zeros,
-            is_smooth: false,
-            w: zeros,
-            rates: zeros,
-            impulses: zeros,
-        };
-        convex.begin(start);
-        let raise = |convex: &mut Convex<'_, T, NK, NR>, rates: &List<T, NR>| {
-            (0..count).for_each(|k| convex.cones[k].raised = convex.cones[k].slip(rates));
-        };
+        weights
+    }
+
+    /// Returns the best impulses of a sequence of convex problems that begins at given impulses.
+    #[inline(never)]
+    pub(super) fn by_convex_problems(&self, start: &List<T, NR>) -> Trial<T, NK, NR> {
+        let mut convex = Convex::new(self);
+        let weights = convex.weights;
+        let mut matrix = square();
         let mut best = self.tried(*start);
+        convex.begin(start);
         if (0..self.size).any(|i| start[i] != T::zero()) {
-            raise(&mut convex, &best.rates);
+            convex.raise(&best.rates);
         }
         let speed = self.speed();
-        let (mut steps, mut left, mut may_be_smooth) = (0, speed, true);
+        let mut near = NEAR.into_iter().map(|part| speed * constant(part)).peekable();
+        let (mut steps, mut left) = (0, speed);
         let [first, factor, last, smallest] = REGULARISATIONS.map(constant::<T>);
         let mut regularisation = first;
         for _ in 0..PROBLEMS {
             convex.weights = weights.each(|weight| weight * regularisation);
-            convex.is_smooth = may_be_smooth && left < speed * constant(SMOOTH);
             convex.evaluate();
             let enough = (left / speed).min(T::one()) * constant(1e-2);
-            steps += 1 + convex.minimise(matrix, STEPS_OF_ONE, enough);
+            steps += 1 + convex.minimise(&mut matrix, STEPS_OF_ONE, enough);
             let found = self.tried(convex.impulses);
             let is_slow = found.worst.0 > left * constant(0.5);
             left = found.worst.0;
-            // It is no worse where it is no number, either.
-            let is_better = left < best.worst.0;
-            if is_better {
+            // Comparisons with a violation that is not a number are false.
+            if left < best.worst.0 {
                 best = found;
             }
+            if near.next_if(|near| left <= *near).is_some() {
+                let exact = self.newton(found);
+                if exact.worst.0 < best.worst.0 {
+                    best = exact;
+                }
+            }
             let is_stalled = is_slow && best.worst.0 <= speed * constant(GOOD);
-            if steps >= STEPS || is_stalled || left <= speed * constant(ENOUGH) || self.solves(&best) {
+            if steps >= STEPS
+                || is_stalled
+                || best.worst.0 <= speed * constant(ENOUGH)
+                || self.solves(&best)
+                || self.is_enough(&best)
+            {
                 break;
             }
-            if convex.is_smooth && !is_better {
-                // Newton's equations that are not symmetric can lead away.
-                may_be_smooth = left <= best.worst.0 * constant(2.0);
-                left = best.worst.0;
-                raise(&mut convex, &best.rates);
-                convex.begin(&best.impulses);
-            } else {
-                raise(&mut convex, &found.rates);
-                convex.center = convex.impulses;
-            }
-            // Impulses that the motion can hardly tell apart converge slowly with a large regularisation.
+            convex.raise(&found.rates);
+            convex.center = convex.impulses;
+            // Impulses that hardly affect the motion converge slowly with a large regularisation.
             regularisation = match is_slow && regularisation <= last {
                 true => (regularisation * constant(0.1)).max(smallest),
                 false => (regularisation * factor).max(last.min(regularisation)),

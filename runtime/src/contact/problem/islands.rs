@@ -3,7 +3,6 @@
 use super::super::Rows;
 use super::super::total::Total;
 use super::linear::Equations;
-use super::transport::Start;
 use super::{List, Problem};
 use crate::Real;
 
@@ -42,12 +41,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             || self.all_of(k).any(|i| self.all_of(other).any(|j| self.weights[i][j] != T::zero()))
     }
 
-    /// Returns the impulses that are found for each group of contacts alone; the search begins at the impulses
-    /// of `start`.
+    /// Returns the impulses that are found for each group of contacts alone; the search begins at the
+    /// impulses of `start`.
     pub(super) fn solve_groups(
         &self,
         (group, count): &(Total<usize, NK>, usize),
-        start: Option<&Start<T, NR>>,
+        start: Option<&List<T, NR>>,
     ) -> List<T, NR> {
         let mut impulses = List::repeat(T::zero());
         for g in 0..*count {
@@ -66,11 +65,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn solve_group<const GK: usize, const GR: usize>(
         &self,
         (group, g): (&Total<usize, NK>, usize),
-        start: Option<&Start<T, NR>>,
+        start: Option<&List<T, NR>>,
         impulses: &mut List<T, NR>,
     ) {
-        let mut own = Problem::<T, GK, GR>::none();
-        own.is_relaxed = self.is_relaxed;
+        let mut own = Problem::<T, GK, GR>::empty(self.is_relaxed);
         for k in (0..self.count).filter(|k| group[*k] == g) {
             let (c, first, Rows { count, .. }) = (own.count, own.size, self.rows[k]);
             let by = (0..c).find(|c| own.contacts[*c].0 == self.pressed_by[k]).unwrap_or(c);
@@ -94,14 +92,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for (row, i) in own.weights.iter_mut().zip(places.iter()).take(own.size) {
             row.iter_mut().zip(places.iter()).take(own.size).for_each(|(to, j)| *to = self.weights[*i][*j]);
         }
+        own.basis.select(&self.basis, places.get(..own.size).unwrap_or_default());
         // A part of the velocities, as an estimate.
         own.velocities = (self.velocities.saturating_mul(own.size) / self.size.max(1)).max(1);
         let start = start.map(|start| {
             let mut impulses = List::repeat(T::zero());
-            (0..own.size).for_each(|i| impulses[i] = start.impulses[places[i]]);
-            Start { impulses, is_regular: start.is_regular }
+            (0..own.size).for_each(|i| impulses[i] = start[places[i]]);
+            impulses
         });
-        let found = own.solve_from(start.as_ref(), &mut Equations::of(&own));
+        let found = own.solve_from(start.as_ref(), &mut Equations::new());
         let found = found.unwrap_or(own.closest);
         (0..own.size).for_each(|i| impulses[places[i]] = found[i]);
     }

@@ -21,14 +21,13 @@ const PASSES: usize = 3;
 /// Room for the equations of impulses, which keeps the factors of the whole of `W`.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Equations<T, const NR: usize> {
-    matrix: Square<T, NR>,
+    /// `None` before its first use.
+    matrix: Option<Square<T, NR>>,
     content: Content,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Content {
-    /// All of `W`.
-    Weights,
     /// Factors of `W`.
     Factors,
     /// Factors of `W` with a small addition to its diagonal, which makes dependent rows independent.
@@ -37,9 +36,9 @@ enum Content {
 }
 
 impl<T: Real, const NR: usize> Equations<T, NR> {
-    /// The equations of a problem.
-    pub(in super::super) fn of<const NK: usize>(problem: &Problem<T, NK, NR>) -> Self {
-        Self { matrix: problem.weights, content: Content::Weights }
+    /// Returns workspace without content.
+    pub(in super::super) fn new() -> Self {
+        Self { matrix: None, content: Content::Other }
     }
 }
 
@@ -47,7 +46,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are
     /// shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
-        self.together_with(kept, &mut Equations::of(self))
+        self.together_with(kept, &mut Equations::new())
     }
 
     /// [`together`](Self::together) with given equations.
@@ -104,13 +103,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         passes: usize,
     ) -> (List<T, NR>, bool) {
         let Equations { matrix, content } = equations;
+        let matrix = matrix.get_or_insert_with(square);
         let is_whole = size == self.size;
         let mut known = if is_whole { *content } else { Content::Other };
         if known == Content::Other {
             self.among(held, size, matrix);
-            known = Content::Weights;
-        }
-        if known == Content::Weights {
             known = Content::Factors;
             // More rows than velocities depend on each other.
             if size > self.velocities || !factorise(matrix, size, false) {
@@ -187,7 +184,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let slips = self.slipping(touches);
         let mut forces = List::repeat(T::zero());
         if !slips.contains(&true) {
-            let mut equations = Equations::of(self);
+            let mut equations = Equations::new();
             forces = self.together_with(&Total::repeat(true), &mut equations);
             *loses_digits = self.loses_digits(&equations, &forces);
             let (accelerations, most) = (self.rates(&forces), self.rounding(&forces));
@@ -247,7 +244,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn loses_digits(&self, equations: &Equations<T, NR>, forces: &List<T, NR>) -> bool {
         let Equations { matrix, content } = equations;
         let least = epsilon::<T>().sqrt().sqrt();
-        let is_small = |i: usize| matrix[i][i] * self.weights[i][i] * least > T::one();
+        let pivot = |i: usize| matrix.as_ref().map_or(T::zero(), |matrix| matrix[i][i]);
+        let is_small = |i: usize| pivot(i) * self.weights[i][i] * least > T::one();
         // Forces that move light bodies far cancel each other.
         let cancels = self.rounding(forces) * least > self.speed() * epsilon() * constant(ROUNDINGS);
         *content != Content::Factors || cancels || (0..self.size).any(is_small)
@@ -268,7 +266,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
         let places = self.places;
         let mut system = square();
-        identify(&mut system);
+        identify(&mut system, self.size);
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
             let slip = |i: usize| entry(rates, places[i]);
@@ -388,48 +386,52 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         epsilon::<T>().sqrt()
     }
 
-    /// Gaussian elimination with pivots of the columns, for several right-hand sides; where there is no
-    /// pivot, nothing is to be done.
-    pub(super) fn eliminate<const N: usize>(
-        &self,
-        system: &mut Square<T, NR>,
-        right: &mut Total<[T; N], NR>,
-    ) {
-        let size = self.size;
-        for column in 0..size {
-            let mut best = column;
-            for row in column + 1..size {
-                if system[row][column].abs() > system[best][column].abs() {
-                    best = row;
-                }
+    /// Solves a system among all rows in place, as [`eliminate`] does.
+    fn eliminate<const N: usize>(&self, system: &mut Square<T, NR>, right: &mut Total<[T; N], NR>) {
+        eliminate(system, right, self.size);
+    }
+}
+
+/// Solves a system of `size` equations in place by Gaussian elimination with pivots of the columns, for
+/// several right-hand sides. Unknowns without a pivot are zero.
+pub(super) fn eliminate<T: Real, const N: usize, const NR: usize>(
+    system: &mut Square<T, NR>,
+    right: &mut Total<[T; N], NR>,
+    size: usize,
+) {
+    for column in 0..size {
+        let mut best = column;
+        for row in column + 1..size {
+            if system[row][column].abs() > system[best][column].abs() {
+                best = row;
             }
-            if best != column {
-                system.exchange(best, column);
-                right.exchange(best, column);
-            }
-            let (done, rows) = system.split_at_mut_checked(column + 1).unwrap_or_default();
-            let (values, others) = right.split_at_mut_checked(column + 1).unwrap_or_default();
-            let (Some(pivots), Some(value)) = (done.last(), values.last()) else { break };
-            if pivots[column] == T::zero() {
+        }
+        if best != column {
+            system.exchange(best, column);
+            right.exchange(best, column);
+        }
+        let (done, rows) = system.split_at_mut_checked(column + 1).unwrap_or_default();
+        let (values, others) = right.split_at_mut_checked(column + 1).unwrap_or_default();
+        let (Some(pivots), Some(value)) = (done.last(), values.last()) else { break };
+        if pivots[column] == T::zero() {
+            continue;
+        }
+        let inverse = T::one() / pivots[column];
+        for (row, other) in rows.iter_mut().zip(others).take(size - column - 1) {
+            let factor = row[column] * inverse;
+            if factor == T::zero() {
                 continue;
             }
-            let inverse = T::one() / pivots[column];
-            for (row, other) in rows.iter_mut().zip(others).take(size - column - 1) {
-                let factor = row[column] * inverse;
-                if factor == T::zero() {
-                    continue;
-                }
-                // Entries before the pivot are not read again.
-                remove(row, factor, pivots, column + 1..size);
-                subtract(other, factor, value);
-            }
+            // Entries before the pivot are not read again.
+            remove(row, factor, pivots, column + 1..size);
+            subtract(other, factor, value);
         }
-        for row in (0..size).rev() {
-            let mut sum = right[row];
-            (row + 1..size).for_each(|c| subtract(&mut sum, system[row][c], &right[c]));
-            let pivot = system[row][row];
-            right[row] = sum.map(|sum| if pivot == T::zero() { T::zero() } else { sum / pivot });
-        }
+    }
+    for row in (0..size).rev() {
+        let mut sum = right[row];
+        (row + 1..size).for_each(|c| subtract(&mut sum, system[row][c], &right[c]));
+        let pivot = system[row][row];
+        right[row] = sum.map(|sum| if pivot == T::zero() { T::zero() } else { sum / pivot });
     }
 }
 
@@ -519,9 +521,9 @@ pub(super) fn square<T: Real, const NR: usize>() -> Square<T, NR> {
     Square::repeat(List::repeat(T::zero()))
 }
 
-/// Ones on the diagonal, else zeros.
-pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>) {
-    for (i, row) in system.iter_mut().enumerate() {
+/// Makes the first `size` rows those of the unit matrix.
+pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>, size: usize) {
+    for (i, row) in system.iter_mut().enumerate().take(size) {
         row.fill(T::zero());
         row[i] = T::one();
     }

@@ -2,8 +2,6 @@
 
 use super::super::total::Total;
 use super::linear::Equations;
-use super::newton::LARGE;
-use super::transport::Start;
 use super::trial::Trial;
 use super::{List, Problem};
 use crate::Real;
@@ -25,11 +23,15 @@ const DEGREES: u32 = 24;
 const STEEP: f64 = 4.0;
 /// Maximum number of contacts whose subsets are all tried if all else fails.
 const GUESSED: usize = 6;
-/// Rows up to which Newton's method for the natural map takes less time than a convex problem.
+/// Number of rows above which groups of contacts are solved apart.
 const DENSE: usize = 36;
-/// Violation of the contact conditions that counts as zero if rows depend on each other, relative to the
+/// Violation of the contact conditions that ends the search in a step of a simulation, relative to the
 /// largest contact velocity.
-const ENOUGH: f64 = 1e-10;
+const ENOUGH: f64 = 1e-8;
+/// Number of rows up to which impulses of the least norm come first, and the violation of impulses of the
+/// previous step, relative to the largest contact velocity, below which they come first otherwise.
+const FEW: usize = 12;
+const NEAR: f64 = 0.1;
 /// Maximum number of contacts whose pairs are all tried then.
 const PAIRED: usize = 24;
 
@@ -53,7 +55,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The contact of the mechanism whose conditions are violated most, if by more than half of the digits;
     /// [`closest`](Self::closest) then has the impulses that violate them least of all that were found.
     pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
-        self.solve_from(None, &mut Equations::of(self))
+        self.solve_from(None, &mut Equations::new())
     }
 
     /// Solves with given equations; the search begins at the impulses of `start`.
@@ -63,7 +65,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// As [`solve`](Self::solve).
     pub(in super::super) fn solve_from(
         &mut self,
-        start: Option<&Start<T, NR>>,
+        start: Option<&List<T, NR>>,
         equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
         if const { NR > DENSE } && self.size > DENSE {
@@ -116,46 +118,54 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns the impulses that violate the contact conditions least.
-    fn search(&self, start: Option<&Start<T, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
-        // If all approaching contacts stick, the problem is linear.
-        let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
-        let stuck = self.tried(self.together_with(&approach, equations));
-        if self.solves(&stuck) {
-            return stuck;
-        }
-        // Mostly few contacts slip or separate, or all keep their modes.
+    fn search(&mut self, start: Option<&List<T, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
         let start = start.map(|start| {
-            let mut impulses = start.impulses;
+            let mut impulses = *start;
             impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-            (self.tried(impulses), start.is_regular)
+            self.tried(impulses)
         });
-        let regular = start.filter(|(_, is_regular)| *is_regular).map(|(trial, _)| trial);
-        let is_convex = self.is_left_to_convex_problems();
-        if !is_convex {
-            let found = self.newton(regular.unwrap_or(stuck), self.lift());
-            if self.solves(&found) {
-                // Compared with fast slip, residuals of slow normal velocities are small.
-                return self.refined(found, self.lift());
-            }
+        let near = start.filter(|start| self.size > FEW && start.worst.0 <= self.speed() * constant(NEAR));
+        // In most steps few contacts slip or separate, or all keep their modes.
+        let start = match near {
+            Some(near) => near,
+            None => self.stuck(start, equations),
+        };
+        if self.solves(&start) {
+            return start;
         }
-        let start = start.map_or(List::repeat(T::zero()), |(trial, _)| trial.impulses);
-        let convex = self.by_convex_problems(&start);
-        if self.solves(&convex) || (is_convex && convex.worst.0 <= self.speed() * constant(ENOUGH)) {
+        self.prepare_basis();
+        let found = self.newton(start);
+        if self.solves(&found) || self.is_enough(&found) {
+            // Compared with fast slip, residuals of slow normal velocities are small.
+            return self.refined(found);
+        }
+        let convex = self.by_convex_problems(&start.impulses);
+        if self.solves(&convex) || self.is_enough(&convex) {
             return convex;
         }
-        let found = match self.size > LARGE {
-            true => self.newton(convex, self.lift()),
-            false => self.newton_twice(convex),
-        };
+        let found = self.newton(convex);
         match found.worst.0 < convex.worst.0 {
-            true => self.refined(found, self.lift()),
+            true => self.refined(found),
             false => convex,
         }
     }
 
-    /// Whether Newton's method for the natural map is left out: its systems are large, with dependent rows.
-    pub(in super::super) fn is_left_to_convex_problems(&self) -> bool {
-        self.size > DENSE && self.size > self.velocities
+    /// Returns the impulses with which all approaching contacts stick, for which the equations are linear, or
+    /// those of `start` if they violate the conditions less.
+    fn stuck(&self, start: Option<Trial<T, NK, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
+        let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
+        let stuck = self.tried(self.together_with(&approach, equations));
+        match start.filter(|start| !self.solves(&stuck) && start.worst.0 < stuck.worst.0) {
+            Some(start) => start,
+            None => stuck,
+        }
+    }
+
+    /// Whether the violation of the contact conditions is small enough for a step of a simulation with
+    /// several bodies. Velocities of redundant contacts contradict each other by rounding errors of the
+    /// geometry, so that no impulses may satisfy all conditions.
+    pub(super) fn is_enough(&self, trial: &Trial<T, NK, NR>) -> bool {
+        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.speed() * constant(ENOUGH)
     }
 
     /// Returns the contacts that satisfy a condition.
@@ -187,7 +197,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 return impulses;
             }
         }
-        let is_short = self.is_relaxed && !self.is_steep();
+        let is_short = self.is_relaxed && self.size > FEW && !self.is_steep();
         let rounds = if is_short { ROUNDS_OF_STEP } else { ROUNDS };
         for round in 0..rounds {
             self.relax(&mut impulses, SWEEPS + round);
@@ -214,7 +224,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // With strong friction, only the set of closed contacts is unknown.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
             let start = self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1));
-            let guess = self.newton_twice(self.tried(start));
+            let guess = self.newton(self.tried(start));
             if self.solves(&guess) {
                 return guess.impulses;
             }
@@ -282,7 +292,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Newton's method with steps of the map by this factor.
     fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> Trial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton_twice(self.tried(impulses)).impulses;
+        let found = self.newton(self.tried(impulses)).impulses;
         self.scale = T::one();
         self.tried(found)
     }
@@ -329,7 +339,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for one in 0..self.count {
             for other in one..self.count {
                 let start = self.together(&self.those(|k| k == one || k == other));
-                let found = self.newton_twice(self.tried(start));
+                let found = self.newton(self.tried(start));
                 if !self.solves(&found) {
                     continue;
                 }

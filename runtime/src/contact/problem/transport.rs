@@ -11,14 +11,6 @@ use nalgebra::SVector;
 /// a step are not smooth.
 const LARGEST: f64 = 0.125;
 
-/// Impulses at the contacts where a step ends, equivalent to those that act at its start.
-pub(in super::super) struct Start<T, const NR: usize> {
-    /// The impulses that change the rates as much.
-    pub(super) impulses: List<T, NR>,
-    /// True if the impulses are unique.
-    pub(super) is_regular: bool,
-}
-
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Corrects the velocity without impulses, so that impulses `Λ` at the end of a step act as in the mean
     /// of the step.
@@ -29,13 +21,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// half of the part of `given` that impulses at the end cannot give, which changes no rate of a contact,
     /// and by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact
     /// conditions.
+    ///
+    /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction.
     pub(in super::super) fn transport<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
         rates: &SVector<T, NR>,
         responses: &Responses<T, NV, NR>,
         equations: &mut Equations<T, NR>,
-    ) -> (Start<T, NR>, SVector<T, NV>) {
+    ) -> (List<T, NR>, SVector<T, NV>) {
         let half = constant::<T>(0.5);
         let (impulses, is_regular) = self.impulses_for(rates, equations);
         let mut correction = (given - responses.velocities * self.scatter(&impulses)) * half;
@@ -59,22 +53,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         } else {
             correction = SVector::zeros();
         }
-        (Start { impulses, is_regular }, correction)
+        (impulses, correction)
     }
 
-    /// Impulses that change the rates as much as those at the start of a step.
-    pub(in super::super) fn start(
-        &self,
-        rates: &SVector<T, NR>,
-        equations: &mut Equations<T, NR>,
-    ) -> Start<T, NR> {
-        let (impulses, is_regular) = self.impulses_for(rates, equations);
-        Start { impulses, is_regular }
+    /// Returns values at the rows of the mechanism at the rows of closed contacts.
+    pub(in super::super) fn own(&self, all: &SVector<T, NR>) -> List<T, NR> {
+        let mut own = List::repeat(T::zero());
+        own.iter_mut().zip(self.places.iter()).take(self.size).for_each(|(to, i)| *to = entry(all, *i));
+        own
     }
 
     /// Impulses that change the rates of the mechanism by `changes`.
     pub(in super::super) fn displacements(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.impulses_for(changes, &mut Equations::of(self)).0)
+        self.scatter(&self.impulses_for(changes, &mut Equations::new()).0)
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for

@@ -33,8 +33,13 @@ pub(super) struct Trial<T, const NK: usize, const NR: usize> {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+    /// Returns impulses with the contact velocities after them, and their residuals.
     pub(super) fn tried(&self, impulses: List<T, NR>) -> Trial<T, NK, NR> {
-        let rates = self.rates(&impulses);
+        self.tried_with(impulses, self.rates(&impulses))
+    }
+
+    /// Returns impulses and given contact velocities after them, with their residuals.
+    pub(super) fn tried_with(&self, impulses: List<T, NR>, rates: List<T, NR>) -> Trial<T, NK, NR> {
         let modes = self.modes(&self.friction, &impulses, &rates);
         let (mut all, mut worst) = (T::zero(), (T::zero(), 0));
         for k in 0..self.count {

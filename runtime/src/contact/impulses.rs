@@ -1,0 +1,103 @@
+//! Impulses of a step, from which the search of the next step begins.
+
+use super::layout::Layout;
+use super::problem::entry;
+use super::selection::Selection;
+use crate::Real;
+use crate::private::constant;
+use nalgebra::SVector;
+
+/// Contacts for each velocity.
+const CONTACTS: usize = 2;
+/// Index of a contact, and its impulses.
+const ENTRIES: usize = 4;
+
+/// Impulses of up to two contacts for each velocity of a mechanism, from which the search of the next step
+/// begins; zero for other contacts. They affect the duration of the search, not its result beyond rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impulses<T, const NV: usize>(
+    /// For each contact its index plus one, and its impulses; an index of zero is an empty place.
+    [[SVector<T, NV>; ENTRIES]; CONTACTS],
+);
+
+/// Change of the velocity that contacts are assumed to cause in a step, and impulses from which the search of
+/// its impulses begins.
+pub type Assumed<'a, T, const NV: usize> = (&'a SVector<T, NV>, &'a Impulses<T, NV>);
+
+impl<T: Real, const NV: usize> Impulses<T, NV> {
+    /// Returns no impulses.
+    #[must_use]
+    pub fn none() -> Self {
+        Self([[SVector::zeros(); ENTRIES]; CONTACTS])
+    }
+
+    /// Returns the impulses with each list of entries changed by a function.
+    #[must_use]
+    pub fn map<U, const N: usize>(&self, f: impl Fn(&SVector<T, NV>) -> SVector<U, N>) -> Impulses<U, N> {
+        Impulses(self.0.each_ref().map(|lists| lists.each_ref().map(&f)))
+    }
+
+    /// Returns the impulses with lists of entries that a function returns.
+    #[must_use]
+    pub fn from_lists(f: impl Fn([usize; 2]) -> SVector<T, NV>) -> Self {
+        Self(core::array::from_fn(|i| core::array::from_fn(|j| f([i, j]))))
+    }
+
+    /// Returns a list of entries.
+    #[must_use]
+    pub fn list(&self, [i, j]: [usize; 2]) -> SVector<T, NV> {
+        self.0.get(i).and_then(|lists| lists.get(j)).copied().unwrap_or_else(SVector::zeros)
+    }
+
+    /// Returns the impulses `all` of selected contacts.
+    pub(super) fn record<const CK: usize, const CR: usize>(
+        selection: &Selection<CK, CR>,
+        all: &SVector<T, CR>,
+    ) -> Self {
+        let (layout, mut recorded) = (selection.layout(), Self::none());
+        let impulses = |k: usize, i: usize| {
+            let rows = layout.rows(k);
+            if i < rows.count { entry(all, rows.first + i) } else { T::zero() }
+        };
+        let pressed = (0..selection.count()).filter(|k| (0..3).any(|i| impulses(*k, i) != T::zero()));
+        let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
+        for (k, (list, place)) in pressed.zip(places) {
+            let number: u32 = selection.contact(k).try_into().unwrap_or(u32::MAX);
+            let values = [constant(f64::from(number) + 1.0), impulses(k, 0), impulses(k, 1), impulses(k, 2)];
+            let lists = recorded.0.get_mut(list).into_iter().flatten();
+            for (list, value) in lists.zip(values) {
+                if let Some(entry) = list.get_mut(place) {
+                    *entry = value;
+                }
+            }
+        }
+        recorded
+    }
+
+    /// Returns the impulses at the rows of selected contacts; `None` if there are none.
+    pub(super) fn recall<const CK: usize, const CR: usize>(
+        &self,
+        selection: &Selection<CK, CR>,
+        layout: &Layout<CK>,
+    ) -> Option<SVector<T, CR>> {
+        let mut all = SVector::<T, CR>::zeros();
+        let mut is_any = false;
+        for [numbers, impulses @ ..] in &self.0 {
+            for (place, number) in numbers.iter().enumerate().take_while(|(_, number)| **number > T::zero()) {
+                let is_same = |k: &usize| {
+                    let own: u32 = selection.contact(*k).try_into().unwrap_or(u32::MAX);
+                    constant::<T>(f64::from(own) + 1.0) == *number
+                };
+                let Some(k) = (0..selection.count()).find(is_same) else { continue };
+                let rows = layout.rows(k);
+                for (i, list) in (rows.first..rows.first + rows.count).zip(impulses) {
+                    if let Some(impulse) = all.get_mut(i) {
+                        *impulse = entry(list, place);
+                        is_any = true;
+                    }
+                }
+            }
+        }
+        is_any.then_some(all)
+    }
+}
