@@ -49,7 +49,7 @@ impl<'g> Scope<'_, 'g> {
             Value::Vector(terms) => terms,
             Value::Matrix(m) => {
                 let link = self.frame(frame, cx)?;
-                let entries = self.kinematics.borrow().matrix_in(m, link).entries;
+                let entries = self.kinematics.matrix_in(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
                 let rates = self.rates(function, &argument.place, &all, cx)?;
                 return Some(Value::Matrix(ResolvedMatrix {
@@ -64,7 +64,7 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let link = self.frame(frame, cx)?;
-        let components = self.kinematics.borrow().resolve(&in_links(terms), link, Vec3::zero(self.graph));
+        let components = self.kinematics.resolve(&in_links(terms), link, Vec3::zero(self.graph));
         let rates = self.rates(function, &argument.place, &components.0, cx)?;
         Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
@@ -111,7 +111,7 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(needed, what, function, cx) {
             return None;
         }
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let space = Space { graph: self.graph, charts: &kinematics.charts, speeds: None };
         let rate = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
             let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));

@@ -1,7 +1,7 @@
 //! Assembly of the model: scope, tree, links, bodies and force elements.
 
-use super::builder::{Builder, JointedBody};
-use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
+use super::builder::Builder;
+use super::scope::{Allowed, Axes, Context, Kinematics, Records, Scope, Value};
 use super::tree::find_tree;
 use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
@@ -10,7 +10,7 @@ use crate::kinematics::Partials;
 use crate::language::{Builtin, Callable};
 use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
 use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
@@ -109,7 +109,7 @@ fn build<'g>(
     builder.check_unused(cx);
     builder.gather_requirements();
     if cx.is_empty() && releasing.is_none() {
-        let coordinates = &builder.scope.kinematics.borrow().coordinates;
+        let coordinates = &builder.scope.kinematics.coordinates;
         builder.model.units = units::infer(description, &builder.model, coordinates, cx);
     }
     if !description.partial {
@@ -172,27 +172,15 @@ fn empty_model<'g>(
 
 impl<'a, 'g> Builder<'a, 'g> {
     fn new(description: &'a Description, graph: &'g Graph, cx: &mut Diagnostics) -> Builder<'a, 'g> {
-        let jointed: Vec<JointedBody<'a>> = description
-            .bodies
-            .iter()
-            .map(|b| JointedBody { name: &b.name })
-            .chain(
-                description
-                    .particles
-                    .iter()
-                    .filter(|p| p.at.is_none())
-                    .map(|p| JointedBody { name: &p.name }),
-            )
-            .collect();
+        let unplaced = description.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
+        let jointed: Vec<&Name> = description.bodies.iter().map(|b| &b.name).chain(unplaced).collect();
         let all =
             description.bodies.iter().map(|b| &b.name).chain(description.particles.iter().map(|p| &p.name));
 
         let scope = Scope {
             graph,
             parameters: &description.parameters,
-            used: vec![false; description.parameters.len()].into(),
             tables: &description.tables,
-            used_tables: vec![false; description.tables.len()].into(),
             bodies: all
                 .clone()
                 .chain(description.frames.iter().map(|f| &f.name))
@@ -208,13 +196,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             definitions: &description.definitions,
             speeds: &description.speeds,
             context: Context::new(Allowed::Constant, None).into(),
-            kinematics: Kinematics::default().into(),
+            kinematics: Kinematics::default(),
             is_f32: description.scalar == ScalarType::F32,
-            reported_names: BTreeSet::new().into(),
-            reported_definitions: BTreeSet::new().into(),
-            in_holonomic_constraint: false.into(),
-            definition_values: BTreeMap::new().into(),
-            requirements: Vec::new().into(),
+            records: Records {
+                used: vec![false; description.parameters.len()],
+                used_tables: vec![false; description.tables.len()],
+                ..Records::default()
+            }
+            .into(),
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
         for name in all.clone().filter(|n| n.text == GROUND) {
@@ -267,10 +256,10 @@ impl<'a, 'g> Builder<'a, 'g> {
         if !cx.is_empty() {
             return;
         }
-        let (used, tables) = (self.scope.used.borrow(), self.scope.used_tables.borrow());
-        let unused = self.description.parameters.iter().zip(used.iter());
+        let records = self.scope.records.borrow();
+        let unused = self.description.parameters.iter().zip(&records.used);
         let names = self.description.tables.iter().map(|table| &table.name);
-        let unused = unused.chain(names.zip(tables.iter()));
+        let unused = unused.chain(names.zip(&records.used_tables));
         // A state counts as used: its value is visible to the caller that integrates it.
         let is_state = |p: &Name| self.description.states.iter().any(|(state, _)| state.text == p.text);
         let unused = unused.filter(|(p, _)| !is_state(p));

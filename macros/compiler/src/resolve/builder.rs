@@ -30,12 +30,6 @@ pub struct ClosedFormLoop {
     pub sides: [usize; 2],
 }
 
-/// A body that can be the child of a joint: a body, or a particle without a position of its own.
-pub struct JointedBody<'a> {
-    /// Name of the body or particle.
-    pub name: &'a Name,
-}
-
 /// Index into the list of bodies and jointed particles.
 pub type BodyIndex = usize;
 
@@ -47,8 +41,8 @@ pub struct Builder<'a, 'g> {
     pub model: Model<'g>,
     /// Description written by the user.
     pub description: &'a Description,
-    /// Bodies and jointed particles.
-    pub jointed: Vec<JointedBody<'a>>,
+    /// Bodies, and particles without a position of their own, which can be children of joints.
+    pub jointed: Vec<&'a Name>,
     /// Link and pose on it by body, once resolved.
     pub places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
     /// Names of all elements that have a position or axes.
@@ -90,7 +84,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the index of a body or jointed particle.
     pub fn jointed_index(&self, name: &str) -> Option<usize> {
-        self.jointed.iter().position(|h| h.name.text == name)
+        self.jointed.iter().position(|h| h.text == name)
     }
 
     /// Returns the coordinates of a joint that force elements can act on; `None` if the joint does not exist.
@@ -106,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
             ExprKind::Field(joint, member) => full_name(joint.name().unwrap_or_default(), &member.text),
             _ => return false,
         };
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         kinematics.coordinates.iter().any(|(known, _, angle)| *known == name && *angle)
     }
 
@@ -161,14 +155,14 @@ impl<'g> Builder<'_, 'g> {
     /// Adds a link and its kinematics.
     pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
         let kinematics = joint(self.model.space(), &link, &mut self.partials);
-        self.scope.kinematics.borrow_mut().joints.push(kinematics);
+        self.scope.kinematics.joints.push(kinematics);
         self.model.links.push(link);
         LinkId(self.model.links.len() - 1)
     }
 
     /// Registers a placement under its name.
-    pub fn register(&self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
-        self.scope.kinematics.borrow_mut().places.insert(name.to_string(), Placed { link, pose, kind });
+    pub fn register(&mut self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
+        self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
     }
 
     /// Returns the placement of the parent of a joint: a body or a point.

@@ -30,7 +30,7 @@ impl<'g> Scope<'_, 'g> {
         let (frame, radius, axis) = self.cable_surface(surface, cx)?;
         let [a, b] = ends.map(|end| self.current_place(end, cx));
         let (a, b) = (a?, b?);
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let from_center = |p: &Placed<'g>| {
             kinematics.resolve(&kinematics.position_between(p, &frame), frame.link, Vec3::zero(self.graph))
         };

@@ -94,7 +94,7 @@ impl<'g> Scope<'_, 'g> {
         let (body_link, frame_link) = (self.frame(body, cx), self.frame(frame, cx));
         let place = self.place(body, cx);
         let (_, frame_link, place) = (body_link?, frame_link?, place?);
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let (link, zero) = (place.link, Vec3::zero(self.graph));
         // Any point fixed in the frame.
         let from = Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
@@ -124,7 +124,7 @@ impl<'g> Scope<'_, 'g> {
         let body_with_mass = self.body_with_mass(body, cx)?;
         let about = self.current_place(about, cx)?;
         let n = self.terms(axis, cx)?;
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
             cx.error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
@@ -137,7 +137,6 @@ impl<'g> Scope<'_, 'g> {
         let pose = Pose { translation: placed.pose.point(*com), ..placed.pose.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
         let [axis_here, arm] = [&n, &offset].map(|terms| kinematics.resolve(terms, link, zero));
-        drop(kinematics);
         let arm = arm + -(axis_here * axis_here.dot(arm));
         if vanishes(arm) {
             cx.error(

@@ -54,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
             let pose = pose.then(&on_child.inverse());
             let kind =
                 if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };
-            self.register(&self.jointed[child].name.text, link, pose.clone(), kind);
+            self.register(&self.jointed[child].text, link, pose.clone(), kind);
             self.places[child] = Some((link, pose));
         }
         self.add_passive(j, joint, cx);

@@ -153,7 +153,7 @@ impl<'g> Builder<'_, 'g> {
         let point = on_child.inverse().point(closing);
         let in_first_frame =
             |v| self.in_frame(frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.borrow().position_between(&joint_frame, frame);
+        let terms = self.scope.kinematics.position_between(&joint_frame, frame);
         let zero = Vec3::zero(self.scope.graph);
         let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.in_frame(frame, *link, *v));
         let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
@@ -163,7 +163,7 @@ impl<'g> Builder<'_, 'g> {
     /// Transforms a vector from the axes of a link to those of a frame. Released joints count as closed: the
     /// solution is that of the original mechanism.
     fn in_frame(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
-        let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
+        let v = change_axes(&self.scope.kinematics.joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
         let first_released = self.model.nq() - RELEASED * joints.len();

@@ -198,7 +198,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn transmission(&self, ends: &ClosingJoint<'g>, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
-        let joints = &self.scope.kinematics.borrow().joints;
+        let joints = &self.scope.kinematics.joints;
         let direction = change_axes(joints, direction, ends.on_child.ancestor, None);
         Transmission { joint: ends.j, torque, direction }
     }

@@ -92,9 +92,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        self.scope.in_holonomic_constraint.set(true);
+        self.scope.records.borrow_mut().in_holonomic_constraint = true;
         let rows = self.difference(constraint, Allowed::Placement, cx);
-        self.scope.in_holonomic_constraint.set(false);
+        self.scope.records.borrow_mut().in_holonomic_constraint = false;
         for (name, residual) in self.without_vanishing(rows) {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
@@ -126,10 +126,10 @@ impl<'g> Builder<'_, 'g> {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {
             ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
-                self.scope.in_holonomic_constraint.set(holonomic);
+                self.scope.records.borrow_mut().in_holonomic_constraint = holonomic;
                 let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
                 let _ = self.difference(constraint, allowed, cx);
-                self.scope.in_holonomic_constraint.set(false);
+                self.scope.records.borrow_mut().in_holonomic_constraint = false;
             }
             ConstraintKind::Rolling | ConstraintKind::Slipping => self.check_pair(constraint, cx),
         }
@@ -214,7 +214,7 @@ impl<'g> Builder<'_, 'g> {
         let terms: Vec<_> =
             sides.iter().map(|e| self.scope.in_context(context(), |scope| scope.terms(e, cx))).collect();
         let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         let sides: Vec<Vec3<'g>> = terms.iter().map(|t| kinematics.resolve(t, None, zero)).collect();
         let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);

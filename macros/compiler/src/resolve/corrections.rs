@@ -16,7 +16,7 @@ impl Scope<'_, '_> {
             _ => String::new(),
         };
         let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
-        let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
+        let is_coordinate = self.kinematics.coordinates.iter().any(|(name, ..)| *name == base);
         if is_coordinate && let Some(meant) = words::meaning(words::RATES, text, &[]) {
             error.help(meant.replace("NAME", &base));
         } else if Callable::is_function(text) {
@@ -41,7 +41,7 @@ impl Scope<'_, '_> {
     ) -> bool {
         let own =
             |name: &str| name == joint || name.strip_prefix(joint).is_some_and(|end| end.starts_with('.'));
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let coordinates: Vec<&str> =
             kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).filter(|name| own(name)).collect();
         match coordinates.as_slice() {

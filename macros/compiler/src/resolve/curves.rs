@@ -33,7 +33,7 @@ impl<'g> Scope<'_, 'g> {
             }
             (_, [argument]) => {
                 let terms = scope.terms(argument, cx)?;
-                let v = scope.kinematics.borrow().resolve(&terms, start.link, Vec3::zero(scope.graph));
+                let v = scope.kinematics.resolve(&terms, start.link, Vec3::zero(scope.graph));
                 let [x, y, z] = start.pose.rotation.to_child(v).0;
                 if always(x.square() + y.square(), 0.0) {
                     cx.error(
@@ -79,8 +79,7 @@ impl<'g> Scope<'_, 'g> {
         };
         let (t, b) = (unit(first), unit(binormal));
         let axes = [t, b.cross(t), b].map(|axis| {
-            let here =
-                self.kinematics.borrow().resolve(&vec![(link, axis)], start.link, Vec3::zero(self.graph));
+            let here = self.kinematics.resolve(&vec![(link, axis)], start.link, Vec3::zero(self.graph));
             start.pose.rotation.to_child(here)
         });
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
@@ -131,7 +130,7 @@ impl<'g> Scope<'_, 'g> {
         let c = self.named_coordinate(text, along, cx)?;
         let symbol = Quantity::Configuration(c.q.0).symbol();
         let terms = in_links(self.vector(curve, cx)?);
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let turns = |link: Option<LinkId>| {
             let axes =
@@ -157,7 +156,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns a coordinate by its name.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let name = e.to_source();
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         if let Some((_, c, _)) = kinematics.coordinates.iter().find(|(known, ..)| *known == name) {
             return Some(*c);
         }
@@ -192,11 +191,11 @@ impl<'g> Scope<'_, 'g> {
         let displacement = Vec3(moves.map(|s| self.graph.symbol(s)));
         let pose = Pose { translation: placed.pose.translation + displacement, ..placed.pose.clone() };
         let moved = Placed { pose, ..placed.clone() };
-        self.definition_values.borrow_mut().clear();
-        self.kinematics.borrow_mut().places.insert(name.to_string(), moved);
+        self.records.borrow_mut().definition_values.clear();
+        self.records.borrow_mut().displaced.push((name.to_string(), moved));
         let value = self.scalar(field, cx);
-        self.kinematics.borrow_mut().places.insert(name.to_string(), placed.clone());
-        self.definition_values.borrow_mut().clear();
+        self.records.borrow_mut().displaced.pop();
+        self.records.borrow_mut().definition_values.clear();
         let value = value?;
         let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient =

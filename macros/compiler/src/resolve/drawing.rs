@@ -25,7 +25,7 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         // The second reading of expressions adds no requirements.
-        let required = self.scope.requirements.borrow().clone();
+        let required = self.scope.records.borrow().requirements.clone();
         let context = Context::new(Allowed::Constant, None);
         let previous = self.scope.context.replace(context);
         let mut pieces = Vec::new();
@@ -46,7 +46,7 @@ impl<'g> Builder<'_, 'g> {
         let heights = self.draw_surfaces(&mut pieces);
         self.draw_actions(&mut pieces);
         self.scope.context.replace(previous);
-        self.scope.requirements.replace(required);
+        self.scope.records.borrow_mut().requirements = required;
         let is_fixed = |e: &[Expr<'g>]| {
             symbols_in(e).into_iter().all(|s| matches!(Quantity::of(s), Quantity::Parameter(_)))
         };

@@ -97,7 +97,7 @@ impl<'g> Builder<'_, 'g> {
         let axes = against.as_ref().unwrap_or(&on);
         let [force, torque] = [wrench.force, wrench.torque]
             .map(|vector| axes.pose.rotation.to_parent(Vec3::numbers(g, vector)));
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let rate = match &against {
             None => on.link.map_or(g.zero(), |link| {
                 let twist = &kinematics.twists[link.0];

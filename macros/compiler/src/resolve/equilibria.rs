@@ -96,13 +96,8 @@ impl<'g> Builder<'_, 'g> {
             Variable::Coordinate(k) => self.model.configuration.get(k)?,
             Variable::Input(_) | Variable::State(_) => "",
         };
-        let angle = self
-            .scope
-            .kinematics
-            .borrow()
-            .coordinates
-            .iter()
-            .any(|(known, _, angle)| known == name && *angle);
+        let coordinates = &self.scope.kinematics.coordinates;
+        let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
         self.scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
             true => scope.plane_angle(value, cx),
             false => scope.scalar(value, cx),

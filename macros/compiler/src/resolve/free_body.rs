@@ -158,7 +158,7 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Expr<'g>, Placed<'g>)> {
         let g = self.scope.graph;
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let link = kinematics.places.get(name)?.link;
         let released: Vec<Option<LinkId>> = joints
             .iter()
@@ -194,14 +194,14 @@ impl<'g> Builder<'_, 'g> {
     fn first_released_link(&self, index: usize) -> Option<LinkId> {
         let count = self.releasing?.0.len();
         let v = self.model.nv() - RELEASED * (count - index);
-        let links = self.scope.kinematics.borrow();
+        let links = &self.scope.kinematics;
         let is_it = |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
         links.joints.iter().position(is_it).map(LinkId)
     }
 
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
     fn arm_from_center(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let mut terms = place.clone();
         let center = kinematics.position(body.center.link, body.center.pose.translation);
         for (axes, v) in center {
@@ -215,7 +215,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn position_of(&self, placed: &Placed<'g>) -> Terms<'g> {
-        self.scope.kinematics.borrow().position(placed.link, placed.pose.translation)
+        self.scope.kinematics.position(placed.link, placed.pose.translation)
     }
 
     fn gravity_on(&self, body: &FreedBody<'g>) -> Option<DiagramAction<'g>> {
@@ -224,7 +224,7 @@ impl<'g> Builder<'_, 'g> {
         if weight.is_zero() {
             return None;
         }
-        let force = self.scope.kinematics.borrow().resolve(&vec![(None, weight)], body.axes.0, zero);
+        let force = self.scope.kinematics.resolve(&vec![(None, weight)], body.axes.0, zero);
         Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
     }
 
@@ -259,7 +259,7 @@ impl<'g> Builder<'_, 'g> {
         let frame = self.joint_frames.get(j)?;
         let in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-            self.scope.kinematics.borrow().resolve(&terms, body.axes.0, zero)
+            self.scope.kinematics.resolve(&terms, body.axes.0, zero)
         };
         let (force, torque) = (in_result_axes(force), in_result_axes(torque));
         let arm = self.arm_from_center(body, &self.position_of(frame));
@@ -327,7 +327,7 @@ impl<'g> Builder<'_, 'g> {
             let reaction_part = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-                self.scope.kinematics.borrow().resolve(&terms, body.axes.0, Vec3::zero(g))
+                self.scope.kinematics.resolve(&terms, body.axes.0, Vec3::zero(g))
             };
             let wrench = Wrench { force: reaction_part(0), torque: reaction_part(3) };
             all.push((name, origin, Some(self.position_of(frame)), wrench));

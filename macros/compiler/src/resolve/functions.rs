@@ -214,7 +214,7 @@ impl<'g> Scope<'_, 'g> {
         }
         let values: Vec<Option<Expr<'g>>> = arguments.iter().map(|a| self.scalar(a, cx)).collect();
         let values = values.into_iter().collect::<Option<Vec<_>>>()?;
-        if let Some(used) = self.used_tables.borrow_mut().get_mut(k) {
+        if let Some(used) = self.records.borrow_mut().used_tables.get_mut(k) {
             *used = true;
         }
         let x = std::array::from_fn(|k| values.get(k).copied().unwrap_or(self.graph.zero()));

@@ -98,7 +98,7 @@ impl<'g> Builder<'_, 'g> {
             let joins = holds || self.carrier(&joint.parent.body.text) == body;
             (joins && closing.get(j) == Some(&false)).then_some((j, holds))
         });
-        let own = self.scope.kinematics.borrow().places.get(body).and_then(|placed| placed.link);
+        let own = self.scope.kinematics.places.get(body).and_then(|placed| placed.link);
         let places = self.moving_placements.iter().filter_map(|(number, carrier)| {
             let holds = name_of(d, *number).is_some_and(|name| name.text == body);
             (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))

@@ -21,7 +21,7 @@ impl<'g> Builder<'_, 'g> {
             let inertia = self.body_inertia(body, if is_fixed && from_file { &mut silent } else { cx });
             self.masses.push(inertia);
             let known = inertia.map(|inertia| (body.name.text.clone(), inertia));
-            self.scope.kinematics.borrow_mut().masses.extend(known);
+            self.scope.kinematics.masses.extend(known);
             if let Some(inertia) = inertia
                 && let Some((Some(link), pose)) = self.places[k].clone()
             {
@@ -168,10 +168,10 @@ impl<'g> Builder<'_, 'g> {
             )
             .help("a point without mass is a `Point`");
         }
-        let placed = self.scope.kinematics.borrow().places.get(&particle.name.text).cloned();
+        let placed = self.scope.kinematics.places.get(&particle.name.text).cloned();
         if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
             let masses = (mass, Vec3::zero(graph), Sym3::zero(graph));
-            self.scope.kinematics.borrow_mut().masses.insert(particle.name.text.clone(), masses);
+            self.scope.kinematics.masses.insert(particle.name.text.clone(), masses);
             self.attach(link, &pose, masses);
         }
     }

@@ -135,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
         let (link, _) = (self.frame(a, cx), self.frame(b, cx));
         let link = link?;
         let (a, b) = (self.axes_of(a)?, self.axes_of(b)?);
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
         let entry = |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
@@ -148,9 +148,8 @@ impl<'g> Scope<'_, 'g> {
         match e.name()? {
             GROUND => Some([0, 1, 2].map(|k| vec![(None, axis(k))])),
             name => {
-                let kinematics = self.kinematics.borrow();
-                let Placed { link, pose, .. } = kinematics.places.get(name)?;
-                Some([0, 1, 2].map(|k| vec![(*link, pose.rotation.to_parent(axis(k)))]))
+                let Placed { link, pose, .. } = self.placed(name)?;
+                Some([0, 1, 2].map(|k| vec![(link, pose.rotation.to_parent(axis(k)))]))
             }
         }
     }
@@ -186,7 +185,7 @@ impl<'g> Scope<'_, 'g> {
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         Some(match (op, left, right) {
             (BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul, Value::Matrix(a), Value::Matrix(b)) => {
                 let b = kinematics.matrix_in(b, a.link).entries;

@@ -46,7 +46,7 @@ impl<'g> Scope<'_, 'g> {
             Some(e) => Some(self.current_place(e, cx)?),
             None => None,
         };
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let (mut energy, mut momenta) = (self.graph.zero(), Vec::new());
         for (placed, (mass, com, central)) in bodies {
@@ -84,7 +84,7 @@ impl<'g> Scope<'_, 'g> {
                 .help("name bodies with a `mass`");
             return None;
         }
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let mut sum = Vec::new();
         for (placed, (mass, com, _)) in bodies {
             let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
@@ -132,7 +132,7 @@ impl<'g> Scope<'_, 'g> {
         about: &Placed<'g>,
         [a, b]: [&Terms<'g>; 2],
     ) -> Expr<'g> {
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
@@ -177,9 +177,9 @@ impl<'g> Scope<'_, 'g> {
             cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
             return None;
         };
-        let kinematics = self.kinematics.borrow();
-        match (kinematics.places.get(name), kinematics.masses.get(name)) {
-            (Some(placed), Some(masses)) => Some((placed.clone(), *masses)),
+        let kinematics = &self.kinematics;
+        match (self.placed(name), kinematics.masses.get(name)) {
+            (Some(placed), Some(masses)) => Some((placed, *masses)),
             // Its inertial parameters could not be read; the error has been reported.
             (Some(_), None) if !cx.is_empty() && self.bodies.contains(name) => None,
             (Some(_), None) => {

@@ -17,10 +17,10 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let g = self.scope.graph;
-        self.scope.kinematics.borrow_mut().charts.clone_from(&self.model.charts);
+        self.scope.kinematics.charts.clone_from(&self.model.charts);
         let v: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
         let a: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Acceleration(k).expr(g)).collect();
-        let mut kinematics = self.scope.kinematics.borrow_mut();
+        let kinematics = &mut self.scope.kinematics;
         kinematics.twists = twists(&self.model, &kinematics.joints, &v);
         kinematics.accelerations = accelerations(&self.model, &kinematics.joints, &kinematics.twists, &v, &a);
         Some(Moving(()))

@@ -31,7 +31,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Whether an unknown name has not been reported yet; records it as reported.
     pub fn is_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
-        !cx.is_read() || self.reported_names.borrow_mut().insert(name.to_string())
+        !cx.is_read() || self.records.borrow_mut().reported_names.insert(name.to_string())
     }
 
     /// Returns the value of a name.
@@ -51,7 +51,7 @@ impl<'g> Scope<'_, 'g> {
             return Some(self.own_axes(Vec3::axis(self.graph, k)));
         }
         if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
-            self.used.borrow_mut()[k] = true;
+            self.records.borrow_mut().used[k] = true;
             return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
         if Builtin::of_name(name) == Some(Builtin::Pi) {
@@ -83,7 +83,7 @@ impl<'g> Scope<'_, 'g> {
                 error.help("that of the whole mechanism needs no output: it is the method `kinetic_energy`");
             }
         } else {
-            let kinematics = self.kinematics.borrow();
+            let kinematics = &self.kinematics;
             let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();
             if self.allowed() >= Allowed::Placement {
                 known.extend(kinematics.coordinates.iter().map(|(name, ..)| name.as_str()));
@@ -180,7 +180,7 @@ impl<'g> Scope<'_, 'g> {
         if name == GROUND {
             return Some(Value::Vector(vec![(Axes::Link(None), v)]));
         }
-        match self.kinematics.borrow().places.get(name) {
+        match self.placed(name) {
             Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
             None => {
                 cx.error(place.clone(), format!("`{name}` is not placed"));
@@ -217,7 +217,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the value of a coordinate. The outer `None` means that no coordinate has the name.
     fn coordinate(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<Value<'g>>> {
-        let found = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
+        let found = self.kinematics.coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
         let c = found?;
         let here = self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
@@ -230,7 +230,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
-        if cx.is_read() && self.reported_definitions.borrow().contains(name) {
+        if cx.is_read() && self.records.borrow().reported_definitions.contains(name) {
             return None;
         }
         let outermost = self.context.borrow().defining.is_empty();
@@ -239,16 +239,16 @@ impl<'g> Scope<'_, 'g> {
             (name.clone(), context.allowed, context.axes.is_some())
         };
         if outermost {
-            self.definition_values.borrow_mut().clear();
-        } else if let Some(known) = self.definition_values.borrow().get(&key) {
+            self.records.borrow_mut().definition_values.clear();
+        } else if let Some(known) = self.records.borrow().definition_values.get(&key) {
             return known.clone();
         }
         let before = cx.len();
         let value = self.define(d, e, cx);
         if value.is_none() && cx.is_read() && cx.len() > before {
-            self.reported_definitions.borrow_mut().insert(name.clone());
+            self.records.borrow_mut().reported_definitions.insert(name.clone());
         }
-        self.definition_values.borrow_mut().insert(key, value.clone());
+        self.records.borrow_mut().definition_values.insert(key, value.clone());
         value
     }
 
@@ -293,7 +293,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Option<Value<'g>>> {
         let full = format!("{joint}.{}", member.text);
-        let c = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| *n == full).map(|(_, c, _)| *c)?;
+        let c = self.kinematics.coordinates.iter().find(|(n, ..)| *n == full).map(|(_, c, _)| *c)?;
         let here =
             self.check_allowed(Allowed::Placement, &format!("the coordinate `{full}`"), &member.place, cx);
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
@@ -310,7 +310,7 @@ impl<'g> Scope<'_, 'g> {
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
-        if self.allowed() == Allowed::Placement && motion && self.in_holonomic_constraint.get() {
+        if self.allowed() == Allowed::Placement && motion && self.records.borrow().in_holonomic_constraint {
             cx.error(place.clone(), format!("{what} cannot stand here"))
                 .help("a constraint on velocities is a `Nonholonomic`");
             return false;

@@ -32,7 +32,7 @@ impl<'g> Builder<'_, 'g> {
                     self.model.velocities.push((full, joint.name.place.clone()));
                 }
             }
-            self.scope.kinematics.borrow_mut().coordinates.extend(plain.iter().cloned());
+            self.scope.kinematics.coordinates.extend(plain.iter().cloned());
             self.coordinates.push(JointCoordinates { q, v, plain });
         }
         self.number_free_coordinates(self.description.joints.len());
@@ -47,11 +47,7 @@ impl<'g> Builder<'_, 'g> {
                         ..*c
                     };
                     let angle = joint.kind.is_angle("");
-                    self.scope.kinematics.borrow_mut().coordinates.push((
-                        joint.name.text.clone(),
-                        coordinate,
-                        angle,
-                    ));
+                    self.scope.kinematics.coordinates.push((joint.name.text.clone(), coordinate, angle));
                     self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
                 }
                 _ => {
@@ -69,7 +65,7 @@ impl<'g> Builder<'_, 'g> {
             self.model.configuration.push(free.name.text.clone());
             self.model.velocities.push((free.name.text.clone(), free.name.place.clone()));
             self.model.charts.push(Chart::Plain(q, v));
-            let mut kinematics = self.scope.kinematics.borrow_mut();
+            let kinematics = &mut self.scope.kinematics;
             kinematics.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
         }
     }

@@ -54,11 +54,11 @@ impl<'g> Builder<'_, 'g> {
         if output.rank == Rank::Matrix {
             let found = self.scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
             let (link, pose) = self.output_axes(output, cx)?;
-            return Some(self.scope.kinematics.borrow().matrix_entries(found?, link, &pose.rotation));
+            return Some(self.scope.kinematics.matrix_entries(found?, link, &pose.rotation));
         }
         let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
         let (link, pose) = self.output_axes(output, cx)?;
-        let v = self.scope.kinematics.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
+        let v = self.scope.kinematics.resolve(&terms?, link, Vec3::zero(self.scope.graph));
         Some(pose.rotation.to_child(v).0.to_vec())
     }
 
@@ -73,7 +73,7 @@ impl<'g> Builder<'_, 'g> {
         match &e.kind {
             ExprKind::Name(name) if name == super::tree::GROUND => ground,
             ExprKind::Name(name) => {
-                let kinematics = self.scope.kinematics.borrow();
+                let kinematics = &self.scope.kinematics;
                 let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
                 if found.is_none() {
                     let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();

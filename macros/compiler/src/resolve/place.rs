@@ -34,7 +34,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             let (name, pose) = (GROUND.to_string(), Pose::identity(self.scope.graph));
             self.model.frames.push(NamedFrame { name, massive: false, link: None, pose });
         }
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         for (name, massive) in massive.chain(d.points.iter().map(|p| (&p.name, false))) {
             if let Some(p) = kinematics.places.get(&name.text) {
                 let (name, link, pose) = (name.text.clone(), p.link, p.pose.clone());
@@ -111,7 +111,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     fn is_ready(&self, item: Item, order: &Order) -> bool {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         self.dependencies(item, order)
             .iter()
             .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
@@ -274,7 +274,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         if name == GROUND {
             return Some(self.ground());
         }
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         match kinematics.places.get(name) {
             Some(p) if p.kind != PlacedKind::Point => Some(p.clone()),
             Some(_) => {
@@ -322,7 +322,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     /// Returns the orientation of link `link` in link `base`.
     fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let to_ground = |mut current: Option<LinkId>| {
             let mut steps = Vec::new();
             while let Some(l) = current {
@@ -372,7 +372,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
         let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
         if let [(axes, v)] = terms.as_slice()
@@ -389,7 +389,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     /// Whether the origin of a link always coincides with that of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let mut current = link;
         while current != ancestor {
             let Some(l) = current else { return false };

@@ -102,7 +102,7 @@ impl<'g> Builder<'_, 'g> {
             let by_force =
                 constraint.friction.iter().fold(g.zero(), |sum, term| sum + term.share * term.rate);
             let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).call(Function::Abs);
-            let mut kinematics = self.scope.kinematics.borrow_mut();
+            let kinematics = &mut self.scope.kinematics;
             let contact = constraint.name.split('.').next().unwrap_or(&constraint.name);
             kinematics.powers.insert(contact.to_string(), Ok(normal * by_force));
         }
@@ -127,14 +127,14 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the velocity of a link's origin and its angular velocity, in the axes of the link.
     fn twist(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let twist = &kinematics.twists[link.0];
         (twist.linear, twist.angular)
     }
 
     fn in_axes_of(&self, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {
         let zero = Vec3::zero(self.model.graph);
-        self.scope.kinematics.borrow().resolve(direction, Some(link), zero)
+        self.scope.kinematics.resolve(direction, Some(link), zero)
     }
 }
 
@@ -151,7 +151,7 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
             return None;
         }
-        match self.kinematics.borrow().powers.get(name) {
+        match self.kinematics.powers.get(name) {
             Some(Ok(power)) => Some(Value::Scalar(*power)),
             Some(Err(why)) => {
                 cx.error(e.place.clone(), format!("the power of `{name}` is not there: {why}"))

@@ -34,7 +34,7 @@ impl<'g> Scope<'_, 'g> {
         }
         let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| in_links(terms)).collect();
         let link = all.iter().flatten().next().and_then(|(link, _)| *link);
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         Some((Axes::Link(link), all.iter().map(|t| kinematics.resolve(t, link, zero)).collect()))
     }
@@ -61,10 +61,9 @@ impl<'g> Scope<'_, 'g> {
         {
             return self.rate_in(call.place, vector, frame, cx);
         }
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
             if self.is_moving(argument) {
-                drop(kinematics);
                 return self.rate_of_value(call.place, argument, cx).map(Value::Scalar);
             }
             if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
@@ -107,8 +106,8 @@ impl<'g> Scope<'_, 'g> {
             ExprKind::Name(name) if name == GROUND => {
                 Some(Placed { link: None, pose: Pose::identity(self.graph), kind: PlacedKind::Body })
             }
-            ExprKind::Name(name) => match self.kinematics.borrow().places.get(name) {
-                Some(p) if p.kind != PlacedKind::Frame => Some(p.clone()),
+            ExprKind::Name(name) => match self.placed(name) {
+                Some(p) if p.kind != PlacedKind::Frame => Some(p),
                 Some(_) => {
                     cx.error(e.place.clone(), format!("`{name}` is a frame, which has axes but no place"))
                         .help("name a body, a particle or a point");
@@ -145,7 +144,7 @@ impl<'g> Scope<'_, 'g> {
         if !self.is_first_report(name, cx) {
             return;
         }
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
         let error = cx.error(place.clone(), format!("unknown point `{name}`"));
         words::suggest_meaning(error, words::BODIES, name, &known);
@@ -166,7 +165,7 @@ impl<'g> Scope<'_, 'g> {
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);
                 let offset = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
-                let offset = self.kinematics.borrow().resolve(&offset, base.link, Vec3::zero(self.graph));
+                let offset = self.kinematics.resolve(&offset, base.link, Vec3::zero(self.graph));
                 let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
@@ -183,7 +182,7 @@ impl<'g> Scope<'_, 'g> {
         if name == GROUND {
             return Some(None);
         }
-        match self.kinematics.borrow().places.get(name) {
+        match self.placed(name) {
             Some(p) if p.kind != PlacedKind::Point => Some(p.link),
             Some(_) => {
                 cx.error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
@@ -194,7 +193,7 @@ impl<'g> Scope<'_, 'g> {
                 if !self.is_first_report(name, cx) {
                     return None;
                 }
-                let kinematics = self.kinematics.borrow();
+                let kinematics = &self.kinematics;
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.error(e.place.clone(), format!("unknown frame `{name}`"));
                 words::suggest_meaning(error, words::BODIES, name, &known);
@@ -230,7 +229,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x] = self.slash_operands(call, Allowed::Placement, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
-        Some(vector(self.kinematics.borrow().position_between(&y?, &x?)))
+        Some(vector(self.kinematics.position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
@@ -239,7 +238,7 @@ impl<'g> Scope<'_, 'g> {
         let [y, x, frame] = self.slash_operands(call, Allowed::Motion, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
-        Some(vector(self.kinematics.borrow().velocity_in(&y?, &x?, frame?, self.graph)))
+        Some(vector(self.kinematics.velocity_in(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
@@ -248,21 +247,21 @@ impl<'g> Scope<'_, 'g> {
         let [y, x, frame] = self.slash_operands(call, Allowed::Acceleration, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
         let frame = self.frame(frame, cx);
-        Some(vector(self.kinematics.borrow().acceleration_in(&y?, &x?, frame?, self.graph)))
+        Some(vector(self.kinematics.acceleration_in(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 2] = self.slash_operands(call, Allowed::Motion, cx)?;
         let [b, a] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().angular_velocity_in(b?, a?, self.graph)))
+        Some(vector(self.kinematics.angular_velocity_in(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 3] = self.slash_operands(call, Allowed::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.borrow().angular_acceleration_in(b?, a?, c?, self.graph)))
+        Some(vector(self.kinematics.angular_acceleration_in(b?, a?, c?, self.graph)))
     }
 }
 

@@ -40,9 +40,9 @@ pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
 
 impl<'g> Builder<'_, 'g> {
     /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
-    pub fn record_transmission(&self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
+    pub fn record_transmission(&mut self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
         let name = self.description.joints[j].name.text.clone();
-        self.scope.kinematics.borrow_mut().transmissions.insert(name, (j, link, rotation.clone()));
+        self.scope.kinematics.transmissions.insert(name, (j, link, rotation.clone()));
     }
 
     /// Returns the joint's frame on the parent, moved by the coordinates of the released joint number `index`
@@ -75,7 +75,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `reaction_force(joint)` or `reaction_torque(joint)`, whose components begin at `offset`: the
     /// load of the parent on the child at the origin of the joint's frame.
     pub fn reaction(&self, call: &Call<'_>, offset: usize, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let joint_names = || kinematics.transmissions.keys().map(String::as_str);
         let name = match call.arguments {
             [e] => match &e.kind {

@@ -16,7 +16,7 @@ impl<'g> Scope<'_, 'g> {
         };
         let parameters: Option<Vec<usize>> = symbols_in(values).into_iter().map(parameter).collect();
         let Some(parameters) = parameters.filter(|all| !all.is_empty()) else { return };
-        let mut all = self.requirements.borrow_mut();
+        let all = &mut self.records.borrow_mut().requirements;
         // A definition may be used several times.
         if !all.iter().any(|known| known.rule.includes(rule) && known.values == values) {
             all.push(Requirement { rule, figure: figure(), parameters, values: values.to_vec() });
@@ -44,6 +44,6 @@ impl Builder<'_, '_> {
                 self.scope.require(Rule::Finite, || format!("the parameter `{}`", parameter.text), &[value]);
             }
         }
-        self.model.requirements = self.scope.requirements.take();
+        self.model.requirements = std::mem::take(&mut self.scope.records.borrow_mut().requirements);
     }
 }

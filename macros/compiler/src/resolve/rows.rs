@@ -33,21 +33,21 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the motion of a link relative to the nearest common ancestor of it and another link.
     pub fn relative(&self, link: Option<LinkId>, other: Option<LinkId>) -> Relative<'g> {
-        jet::relative(&self.model, &self.scope.kinematics.borrow().joints, link, other)
+        jet::relative(&self.model, &self.scope.kinematics.joints, link, other)
     }
 
     /// Returns a point of a link, with its rates.
     pub fn point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
-        jet::point(&self.scope.kinematics.borrow().joints, on, p)
+        jet::point(&self.scope.kinematics.joints, on, p)
     }
 
     /// Returns a direction fixed in a link, with its rates.
     pub fn direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
-        jet::direction(&self.scope.kinematics.borrow().joints, on, e)
+        jet::direction(&self.scope.kinematics.joints, on, e)
     }
 
     /// Returns a vector of a link in the axes of the ancestor.
     pub fn direction_out(&self, on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
-        jet::direction_out(&self.scope.kinematics.borrow().joints, on, v)
+        jet::direction_out(&self.scope.kinematics.joints, on, v)
     }
 }

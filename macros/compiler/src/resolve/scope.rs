@@ -15,12 +15,8 @@ pub struct Scope<'a, 'g> {
     pub graph: &'g Graph,
     /// Parameters of the struct.
     pub parameters: &'a [Name],
-    /// Whether each parameter was used.
-    pub used: std::cell::RefCell<Vec<bool>>,
     /// Tables, which are parameters that are functions.
     pub tables: &'a [syntax::Table],
-    /// Whether each table was used.
-    pub used_tables: RefCell<Vec<bool>>,
     /// Names of bodies and particles.
     pub bodies: Vec<String>,
     /// Names of frames.
@@ -42,21 +38,34 @@ pub struct Scope<'a, 'g> {
     /// Quantities on which expressions may depend, and the meaning of the unqualified axes `x`, `y` and `z`.
     pub context: RefCell<Context<'g>>,
     /// Elements placed so far, with their motion.
-    pub kinematics: RefCell<Kinematics<'g>>,
-    /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
-    /// missing.
-    pub reported_names: RefCell<BTreeSet<String>>,
+    pub kinematics: Kinematics<'g>,
     /// Whether numbers are `f32`.
     pub is_f32: bool,
+    /// Facts about the expressions resolved so far.
+    pub records: RefCell<Records<'g>>,
+}
+
+/// Facts about the expressions resolved so far.
+#[derive(Debug, Default)]
+pub struct Records<'g> {
+    /// Whether each parameter was used.
+    pub used: Vec<bool>,
+    /// Whether each table was used.
+    pub used_tables: Vec<bool>,
+    /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
+    /// missing.
+    pub reported_names: BTreeSet<String>,
     /// Definitions whose errors have been reported.
-    pub reported_definitions: RefCell<BTreeSet<String>>,
+    pub reported_definitions: BTreeSet<String>,
     /// Whether a constraint on configurations is being resolved.
-    pub in_holonomic_constraint: std::cell::Cell<bool>,
+    pub in_holonomic_constraint: bool,
+    /// Placements that replace those of the elements while a field is differentiated.
+    pub displaced: Vec<(String, Placed<'g>)>,
     /// Values of definitions used by the definition that is being evaluated. Each is evaluated once, even if
     /// several others use it.
-    pub definition_values: RefCell<DefinitionValues<'g>>,
+    pub definition_values: DefinitionValues<'g>,
     /// Conditions on values that depend on parameters, recorded so far.
-    pub requirements: RefCell<Vec<Requirement<'g>>>,
+    pub requirements: Vec<Requirement<'g>>,
 }
 
 /// Values of definitions, by name, allowed quantities, and whether unqualified axes are those of the ground;
@@ -278,6 +287,13 @@ impl<'g> Scope<'_, 'g> {
         let result = f(self);
         self.context.replace(before);
         result
+    }
+
+    /// Returns the placement of an element by its name.
+    pub fn placed(&self, name: &str) -> Option<Placed<'g>> {
+        let records = self.records.borrow();
+        let displaced = records.displaced.iter().rev().find(|(displaced, _)| displaced == name);
+        displaced.map(|(_, placed)| placed).or_else(|| self.kinematics.places.get(name)).cloned()
     }
 
     /// Returns the quantities on which expressions may depend here.

@@ -69,7 +69,7 @@ impl<'g> Builder<'_, 'g> {
     /// Resolves a declared coordinate, a joint with one coordinate, a definition, or a placed element.
     fn named_target(&self, on: &Expr, name: &str, cx: &mut Diagnostics) -> Option<Target<'g>> {
         if self.description.coordinates.iter().any(|c| c.name.text == name) {
-            let kinematics = self.scope.kinematics.borrow();
+            let kinematics = &self.scope.kinematics;
             let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
             return found.map(|(_, c, _)| Target::Coordinate(*c, None));
         }
@@ -141,7 +141,7 @@ impl<'g> Builder<'_, 'g> {
     /// Returns a declared coordinate by its name.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let known = kinematics.coordinates.iter().find(|(known, ..)| free && known == name);
         known.map(|(_, c, _)| *c)
     }

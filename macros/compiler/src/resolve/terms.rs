@@ -63,7 +63,7 @@ impl<'g> Builder<'_, 'g> {
                 .help("let the element act between points of different bodies");
             return None;
         }
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         let terms = kinematics.position_between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);

@@ -1,7 +1,7 @@
 //! Topology: the joint of each body in the spanning tree, the joints that close loops, and the order in which
 //! links are built.
 
-use super::builder::{BodyIndex, JointedBody};
+use super::builder::BodyIndex;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::GROUND;
@@ -68,7 +68,7 @@ pub fn base_name(e: &Expr) -> Option<&str> {
 /// Finds the spanning tree of the joints.
 pub fn find_tree(
     description: &Description,
-    jointed: &[JointedBody<'_>],
+    jointed: &[&Name],
     scope: &Scope<'_, '_>,
     cx: &mut Diagnostics,
 ) -> Option<Order> {
@@ -78,7 +78,7 @@ pub fn find_tree(
         if name.text == GROUND || is_point {
             return Ok(None);
         }
-        match jointed.iter().position(|h| h.name.text == name.text) {
+        match jointed.iter().position(|h| h.text == name.text) {
             Some(k) => Ok(Some(k)),
             None => {
                 unknown_body(name, jointed, scope, cx);
@@ -100,7 +100,7 @@ pub fn find_tree(
         if joint.parent.body.text == name.text {
             is_valid = false;
             // A body called `ground` has already been reported.
-            if jointed.iter().any(|h| h.name.text == GROUND) {
+            if jointed.iter().any(|h| h.text == GROUND) {
                 continue;
             }
             cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text))
@@ -122,7 +122,7 @@ pub fn find_tree(
     for (k, body) in jointed.iter().enumerate() {
         if !is_attached[k] && !is_placed(k) {
             if !description.partial {
-                report_unattached(description, body.name, &loops, cx);
+                report_unattached(description, body, &loops, cx);
             }
             is_valid = false;
         }
@@ -175,7 +175,7 @@ fn sort(
     order
 }
 
-fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
     if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
@@ -192,7 +192,7 @@ fn unknown_body(name: &Name, jointed: &[JointedBody<'_>], scope: &Scope<'_, '_>,
             .help("leave its `at` out, or join the body");
         return;
     }
-    let known: Vec<&str> = jointed.iter().map(|h| h.name.text.as_str()).chain([GROUND]).collect();
+    let known: Vec<&str> = jointed.iter().map(|h| h.text.as_str()).chain([GROUND]).collect();
     if !scope.is_first_report(&name.text, cx) {
         return;
     }

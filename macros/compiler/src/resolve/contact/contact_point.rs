@@ -28,7 +28,7 @@ impl<'g> Builder<'_, 'g> {
         let terms = self.scope.in_context(context, |scope| scope.terms(point, cx));
         let (first, second, terms) = (first?, second?, terms?);
         let zero = Vec3::zero(self.scope.graph);
-        let in_link = self.scope.kinematics.borrow().resolve(&terms, frame.link, zero);
+        let in_link = self.scope.kinematics.resolve(&terms, frame.link, zero);
         let position = frame.pose.rotation.to_child(in_link);
         let is_allowed = |q: Quantity| match q {
             Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
@@ -55,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the coordinate with this name, which must be declared as a field of its own.
     fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let coordinate_names = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
         let name = e.name().unwrap_or("");
         let found =

@@ -23,7 +23,7 @@ impl<'g> Scope<'_, 'g> {
     /// points.
     pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         Some(sum_by_axes(&kinematics.contact_loads.get(name)?.forces))
     }
 
@@ -31,7 +31,7 @@ impl<'g> Scope<'_, 'g> {
     /// spin and rolling.
     pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.named_contact(call, cx)?;
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
             cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
@@ -43,7 +43,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the name of the contact that is the argument of a function.
     fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
-        let kinematics = self.kinematics.borrow();
+        let kinematics = &self.kinematics;
         let contact_names = || kinematics.contact_loads.keys().map(String::as_str);
         let [e] = call.take(cx)?;
         let Some(name) = e.name() else {

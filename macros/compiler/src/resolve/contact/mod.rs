@@ -116,7 +116,7 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the position of a point given relative to the centre of the first surface.
     fn contact_position(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
-        let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
+        let mut place = self.scope.kinematics.position(frame.link, frame.pose.translation);
         place.push((pair.on_a.ancestor, point));
         place
     }

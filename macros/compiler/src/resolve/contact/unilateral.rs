@@ -138,9 +138,9 @@ impl<'g> Builder<'_, 'g> {
                 (None, Some(power)) => Ok(power),
                 _ => self.power_since(&before, &contact.name.text),
             };
-            self.scope.kinematics.borrow_mut().powers.insert(contact.name.text.clone(), power);
+            self.scope.kinematics.powers.insert(contact.name.text.clone(), power);
         }
-        self.scope.kinematics.borrow_mut().contact_loads.insert(contact.name.text.clone(), exerted);
+        self.scope.kinematics.contact_loads.insert(contact.name.text.clone(), exerted);
     }
 
     /// Returns the points where two surfaces may touch; `None` after an error.

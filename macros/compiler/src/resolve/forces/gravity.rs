@@ -105,10 +105,9 @@ impl<'g> Builder<'_, 'g> {
         let Some((_, _, central)) = self.masses.get(index).cloned().flatten() else { return };
         let tensor = body.pose.rotation.sym_to_parent(central);
         let zero = Vec3::zero(self.scope.graph);
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let terms = kinematics.position_between(body, center);
         let r = kinematics.resolve(&terms, body.link, zero);
-        drop(kinematics);
         let length = r.norm();
         let n = r.map(|c| c / length);
         let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];

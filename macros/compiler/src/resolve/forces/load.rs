@@ -72,11 +72,10 @@ impl<'g> Builder<'_, 'g> {
         };
         let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
         let Some(terms) = self.scope.in_context(context, |scope| scope.terms(value, cx)) else { return };
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         let force = kinematics.resolve(&terms, place.link, zero);
         let twist = kinematics.twists[link.0];
-        drop(kinematics);
         let rate = match torque {
             true => twist.angular,
             false => twist.linear + twist.angular.cross(place.pose.translation),
@@ -183,11 +182,10 @@ impl<'g> Builder<'_, 'g> {
         else {
             return;
         };
-        let kinematics = self.scope.kinematics.borrow();
+        let kinematics = &self.scope.kinematics;
         let twist = &kinematics.twists[link.0];
         let along = kinematics.resolve(&along, Some(link), Vec3::zero(self.scope.graph));
         let rate = (twist.linear + twist.angular.cross(point)).dot(along);
-        drop(kinematics);
         self.add_input_load(&action.name.text, rate);
     }
 

@@ -56,7 +56,7 @@ impl<'g> Builder<'_, 'g> {
             self.record_applied(&before, &action.name.text);
             if is_power_used(self.description, &action.name) {
                 let power = self.power_since(&before, &action.name.text);
-                self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
+                self.scope.kinematics.powers.insert(action.name.text.clone(), power);
             }
         }
     }
