@@ -281,7 +281,7 @@ fn symbol_name(symbol: Symbol) -> String {
         Quantity::Acceleration(k) => format!("a{k}"),
         Quantity::Force(k) => format!("tau{k}"),
         Quantity::Input(k) => format!("u{k}"),
-        Quantity::Given(k) => format!("given{k}"),
+        Quantity::Given(block, k) => format!("{block:?}{k}"),
         other => format!("{other:?}"),
     }
 }

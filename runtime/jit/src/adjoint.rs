@@ -10,14 +10,12 @@ use crate::shared::Shared;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::{Extreme, Function as Elementary, Symbol, air};
 use linkwork_compiler::lower::{Op, Operand, Program};
-use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::mechanism::{Quantity, Supplied};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Name of the argument with the factors of the results.
 const FACTORS: &str = "factors";
-/// First given value of the factors: functions have fewer given values.
-const FIRST: usize = 1 << 16;
 
 /// Vector–Jacobian product of a function: derivatives of the sum of its results, each times a factor, by all
 /// arguments and parameters. They are derivatives of the function of all entries, those of quaternions
@@ -70,7 +68,7 @@ impl Function {
         let kind = match (program, entry.name.as_str()) {
             (Some(program), _) => {
                 let inputs = parameters + arguments.iter().sum::<usize>();
-                let given = Argument::Given(FACTORS, FIRST, entry.length);
+                let given = Argument::Given(FACTORS, Supplied::ResultFactor, entry.length);
                 let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
                 let symbols = entry.arguments.iter().flat_map(|argument| {
                     (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
@@ -105,8 +103,9 @@ fn symbol(argument: Argument, k: usize) -> Option<Symbol> {
         Argument::A => Quantity::Acceleration(k),
         Argument::Tau => Quantity::Force(k),
         Argument::U => Quantity::Input(k),
-        Argument::Given(_, first, _) => Quantity::Given(first + k),
-        Argument::Standard(_) | Argument::Factors(_) => Quantity::Given(k),
+        Argument::Given(_, block, _) => Quantity::Given(block, k),
+        Argument::Standard(_) => Quantity::Given(Supplied::Inertia, k),
+        Argument::Factors(_) => Quantity::Given(Supplied::Factor, k),
         Argument::Momenta(_) => Quantity::Momentum(k),
         Argument::Into(..) | Argument::Called(_) => return None,
     };
@@ -187,7 +186,7 @@ fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> O
         inputs: HashMap::new(),
     };
     for (k, output) in program.outputs.iter().enumerate() {
-        reversed.add(*output, Operand::Symbol(Quantity::Given(FIRST + k).symbol()));
+        reversed.add(*output, Operand::Symbol(Quantity::Given(Supplied::ResultFactor, k).symbol()));
     }
     for k in (0..count).rev() {
         if let Some(factor) = reversed.values[k] {

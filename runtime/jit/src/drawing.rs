@@ -8,7 +8,7 @@ use linkwork_compiler::compile_with;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Lookup, Symbol};
 use linkwork_compiler::lower::{Program, lower};
-use linkwork_compiler::mechanism::{self, PieceKind, Quantity};
+use linkwork_compiler::mechanism::{self, PieceKind, Quantity, Supplied};
 use linkwork_compiler::passes::Passes;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -73,7 +73,7 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
     let symbol = |symbol: Symbol| {
         let value = match Quantity::of(symbol) {
             Quantity::Parameter(k) => robot.parameter_values().get(k),
-            Quantity::Given(k) => given.get(k),
+            Quantity::Given(Supplied::Position, k) => given.get(k),
             _ => None,
         };
         value.copied().unwrap_or(f64::NAN)

@@ -7,7 +7,7 @@ use crate::routine::Routine;
 use linkwork_compiler::catalogue::{Argument, Id};
 use linkwork_compiler::derive::{FrameSteps, LinkSteps, Output, PLACEMENT, TWIST};
 use linkwork_compiler::lower::{Op, Operand, Program};
-use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
 
 /// A quantity of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,7 +174,10 @@ impl Frames {
                 let placed = append_given(&mut merged, &[&placement], &steps.placement);
                 let mut jacobian = vec![Operand::Const(0.0); TWIST * self.nv];
                 for (link, placement) in path.iter().zip(&placements) {
-                    let columns = append_given(&mut merged, &[placement, &placed[9..]], &link.columns);
+                    for (k, value) in placed[9..].iter().enumerate() {
+                        merged.bind(Quantity::Given(Supplied::Origin, k).symbol(), *value);
+                    }
+                    let columns = append_given(&mut merged, &[placement], &link.columns);
                     for (column, v) in columns.chunks_exact(TWIST).zip(&link.velocities) {
                         for (i, entry) in column.iter().enumerate() {
                             // Joints that follow one coordinate share a column.
@@ -210,10 +213,10 @@ impl Frames {
     }
 }
 
-/// Adds a program that takes these values; returns its outputs.
+/// Adds a program that takes these values of the parent; returns its outputs.
 fn append_given(merged: &mut Merged, values: &[&[Operand]], program: &Program) -> Vec<Operand> {
     for (k, value) in values.iter().copied().flatten().enumerate() {
-        merged.bind(Quantity::Given(k).symbol(), *value);
+        merged.bind(Quantity::Given(Supplied::Parent, k).symbol(), *value);
     }
     merged.append(program)
 }

@@ -8,10 +8,10 @@ use crate::merge::Merged;
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
 use crate::space::Space;
-use linkwork_compiler::catalogue::{Argument, CONTACT_FORCES, Called, Id, REACTION, Record, Shape};
+use linkwork_compiler::catalogue::{Argument, Called, Id, REACTION, Record, Shape};
 use linkwork_compiler::derive::{self, Output};
 use linkwork_compiler::lower::{Operand, Program};
-use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
 use linkwork_compiler::syntax::RATE_OF_STATE;
 
 /// A result of a function: a matrix, stored by columns behind the results before it.
@@ -485,5 +485,5 @@ pub(crate) fn is_passed(argument: &Argument) -> bool {
 }
 
 fn is_contact_forces(argument: &Argument) -> bool {
-    matches!(argument, Argument::Given(CONTACT_FORCES, ..))
+    matches!(argument, Argument::Given(_, Supplied::ContactForces, _))
 }

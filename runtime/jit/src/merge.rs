@@ -62,13 +62,13 @@ mod tests {
     use super::*;
     use linkwork_compiler::expr::Graph;
     use linkwork_compiler::lower::lower;
-    use linkwork_compiler::mechanism::Quantity;
+    use linkwork_compiler::mechanism::{Quantity, Supplied};
 
     /// sin(2 x) of the program `2 x` and the program `sin(y)`.
     #[test]
     fn results_replace_symbols() {
         let graph = Graph::new();
-        let (x, y) = (Quantity::Configuration(0), Quantity::Given(0));
+        let (x, y) = (Quantity::Configuration(0), Quantity::Given(Supplied::Parent, 0));
         let twice = lower(&[x.expr(&graph) * graph.num(2.0)]);
         let sine = lower(&[y.expr(&graph).sin()]);
         let mut merged = Merged::default();

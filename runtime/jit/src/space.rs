@@ -8,7 +8,7 @@ use linkwork::__private::{
     free_integrate, free_tangent_rate,
 };
 use linkwork_compiler::catalogue::Argument;
-use linkwork_compiler::mechanism::{Chart, InQ, InV};
+use linkwork_compiler::mechanism::{Chart, InQ, InV, Supplied};
 
 /// A function of the configuration space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,8 +97,8 @@ impl Space {
             [Some(rates), Some(speeds)] => Some([rates, speeds]),
             _ => None,
         };
-        let vector = |name| Argument::Given(name, 0, nv);
-        let configuration = |name| Argument::Given(name, 0, nq);
+        let vector = |name| Argument::Given(name, Supplied::State, nv);
+        let configuration = |name| Argument::Given(name, Supplied::State, nq);
         let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
             let results = vec![Matrix { name: "result", rows, columns: 1 }];
             let plan = Plan::Space(Space { kind, speeds });

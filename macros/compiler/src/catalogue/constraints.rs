@@ -4,6 +4,7 @@ use super::facts::{ConstraintFacts, Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{Q, Tau, V};
 use super::shape::{Argument, Record, Shape};
+use crate::mechanism::Supplied;
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
@@ -71,18 +72,18 @@ fn constraint_facts(f: &Facts) -> ConstraintFacts {
 }
 
 fn force(f: &Facts) -> Argument {
-    Argument::Given("force", 0, f.nv)
+    Argument::Given("force", Supplied::Force, f.nv)
 }
 
 fn bias(f: &Facts) -> Argument {
-    Argument::Given("bias", f.nv, constraint_facts(f).all)
+    Argument::Given("bias", Supplied::Bias, constraint_facts(f).all)
 }
 
 /// Returns the argument with the signs of the normal forces of sliding contacts, empty without such
 /// constraints.
 fn sides(f: &Facts) -> Vec<Argument> {
-    let ConstraintFacts { all, slipping, .. } = constraint_facts(f);
-    if slipping > 0 { vec![Argument::Given("sides", f.nv + all, slipping)] } else { Vec::new() }
+    let slipping = constraint_facts(f).slipping;
+    if slipping > 0 { vec![Argument::Given("sides", Supplied::Side, slipping)] } else { Vec::new() }
 }
 
 /// Returns the shape of the constrained dynamics: accelerations and multipliers with measures of their

@@ -3,7 +3,8 @@
 use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{self, A, Q, V};
-use super::shape::{CONTACT_FORCES, Record, Shape};
+use super::shape::{Record, Shape};
+use crate::mechanism::Supplied;
 use crate::syntax::Word;
 
 const TOUCHING: &[Need] = &[Need::Contacts];
@@ -74,5 +75,5 @@ pub const ROWS: &[Row] = &[
 
 /// Returns the argument with the forces of all contacts.
 pub(super) fn contact_forces(f: &Facts) -> Argument {
-    Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)
+    Argument::Given("forces", Supplied::ContactForces, f.contacts.rates)
 }

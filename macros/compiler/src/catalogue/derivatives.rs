@@ -4,6 +4,7 @@ use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Argument, Called, Record, Shape};
+use crate::mechanism::Supplied;
 use crate::syntax::Word;
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
@@ -113,7 +114,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
         let nc = constraints(f);
         Declaration {
-            arguments: vec![Q, V, A, Argument::Given("lambda", 0, nc)],
+            arguments: vec![Q, V, A, Argument::Given("lambda", Supplied::Multiplier, nc)],
             shape: Shape::Record(Record::MotionDerivatives(f.nv, nc)),
             ..Declaration::default()
         }
@@ -206,10 +207,10 @@ pub const SECOND_ROWS: &[Row] = &[
                     Q,
                     V,
                     A,
-                    Argument::Given("lambda", 0, nc),
-                    Argument::Given("w", nc, f.nv),
-                    Argument::Given("z", nc + f.nv, nc),
-                    Argument::Given("y", 2 * nc + f.nv, nc),
+                    Argument::Given("lambda", Supplied::Multiplier, nc),
+                    Argument::Given("w", Supplied::Direction, f.nv),
+                    Argument::Given("z", Supplied::AccelerationFactor, nc),
+                    Argument::Given("y", Supplied::VelocityFactor, nc),
                 ],
                 shape: Shape::Record(Record::ConstraintCurvature(f.nv, nc)),
                 ..Declaration::default()

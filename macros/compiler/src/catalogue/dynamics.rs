@@ -4,6 +4,7 @@ use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Argument, Called, Shape};
+use crate::mechanism::Supplied;
 use crate::syntax::Word;
 
 const INERTIA: &[Need] = &[Need::Inertia];
@@ -32,7 +33,7 @@ pub const ROWS: &[Row] = &[
     .unbatched(),
     Row::derived(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
         timeless: true,
-        arguments: vec![Argument::Given("place", 0, 2)],
+        arguments: vec![Argument::Given("place", Supplied::Position, 2)],
         shape: Shape::Array(f.heights),
         ..Declaration::default()
     })

@@ -21,7 +21,7 @@ pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, ContactSizes, Facts, Need};
 pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, output, reaction, touched};
 pub use row::{Declaration, Declared, Id, Made, Row};
-pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};
+pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows, in the order in which functions are generated. The functions of the outputs are generated after
 /// the first [`BEFORE_OUTPUTS`] tables.

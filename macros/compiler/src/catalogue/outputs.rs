@@ -5,7 +5,7 @@ use super::facts::Facts;
 use super::row::{Declared, Id};
 use super::shape::Argument::{A, Q, T, U, V};
 use super::shape::{Argument, Shape};
-use crate::mechanism::Uses;
+use crate::mechanism::{Supplied, Uses};
 
 /// Prefix of the hidden function of an output that contains reactions.
 pub const REACTION: &str = "__reaction_";
@@ -99,7 +99,7 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
 pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
-    arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
+    arguments.extend(f.constraints.map(|c| Argument::Given("lambda", Supplied::Multiplier, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
     arguments.extend(touched.then_some(contact_forces(f)));
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)

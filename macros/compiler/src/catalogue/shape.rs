@@ -1,9 +1,6 @@
 //! Arguments and results of generated functions.
 
-use crate::mechanism::Quantity;
-
-/// Name of the argument with the forces of all contacts.
-pub const CONTACT_FORCES: &str = "forces";
+use crate::mechanism::{Quantity, Supplied};
 
 /// An argument of a generated function, identified by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +17,8 @@ pub enum Argument {
     Tau,
     /// Inputs `u`, with `NU` entries.
     U,
-    /// A vector of program inputs: name of the argument, index of the first input, and their number.
-    Given(&'static str, usize, usize),
+    /// A vector of program inputs, with the name of the argument and its length.
+    Given(&'static str, Supplied, usize),
     /// A vector of standard inertial parameters, with its length.
     Standard(usize),
     /// A square matrix to which the result is written: name of the argument and number of rows.
@@ -100,11 +97,10 @@ impl Argument {
             | (Argument::A, Quantity::Acceleration(k))
             | (Argument::Tau, Quantity::Force(k))
             | (Argument::U, Quantity::Input(k)) => Some(k),
-            (Argument::Given(_, first, count), Quantity::Given(k)) if (first..first + count).contains(&k) => {
-                Some(k - first)
-            }
-            (Argument::Given(name, ..), Quantity::ContactForce(k)) if name == CONTACT_FORCES => Some(k),
-            (Argument::Standard(_) | Argument::Factors(_), Quantity::Given(k))
+            (Argument::Given(_, known, _), Quantity::Given(block, k)) if known == block => Some(k),
+            (Argument::Given(_, Supplied::ContactForces, _), Quantity::ContactForce(k))
+            | (Argument::Standard(_), Quantity::Given(Supplied::Inertia, k))
+            | (Argument::Factors(_), Quantity::Given(Supplied::Factor, k))
             | (Argument::Momenta(_), Quantity::Momentum(k))
             | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
             | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),

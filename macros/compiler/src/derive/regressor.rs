@@ -7,7 +7,7 @@ use crate::kinematics::{self, Joint};
 use crate::mechanics;
 use crate::mechanics::independence::{Part, independent};
 use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
-use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity};
+use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, Supplied};
 use crate::passes::{Gauge, Regroup, regroup};
 
 /// Data of a model for parameter identification.
@@ -95,7 +95,7 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
     let mut given = model.clone();
     given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
     for (k, site) in bodies.iter().filter_map(|body| site(body)).enumerate() {
-        let own = inertia(std::array::from_fn(|p| Quantity::Given(COUNT * k + p).expr(g)));
+        let own = inertia(std::array::from_fn(|p| Quantity::Given(Supplied::Inertia, COUNT * k + p).expr(g)));
         let link = &mut given.links[site.link.0].inertia;
         *link = link.plus_placed(&own, &site.pose.rotation, site.pose.translation);
     }

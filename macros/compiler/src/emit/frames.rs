@@ -8,9 +8,10 @@ use super::signature::Signature;
 use crate::catalogue::Argument;
 use crate::derive::{FrameSteps, Function, LinkSteps};
 use crate::lower::Program;
+use crate::mechanism::Supplied;
 use std::fmt::Write;
 
-const PARENT: Argument = Argument::Given("p", 0, 12);
+const PARENT: Argument = Argument::Given("p", Supplied::Parent, 12);
 
 /// Writes the kinematic steps and the functions that call them, for a type of this name: the placements of
 /// all frames and the implementations of `NamedFrame`. The steps are methods of a private trait inside this
@@ -90,17 +91,20 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
             all
         };
         step(format!("__link{k}_placement"), from_parent(&[Argument::Q], PARENT), 12, &link.placement);
-        let twist = from_parent(&[Argument::Q, Argument::V], Argument::Given("p", 0, 6));
+        let twist = from_parent(&[Argument::Q, Argument::V], Argument::Given("p", Supplied::Parent, 6));
         step(format!("__link{k}_twist"), twist, 6, &link.twist);
-        let acceleration = from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", 0, 12));
+        let acceleration =
+            from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", Supplied::Parent, 12));
         step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
         let mut columns = if link.driven { s.timed(&[Argument::Q]) } else { Vec::new() };
-        columns.extend([Argument::Given("p", 0, 12), Argument::Given("o", 12, 3)]);
+        columns
+            .extend([Argument::Given("p", Supplied::Parent, 12), Argument::Given("o", Supplied::Origin, 3)]);
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
-        let link_argument =
-            |n: usize| frame.link.map(|_| Argument::Given("p", 0, n)).into_iter().collect::<Vec<_>>();
+        let link_argument = |n: usize| {
+            frame.link.map(|_| Argument::Given("p", Supplied::Parent, n)).into_iter().collect::<Vec<_>>()
+        };
         if !frame.is_link {
             step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
         }

@@ -8,7 +8,7 @@ use crate::expr::eval::eval;
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};
-use crate::mechanism::{Chart, Motion, Pose};
+use crate::mechanism::{Chart, Motion, Pose, Supplied};
 use std::path::Path;
 
 mod inertia;
@@ -56,7 +56,7 @@ fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],
         Quantity::Input(k) => u[k],
-        Quantity::Given(k) => multipliers[k],
+        Quantity::Given(Supplied::Multiplier, k) => multipliers[k],
         Quantity::Time => 0.7,
         Quantity::Force(k) => 0.3 * k as f64 - 1.0,
         other => panic!("{other:?} in the equations"),
@@ -79,7 +79,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
         .chain(all(model.nv(), Quantity::Velocity))
         .chain(all(model.nv(), Quantity::Acceleration))
         .chain(all(model.nu(), Quantity::Input))
-        .chain(all(model.constraints.len(), Quantity::Given))
+        .chain(all(model.constraints.len(), |k| Quantity::Given(Supplied::Multiplier, k)))
         .chain(all(model.nv(), Quantity::Force))
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities

@@ -7,7 +7,7 @@ use crate::equations::print::mathml::page;
 use crate::equations::print::names::{Names, primed};
 use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
-use crate::mechanism::{Chart, Model, Quantity};
+use crate::mechanism::{Chart, Model, Quantity, Supplied};
 
 /// Maximum number of columns of equations in the text.
 const WIDTH: usize = 100;
@@ -238,7 +238,7 @@ pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String
         Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
         Quantity::Time => ("t".to_string(), 0),
         Quantity::Force(k) => (force_name(model, k), 0),
-        Quantity::Given(k) => (format!("lambda{}", k + 1), 0),
+        Quantity::Given(Supplied::Multiplier, k) => (format!("lambda{}", k + 1), 0),
         _ => (format!("s{}", symbol.0), 0),
     }
 }

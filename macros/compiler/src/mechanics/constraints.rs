@@ -16,7 +16,7 @@ use super::friction;
 use super::ldl::{self, Solution, solve_in};
 use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
-use crate::mechanism::{Model, Pivot, Quantity};
+use crate::mechanism::{Model, Pivot, Quantity, Supplied};
 
 /// Returns `J`, with a row for each constraint and a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
@@ -116,7 +116,7 @@ pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
 
 /// Returns the multipliers as arguments of the generated function.
 pub fn multipliers<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.constraints.len()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
+    (0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k).expr(model.graph)).collect()
 }
 
 /// Returns the approximate number of products of the elimination.
@@ -262,9 +262,8 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
 /// at run time.
 pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let symbols =
-        |range: std::ops::Range<usize>| range.map(|k| Quantity::Given(k).expr(model.graph)).collect();
-    (symbols(0..nv), symbols(nv..nv + nc))
+    let symbols = |block, n: usize| (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect();
+    (symbols(Supplied::Force, nv), symbols(Supplied::Bias, nc))
 }
 
 /// First derivatives of the terms that constraints add to the equations of motion.

@@ -6,7 +6,7 @@
 
 use crate::expr::{Expr, Graph, Mat3, Vec3};
 use crate::kinematics::{Joint, Spatial};
-use crate::mechanism::{Model, NamedFrame, Pose, Quantity};
+use crate::mechanism::{Model, NamedFrame, Pose, Quantity, Supplied};
 
 /// Placement of a frame in the ground: rotation matrix and position.
 #[derive(Clone, Copy)]
@@ -39,23 +39,21 @@ impl<'g> Placement<'g> {
     }
 }
 
-fn position_argument<'g>(model: &Model<'g>, first: usize) -> Vec3<'g> {
-    Vec3(std::array::from_fn(|k| Quantity::Given(first + k).expr(model.graph)))
+/// Returns three entries of an argument as a vector.
+fn given_vector<'g>(model: &Model<'g>, block: Supplied, first: usize) -> Vec3<'g> {
+    Vec3(std::array::from_fn(|k| Quantity::Given(block, first + k).expr(model.graph)))
 }
 
+/// Returns the placement of the parent, which comes first in its motion.
 fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
-    Placement {
-        rotation: Mat3([
-            position_argument(model, 0).0,
-            position_argument(model, 3).0,
-            position_argument(model, 6).0,
-        ]),
-        position: position_argument(model, 9),
-    }
+    let [a, b, c, position] = [0, 3, 6, 9].map(|first| given_vector(model, Supplied::Parent, first));
+    Placement { rotation: Mat3([a.0, b.0, c.0]), position }
 }
 
+/// Returns six entries of the motion of the parent as a spatial vector.
 fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
-    Spatial { linear: position_argument(model, first), angular: position_argument(model, first + 3) }
+    let [linear, angular] = [first, first + 3].map(|first| given_vector(model, Supplied::Parent, first));
+    Spatial { linear, angular }
 }
 
 /// Returns the six components of a spatial vector.
@@ -126,7 +124,7 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
 /// unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
 pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
     let placement = given_placement(model);
-    let arm = position_argument(model, 12) - placement.position;
+    let arm = given_vector(model, Supplied::Origin, 0) - placement.position;
     joint
         .dofs
         .iter()

@@ -23,7 +23,7 @@ use super::crba::Matrix;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
 use crate::kinematics::velocity_gradients;
-use crate::mechanism::{Model, Quantity};
+use crate::mechanism::{Model, Quantity, Supplied};
 
 /// Returns the constraints whose multipliers are normal forces of sliding contacts with friction.
 pub fn slipping(model: &Model<'_>) -> Vec<usize> {
@@ -45,7 +45,7 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
-/// as [`super::constraints::solve`] does. The signs `σ` are arguments, which follow `NV + NC` others.
+/// as [`super::constraints::solve`] does. The signs `σ` are arguments.
 pub fn solve<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
@@ -57,7 +57,7 @@ pub fn solve<'g>(
     let (friction, last) = (jacobian_of_friction(model), slipping(model));
     let mut k = system(mass, &rows);
     for (n, row) in last.iter().enumerate() {
-        let side = Quantity::Given(nv + rows.len() + n).expr(model.graph);
+        let side = Quantity::Given(Supplied::Side, n).expr(model.graph);
         for (equation, drag) in k.iter_mut().zip(&friction[*row]) {
             equation[nv + row] += side * *drag;
         }

@@ -14,7 +14,7 @@ use super::{accelerations, constraints, efforts, velocities};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
-use crate::mechanism::{Chart, Gradients, InV, Model, Quantity, Speeds};
+use crate::mechanism::{Chart, Gradients, InV, Model, Quantity, Speeds, Supplied};
 use std::rc::Rc;
 
 /// Kind of a function's results, which determines their transformation to generalized speeds.
@@ -132,10 +132,10 @@ impl<'g> InSpeeds<'g> {
         self.speeds_of(&relative)
     }
 
-    /// Expresses `e` in speeds, where the first `nv` arguments are generalized forces: the arguments of the
+    /// Expresses `e` in speeds, where the given forces are generalized forces of the joints: those of the
     /// result are the generalized forces of the speeds.
     pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.with_arguments(e, Quantity::Given)
+        self.with_arguments(e, |k| Quantity::Given(Supplied::Force, k))
     }
 
     /// Expresses `e` in speeds, where its momenta are those of the joints: the momenta of the result are

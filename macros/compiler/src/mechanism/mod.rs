@@ -35,7 +35,7 @@ pub use model::{Diagram, Model, Origin, OutputValue, Released, Uses};
 pub use motion::{Chart, Coordinate, Motion};
 pub use passive::PassiveForces;
 pub use pose::Pose;
-pub use quantity::Quantity;
+pub use quantity::{Quantity, Supplied};
 pub use requirement::{Requirement, Rule};
 pub use speeds::Speeds;
 pub use units::Units;

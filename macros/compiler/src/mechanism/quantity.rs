@@ -19,8 +19,8 @@ pub enum Quantity {
     Input(usize),
     /// Time.
     Time,
-    /// An argument of a generated function: an entry of an intermediate result that the caller supplies.
-    Given(usize),
+    /// An entry of an argument of a generated function: an intermediate result that the caller supplies.
+    Given(Supplied, usize),
     /// A generalized momentum, in Hamilton's and Routh's equations.
     Momentum(usize),
     /// The deviation of a coordinate, or of a state after these, in linear equations.
@@ -46,8 +46,68 @@ pub enum Quantity {
     ContactForce(usize),
 }
 
+/// Intermediate results that callers of generated functions supply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supplied {
+    /// Applied forces less bias forces, one for each velocity.
+    Force,
+    /// Biases of the constraint accelerations.
+    Bias,
+    /// Signs of the normal forces of slipping surfaces.
+    Side,
+    /// Multipliers of constraints.
+    Multiplier,
+    /// Factors of forces or results of which a function returns derivatives.
+    Factor,
+    /// Factors of the transposed constraint Jacobian, one for each velocity.
+    Direction,
+    /// Factors of the constraint accelerations.
+    AccelerationFactor,
+    /// Factors of the constraint velocities.
+    VelocityFactor,
+    /// Standard inertial parameters of all bodies.
+    Inertia,
+    /// Motion of the link before a frame or a link: placement, twist and acceleration, as far as known.
+    Parent,
+    /// Position of a frame.
+    Origin,
+    /// Position at which the height of a terrain is evaluated.
+    Position,
+    /// A configuration or a velocity of a function that is not computed by a program.
+    State,
+    /// Factors of the results in the derivatives of a function along them.
+    ResultFactor,
+    /// Forces of all contacts; their entries are [`Quantity::ContactForce`].
+    ContactForces,
+}
+
+impl Supplied {
+    /// All kinds of values whose symbols are ordered with those of momenta.
+    const ALL: [Supplied; 13] = {
+        use Supplied::*;
+        [
+            Force,
+            Bias,
+            Side,
+            Multiplier,
+            Factor,
+            Direction,
+            AccelerationFactor,
+            VelocityFactor,
+            Inertia,
+            Parent,
+            Origin,
+            Position,
+            State,
+        ]
+    };
+}
+
 impl Quantity {
     const SHIFT: u32 = 20;
+
+    /// Number of symbols of each kind of given values.
+    const GIVEN: usize = 1 << 14;
 
     /// First symbols of the blocks that are ordered with given values.
     const MOMENTA: usize = 1 << 18;
@@ -69,7 +129,9 @@ impl Quantity {
             Quantity::Input(k) => (5, k),
             Quantity::Time => (6, 0),
             Quantity::Laplace => (6, 1),
-            Quantity::Given(k) => (7, k),
+            Quantity::Given(Supplied::ResultFactor, k) => (13, k),
+            Quantity::ContactForce(k) | Quantity::Given(Supplied::ContactForces, k) => (12, k),
+            Quantity::Given(block, k) => (7, block as usize * Quantity::GIVEN + k),
             Quantity::Momentum(k) => (7, Quantity::MOMENTA + k),
             Quantity::Deviation(k) => (7, Quantity::DEVIATIONS + k),
             Quantity::Stretch => (7, Quantity::PLACEHOLDERS),
@@ -79,7 +141,6 @@ impl Quantity {
             Quantity::Reaction(k) => (9, k),
             Quantity::PassiveForce(k) => (10, k),
             Quantity::PassiveDerivative(k) => (11, k),
-            Quantity::ContactForce(k) => (12, k),
         };
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
@@ -101,12 +162,16 @@ impl Quantity {
             7 if index == Quantity::PLACEHOLDERS => Quantity::Stretch,
             7 if index >= Quantity::DEVIATIONS => Quantity::Deviation(index - Quantity::DEVIATIONS),
             7 if index >= Quantity::MOMENTA => Quantity::Momentum(index - Quantity::MOMENTA),
-            7 => Quantity::Given(index),
+            7 => {
+                let block = Supplied::ALL.get(index / Quantity::GIVEN).copied();
+                Quantity::Given(block.unwrap_or(Supplied::State), index % Quantity::GIVEN)
+            }
             8 => Quantity::Prepared(index),
             9 => Quantity::Reaction(index),
             10 => Quantity::PassiveForce(index),
             11 => Quantity::PassiveDerivative(index),
-            _ => Quantity::ContactForce(index),
+            12 => Quantity::ContactForce(index),
+            _ => Quantity::Given(Supplied::ResultFactor, index),
         }
     }
 
@@ -122,14 +187,13 @@ mod tests {
 
     #[test]
     fn symbols_denote_their_quantities() {
-        let indexed: [fn(usize) -> Quantity; 15] = [
+        let indexed: [fn(usize) -> Quantity; 14] = [
             Quantity::Parameter,
             Quantity::Configuration,
             Quantity::Velocity,
             Quantity::Acceleration,
             Quantity::Force,
             Quantity::Input,
-            Quantity::Given,
             Quantity::Momentum,
             Quantity::Deviation,
             Quantity::Deciding,
@@ -140,9 +204,12 @@ mod tests {
             Quantity::ContactForce,
         ];
         let all = indexed.into_iter().flat_map(|quantity| [0, 1, 255, 65_535].map(quantity));
+        let given =
+            Supplied::ALL.into_iter().flat_map(|block| [0, 1, 16_383].map(|k| Quantity::Given(block, k)));
+        let factors = [0, 1, 65_535].map(|k| Quantity::Given(Supplied::ResultFactor, k));
         let displacements = (0..3).map(Quantity::Displacement);
         let single = [Quantity::Time, Quantity::Laplace, Quantity::Stretch];
-        for quantity in all.chain(displacements).chain(single) {
+        for quantity in all.chain(given).chain(factors).chain(displacements).chain(single) {
             assert_eq!(Quantity::of(quantity.symbol()), quantity);
         }
     }

@@ -9,7 +9,7 @@ use linkwork_compiler::catalogue::Called;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::mechanism::{Quantity, Supplied};
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
@@ -115,7 +115,7 @@ impl Case<'_> {
             Quantity::Velocity(k) => self.point.v[k],
             Quantity::Acceleration(k) => self.point.a[k],
             Quantity::Force(k) => self.point.tau[k],
-            Quantity::Given(k) => self.point.lambda[k],
+            Quantity::Given(Supplied::Factor, k) => self.point.lambda[k],
             _ => f64::NAN,
         };
         // The results of called functions are inputs of their callers.

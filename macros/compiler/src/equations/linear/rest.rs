@@ -14,7 +14,7 @@ use crate::expr::eval::{Tape, needed};
 use crate::expr::exact::replace_exactly;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
-use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity};
+use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, Supplied};
 
 /// Maximum number of random parameter sets that are tried.
 const TRIALS: u64 = 400;
@@ -51,7 +51,7 @@ impl<'g> Rest<'g> {
         let moved = replace_exactly(e, &|s| match Quantity::of(s) {
             Quantity::Configuration(k) => self.configuration.get(k).copied(),
             Quantity::Input(k) => self.inputs.get(k).copied(),
-            Quantity::Given(k) => self.multipliers.get(k).copied(),
+            Quantity::Given(Supplied::Multiplier, k) => self.multipliers.get(k).copied(),
             Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero),
             _ => None,
         });

@@ -44,7 +44,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
             Quantity::Input(k) => u[k],
-            Quantity::Given(_) | Quantity::Time => 0.0,
+            Quantity::Given(..) | Quantity::Time => 0.0,
             Quantity::Parameter(k) if at.states.first().is_some_and(|s| s.parameter == k) => x,
             _ => parameter(s),
         })

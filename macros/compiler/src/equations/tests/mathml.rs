@@ -78,7 +78,7 @@ fn check_page(model: &Model<'_>) {
         .chain((0..model.nq()).map(Quantity::Configuration))
         .chain((0..model.nv()).flat_map(|k| [Quantity::Velocity(k), Quantity::Acceleration(k)]))
         .chain((0..model.nu()).map(Quantity::Input))
-        .chain((0..model.constraints.len()).map(Quantity::Given))
+        .chain((0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k)))
         .chain([Quantity::Time]);
     let spelled: Vec<(String, Symbol)> = symbols
         .map(|q| {

@@ -9,9 +9,10 @@ use super::support::Support;
 use crate::catalogue::Argument;
 use crate::derive::{FrameSteps, LinkSteps, Output};
 use crate::lower::Program;
+use crate::mechanism::Supplied;
 use std::fmt::Write;
 
-const PLACED: Argument = Argument::Given("p", 0, 12);
+const PLACED: Argument = Argument::Given("p", Supplied::Parent, 12);
 
 /// Function of frames: name, arguments, result and documentation.
 struct Access {
@@ -185,7 +186,7 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
 
 fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support: &mut Support) {
     use Argument::{A, Q, V};
-    let argument = |n| Argument::Given("p", 0, n);
+    let argument = |n| Argument::Given("p", Supplied::Parent, n);
     let programs =
         |program: fn(&LinkSteps) -> &Program| links.iter().map(|link| (program(link), false)).collect();
     let steps = [
@@ -206,7 +207,7 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
         },
         Step {
             name: "link_columns",
-            arguments: [o.timed(&[Q]), vec![PLACED, Argument::Given("o", 12, 3)]].concat(),
+            arguments: [o.timed(&[Q]), vec![PLACED, Argument::Given("o", Supplied::Origin, 3)]].concat(),
             programs: programs(|l| &l.columns),
         },
     ];
@@ -230,7 +231,7 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
 }
 
 fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, support: &mut Support) {
-    let argument = |n| vec![Argument::Given("p", 0, n)];
+    let argument = |n| vec![Argument::Given("p", Supplied::Parent, n)];
     let programs =
         |program: fn(&FrameSteps) -> &Program| frames.iter().map(|frame| (program(frame), false)).collect();
     let placements =

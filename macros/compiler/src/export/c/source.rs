@@ -7,10 +7,10 @@ use super::function::{Outline, declare, define, place, plain, public_name, resul
 use super::scalar::in_single_precision;
 use super::support::Support;
 use super::{frames, manifold, names, steps, tables};
-use crate::catalogue::{Argument, CONTACT_FORCES, Called, Id, InverseForm, REACTION, Shape, TOUCHED};
+use crate::catalogue::{Argument, Called, Id, InverseForm, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Program};
-use crate::mechanism::{Model, Quantity};
+use crate::mechanism::{Model, Quantity, Supplied};
 use std::fmt::Write;
 
 /// Options of the export.
@@ -314,7 +314,9 @@ impl<'a> Selection<'a> {
                     chosen.hidden.push(f)
                 }
                 Id::Reaction
-                    if f.arguments.iter().any(|a| matches!(a, Argument::Given(CONTACT_FORCES, ..))) =>
+                    if f.arguments
+                        .iter()
+                        .any(|a| matches!(a, Argument::Given(_, Supplied::ContactForces, _))) =>
                 {
                     let name = f.name.strip_prefix(REACTION).unwrap_or_default();
                     chosen.left_out.push(format!("{name}: a free-body diagram under contact forces"));

@@ -31,7 +31,7 @@ use super::{analytic, is_analytic, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
-use crate::mechanism::{Chart, Inertia, Model, Quantity};
+use crate::mechanism::{Chart, Inertia, Model, Quantity, Supplied};
 use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 
 /// Second derivatives of a function of configuration, velocity and acceleration. The function is linear in
@@ -49,7 +49,7 @@ pub struct Hessian<'g> {
 
 /// Returns the factors `λ` as argument symbols.
 pub fn factors<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nv()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
+    (0..model.nv()).map(|k| Quantity::Given(Supplied::Factor, k).expr(model.graph)).collect()
 }
 
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to `most` lanes, or
@@ -156,12 +156,12 @@ pub struct ConstraintHessian<'g> {
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
-    let arguments = |first: usize, n: usize| -> Vec<Expr<'g>> {
-        (first..first + n).map(|k| Quantity::Given(k).expr(model.graph)).collect()
+    let arguments = |block: Supplied, n: usize| -> Vec<Expr<'g>> {
+        (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect()
     };
     let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w, z, y) =
-        (arguments(0, nc), arguments(nc, nv), arguments(nc + nv, nc), arguments(2 * nc + nv, nc));
+    let (lambda, w) = (constraints::multipliers(model), arguments(Supplied::Direction, nv));
+    let (z, y) = (arguments(Supplied::AccelerationFactor, nc), arguments(Supplied::VelocityFactor, nc));
     let (rows, a) = (constraints::jacobian(model), accelerations(model));
     let along: Vec<Expr<'g>> = rows.iter().map(|row| dot(row, &w)).collect();
     let biases = constraints::biases(model);

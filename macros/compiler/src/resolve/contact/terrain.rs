@@ -7,7 +7,7 @@ use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::Quantity;
+use crate::mechanism::{Quantity, Supplied};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
@@ -41,7 +41,7 @@ impl<'g> Builder<'_, 'g> {
     /// Parses a terrain with this height.
     pub(super) fn terrain(&self, height: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terrain<'g>> {
         let g = self.scope.graph;
-        let symbols = [0, 1].map(|k| Quantity::Given(k).symbol());
+        let symbols = [0, 1].map(|k| Quantity::Given(Supplied::Position, k).symbol());
         let [u, w] = TERRAIN_COORDINATES;
         let locals = vec![(u, g.symbol(symbols[0])), (w, g.symbol(symbols[1]))];
         let context = Context::new(Allowed::Constant, None).with_locals(locals);
@@ -60,7 +60,7 @@ impl<'g> Builder<'_, 'g> {
 
 impl<'g> Terrain<'g> {
     fn evaluate(&self, [x, y]: [Expr<'g>; 2]) -> TerrainPoint<'g> {
-        let place = [(Quantity::Given(0).symbol(), x), (Quantity::Given(1).symbol(), y)];
+        let place = [(0, x), (1, y)].map(|(k, e)| (Quantity::Given(Supplied::Position, k).symbol(), e));
         let all = [&[self.height][..], &self.slopes, &self.curvatures].concat();
         let found = replace_all(&all, &|s| place.iter().find(|(known, _)| *known == s).map(|(_, e)| *e));
         let entry = |k: usize| found.get(k).copied().unwrap_or(self.height);

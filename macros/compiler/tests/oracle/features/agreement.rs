@@ -8,7 +8,7 @@ use linkwork_compiler::catalogue::{self, Id};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::Model;
+use linkwork_compiler::mechanism::{Model, Supplied};
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
@@ -362,7 +362,7 @@ impl Case<'_, '_> {
         let found = self.here(what);
         let Some(function) = self.function(base).cloned().filter(|_| !found.is_empty()) else { return };
         let (output, nv) = (self.output, self.values.v.len());
-        let factors = self.values.given[..nv].to_vec();
+        let factors = self.values.supplied(Supplied::Factor)[..nv].to_vec();
         self.compare_blocks(what, &found, blocks, &|x| dot(&x.run(output, &function), &factors));
     }
 
@@ -417,7 +417,7 @@ impl Case<'_, '_> {
             return;
         }
         let nv = self.values.v.len();
-        let any = self.values.given[..regressor.len() / nv].to_vec();
+        let any = self.values.supplied(Supplied::Inertia)[..regressor.len() / nv].to_vec();
         let forces = product(&regressor, &any);
         let bound = SAME * (1.0 + size(&regressor) * size(&any));
         self.close("base regressor", &product(&base, &self.here("base_parameters")), &forces, bound);

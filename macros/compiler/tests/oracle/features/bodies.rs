@@ -9,7 +9,7 @@ use linkwork_compiler::catalogue::{Argument, Shape};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+use linkwork_compiler::mechanism::{Chart, Model, Supplied};
 use linkwork_compiler::{compile, expand, read};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,7 +105,7 @@ fn lanes(all: &[Value]) -> Value {
     }
 }
 
-fn argument(a: Argument, f: &Function, values: &Values) -> Option<Value> {
+fn argument(a: Argument, values: &Values) -> Option<Value> {
     let vector = |list: &[f64]| Value::List(vec![Value::list(list)]);
     Some(match a {
         Argument::T => Value::Number(values.t),
@@ -114,16 +114,13 @@ fn argument(a: Argument, f: &Function, values: &Values) -> Option<Value> {
         Argument::A => vector(&values.a),
         Argument::Tau => vector(&values.tau),
         Argument::U => vector(&values.u),
-        Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => vector(&values.given[..n]),
-        Argument::Given(_, first, count) => {
-            let uses =
-                |s: &linkwork_compiler::expr::Symbol| matches!(Quantity::of(*s), Quantity::ContactForce(_));
-            let list = match f.program.symbols().iter().any(uses) && first == 0 {
-                true => &values.contact_forces,
-                false => &values.given[first..],
-            };
-            Value::list(list.get(..count)?)
+        Argument::Standard(n) => vector(&values.supplied(Supplied::Inertia)[..n]),
+        Argument::Factors(n) => vector(&values.supplied(Supplied::Factor)[..n]),
+        Argument::Momenta(n) => vector(&values.given[..n]),
+        Argument::Given(_, Supplied::ContactForces, count) => {
+            Value::list(values.contact_forces.get(..count)?)
         }
+        Argument::Given(_, block, count) => Value::list(values.supplied(block).get(..count)?),
         Argument::Into(_, n) => Value::List(vec![Value::list(&vec![0.0; n]); n]),
         Argument::Called(_) => return None,
     })
@@ -226,7 +223,7 @@ fn check_body(
     let mut machine = Machine { scopes: vec![BTreeMap::new()], parameters: named.collect(), states };
     assert_eq!(patterns.len(), f.arguments.len(), "arguments of {about}");
     for (pattern, a) in patterns.iter().zip(&f.arguments) {
-        let found: Option<Vec<Value>> = all.iter().map(|values| argument(*a, f, values)).collect();
+        let found: Option<Vec<Value>> = all.iter().map(|values| argument(*a, values)).collect();
         let Some(found) = found else { return false };
         let value = if states > 1 { lanes(&found) } else { found[0].clone() };
         machine.bind(pattern, value).unwrap_or_else(|stop| panic!("{stop:?}, {about}"));

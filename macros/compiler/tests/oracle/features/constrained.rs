@@ -4,6 +4,7 @@ use super::agreement::{Case, TOLERANCE, dot, product, size, sum};
 use super::source;
 use super::values::{By, Values};
 use linkwork_compiler::catalogue::{Record, Shape};
+use linkwork_compiler::mechanism::Supplied;
 
 impl Case<'_, '_> {
     pub(super) fn check_constraints(&mut self) {
@@ -61,9 +62,10 @@ impl Case<'_, '_> {
             return;
         }
         let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
-        let given = self.values.given.clone();
-        let [lambda, w, z, y] = [(0, nc), (nc, nv), (nc + nv, nc), (2 * nc + nv, nc)]
-            .map(|(first, count)| given[first..first + count].to_vec());
+        use Supplied::{AccelerationFactor, Direction, Multiplier, VelocityFactor};
+        let [lambda, w, z, y] =
+            [(Multiplier, nc), (Direction, nv), (AccelerationFactor, nc), (VelocityFactor, nc)]
+                .map(|(block, count)| self.values.supplied(block)[..count].to_vec());
         let product_with_w = |x: &Values| product(&x.run(output, &jacobian), &w);
         let sum_of_all = |x: &Values| {
             let change = sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
@@ -149,7 +151,11 @@ impl Case<'_, '_> {
         let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
         let balance = |x: &Values| {
             let (columns, forces) = (x.run(output, &jacobian), x.run(output, &inverse));
-            (0..nv).map(|j| forces[j] - dot(&columns[j * nc..(j + 1) * nc], &x.given[..nc])).collect()
+            (0..nv)
+                .map(|j| {
+                    forces[j] - dot(&columns[j * nc..(j + 1) * nc], &x.supplied(Supplied::Multiplier)[..nc])
+                })
+                .collect()
         };
         let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
         let mut rest = &found[..];

@@ -4,7 +4,7 @@ use crate::random::Random;
 use linkwork_compiler::catalogue::Called;
 use linkwork_compiler::derive::{Function, Output, Prepared};
 use linkwork_compiler::lower::Program;
-use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+use linkwork_compiler::mechanism::{Chart, Model, Quantity, Supplied};
 
 /// Step of sixth-order differences.
 const H: f64 = 4e-3;
@@ -47,7 +47,7 @@ impl Values {
             tau: list(nv, 2.0),
             u: list(model.inputs.len(), 1.0),
             parameters: list(model.parameters.len(), 0.3).iter().map(|p| 1.2 + p).collect(),
-            given: list(4 * (nv + model.constraints.len()), 0.7),
+            given: list(4 * (nv + model.constraints.len()) + 50, 0.7),
             contact_forces: list(model.contacts.iter().map(|c| c.rates.len()).sum(), 0.9),
         };
         // Also provides standard inertial parameters: ten for each body.
@@ -99,6 +99,11 @@ impl Values {
         })
     }
 
+    /// Returns the values that callers supply; each kind has values of its own.
+    pub fn supplied(&self, block: Supplied) -> &[f64] {
+        &self.given[3 * block as usize..]
+    }
+
     fn value(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
         let get = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
         match quantity {
@@ -110,7 +115,8 @@ impl Values {
             Quantity::Input(k) => get(&self.u, k),
             Quantity::Parameter(k) => get(&self.parameters, k),
             Quantity::Prepared(k) => get(numbers, k),
-            Quantity::Given(k) | Quantity::Momentum(k) => get(&self.given, k),
+            Quantity::Given(block, k) => get(self.supplied(block), k),
+            Quantity::Momentum(k) => get(&self.given, k),
             Quantity::ContactForce(k) => get(&self.contact_forces, k),
             Quantity::Reaction(_)
             | Quantity::PassiveForce(_)
