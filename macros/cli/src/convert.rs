@@ -11,7 +11,7 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{
     Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, GROUND, Inertias,
-    Joint, JointKind, Limit, Name, Requests, Wrench,
+    Joint, JointKind, Key, Limit, Name, Requests, Wrench,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -129,7 +129,7 @@ impl<'a> Struct<'a> {
             self.named(&format!("#[constraint({value}{other})]"), named, kind);
         }
         d.limits.iter().for_each(|limit| self.limit(limit));
-        if d.limits.iter().any(|limit| limit.restitution.is_some()) {
+        if d.limits.iter().any(|limit| limit.arguments.get(Key::Restitution).is_some()) {
             self.notes.push("limits are bounds here, and no stops".to_string());
         }
         if !d.contacts.is_empty() {
@@ -446,11 +446,10 @@ impl<'a> Struct<'a> {
 
     fn limit(&mut self, limit: &Limit) {
         let mut figures = vec![format!("on = {}", self.expression(&limit.on))];
-        for (word, e) in [("from", &limit.from), ("to", &limit.to)] {
-            figures.extend(e.as_ref().map(|e| format!("{word} = {}", written::angle(&self.expression(e)))));
-        }
-        for (word, e) in [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)] {
-            figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.expression(e))));
+        for (key, e) in limit.arguments.iter().filter(|(key, _)| *key != Key::Restitution) {
+            let value = self.expression(e);
+            let value = if matches!(key, Key::From | Key::To) { written::angle(&value) } else { value };
+            figures.push(format!("{} = {value}", key.name()));
         }
         if figures.len() > 1 {
             let name = format!("{}_limit", limit.name.text);

@@ -285,7 +285,7 @@ impl Source {
                 false => requests,
             },
             constraints,
-            contacts: if description.contacts.iter().all(|c| c.soft.is_some()) {
+            contacts: if description.contacts.iter().all(syntax::Contact::is_compliant) {
                 ContactSizes::default()
             } else {
                 ContactSizes { count: 1, rates: 1 }

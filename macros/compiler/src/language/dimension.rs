@@ -89,6 +89,8 @@ pub const MASS: Dimension = Dimension::new(0, 1, 0);
 pub const TIME: Dimension = Dimension::new(0, 0, 1);
 /// Speed, m/s.
 pub const SPEED: Dimension = Dimension::new(1, 0, -1);
+/// Reciprocal of a speed, s/m.
+pub const SLOWNESS: Dimension = Dimension::new(-1, 0, 1);
 /// Acceleration, m/s².
 pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
 /// Rate of an angle, 1/s.

@@ -31,8 +31,9 @@ pub fn expressions(d: &Description) -> Vec<&Expr> {
     all.extend(d.points.iter().flat_map(|p| p.on.iter().chain(&p.at)));
     all.extend(d.definitions.iter().chain(&d.outputs).map(|definition| &definition.value));
     all.extend(d.energies.iter().chain(&d.dissipations).map(|(_, e)| e));
-    all.extend(d.constraints.iter().flat_map(|c| c.other.iter().chain([&c.value])));
-    all.extend(d.constraints.iter().filter_map(|c| Some(&c.friction.as_ref()?.coefficient)));
+    for c in &d.constraints {
+        all.extend(c.other.iter().chain([&c.value]).chain(c.arguments.iter().map(|(_, e)| e)));
+    }
     all.extend(d.contacts.iter().flat_map(|c| [&c.first, &c.second]));
     for action in &d.actions {
         match &action.on {

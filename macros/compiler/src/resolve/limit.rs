@@ -3,8 +3,9 @@
 use super::builder::Builder;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr as Value, Extreme};
+use crate::language::Key;
 use crate::mechanism::{Coordinate, Limit};
-use crate::syntax::{self, Expr};
+use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
     /// Adds all limits to the model.
@@ -28,14 +29,14 @@ impl<'g> Builder<'_, 'g> {
 
     /// Reads the limit of an expression, which is a stop, only to report its errors.
     fn check_stop(&self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let others = [("max_speed", &limit.max_speed), ("max_effort", &limit.max_effort)];
-        if let Some((key, e)) = others.into_iter().find_map(|(key, e)| Some((key, e.as_ref()?))) {
-            cx.error(
-                e.place.clone(),
-                format!("a `{key}` is that of a coordinate, and this is an expression"),
-            )
-            .help("write it in a limit of the joint");
-        } else if limit.restitution.is_none() {
+        let given = &limit.arguments;
+        if let Some((key, e)) =
+            [Key::MaxSpeed, Key::MaxEffort].iter().find_map(|key| Some((key, given.get(*key)?)))
+        {
+            let name = key.name();
+            let message = format!("a `{name}` is that of a coordinate, and this is an expression");
+            cx.error(e.place.clone(), message).help("write it in a limit of the joint");
+        } else if given.get(Key::Restitution).is_none() {
             cx.error(limit.on.place.clone(), "a limit of an expression is a stop, and has a restitution").help(
                 "add `restitution = e`, from 0 to 1: the part of the speed that is left when the bound is struck",
             );
@@ -52,8 +53,9 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<[Option<Value<'g>>; 4]> {
         let mut good = true;
-        let mut read = |e: &Option<Expr>, angle: bool| {
-            let e = e.as_ref()?;
+        let bounds = [Key::From, Key::To, Key::MaxSpeed, Key::MaxEffort].map(|key| {
+            let e = limit.arguments.get(key)?;
+            let angle = angle && matches!(key, Key::From | Key::To);
             // Angles in a file are in radians, without a limit on revolutions.
             let value = match angle && e.place.file.is_none() {
                 true => self.scope.plane_angle(e, cx),
@@ -61,13 +63,7 @@ impl<'g> Builder<'_, 'g> {
             };
             good &= value.is_some();
             value
-        };
-        let bounds = [
-            read(&limit.from, angle),
-            read(&limit.to, angle),
-            read(&limit.max_speed, false),
-            read(&limit.max_effort, false),
-        ];
+        });
         good.then_some(bounds)
     }
 
@@ -143,17 +139,17 @@ fn range_width(limit: &Limit<'_>) -> Option<f64> {
 /// Reports bounds that no motion satisfies. Returns false then.
 fn check_bounds(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
     let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
-    if let (Some(low), Some(high), Some(e)) = (from, to, &limit.to)
+    if let (Some(low), Some(high), Some(e)) = (from, to, limit.arguments.get(Key::To))
         && low > high
     {
         cx.error(e.place.clone(), format!("`to` is {high}, less than `from`, which is {low}"))
             .help("`from` is the lower bound, `to` the upper one");
         return false;
     }
-    for (key, value, e) in [("max_speed", speed, &limit.max_speed), ("max_effort", effort, &limit.max_effort)]
-    {
-        if let (Some(value), Some(e)) = (value.filter(|value| *value < 0.0), e) {
-            cx.error(e.place.clone(), format!("a `{key}` cannot be negative, but it is {value}"))
+    for (key, value) in [(Key::MaxSpeed, speed), (Key::MaxEffort, effort)] {
+        let written = limit.arguments.get(key);
+        if let (Some(value), Some(e)) = (value.filter(|value| *value < 0.0), written) {
+            cx.error(e.place.clone(), format!("a `{}` cannot be negative, but it is {value}", key.name()))
                 .help("it bounds both directions: write its magnitude");
             return false;
         }

@@ -198,7 +198,7 @@ fn dependence(callee: &Callee) -> Dependence {
 
 /// Whether an expression is the name of a contact.
 fn is_contact_name(d: &Description, e: &Expr) -> bool {
-    d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
+    d.contacts.iter().any(|contact| !contact.is_compliant() && e.name() == Some(contact.name.text.as_str()))
 }
 
 /// Whether an expression contains a function of the velocities.

@@ -1,6 +1,7 @@
 //! Force elements with their targets and laws.
 
 use super::arguments::Arguments;
+use super::keys::{Keys, check_relations};
 use super::{Action, Expr, ExprKind, Name, Target};
 use crate::diag::Diagnostics;
 use crate::language::{ForceKind, Key};
@@ -12,36 +13,18 @@ pub fn read_action(
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Action> {
-    let (row, keys) = (kind.row(), &kind.keys());
+    let (row, names) = (kind.row(), &kind.keys());
     let refused = arguments.place_of("between").is_some() && !row.between;
-    let on = read_target(kind, arguments, keys, cx);
+    let on = read_target(kind, arguments, names, cx);
     if refused {
         return None;
     }
     reject_second_law(arguments, row.laws, cx);
-    let second = row.exclusive.and_then(|([_, second], ..)| arguments.place_of(second.name()));
-    let mut given: Vec<(Key, Expr)> = Vec::new();
-    let mut complete = true;
-    let others = row.arguments.iter().filter(|key| !row.laws.contains(key));
-    for key in row.laws.iter().chain(others) {
-        let has_law = row.laws.contains(key) && given.iter().any(|(known, _)| row.laws.contains(known));
-        let value = match row.required.iter().find(|(known, _)| known == key) {
-            Some((_, example)) if !has_law => {
-                let value = arguments.need_expr(key.name(), example, "acts", keys, cx);
-                complete &= value.is_some();
-                value
-            }
-            _ => arguments.take_expr(key.name(), cx),
-        };
-        given.extend(value.map(|value| (*key, value)));
-    }
-    if let (Some((both, message, help)), Some(place)) = (row.exclusive, second)
-        && both.iter().all(|key| given.iter().any(|(known, _)| known == key))
-    {
-        cx.error(place, message).help(help);
-    }
-    arguments.finish(&kind.phrase(), keys, cx);
-    complete.then_some(())?;
+    let keys = Keys { all: row.arguments, laws: row.laws, required: row.required, attribute: "acts", names };
+    let (given, is_complete) = keys.read(arguments, cx);
+    check_relations(row.relations, &given, name, cx);
+    arguments.finish(&kind.phrase(), names, cx);
+    is_complete.then_some(())?;
     Some(Action { name: name.clone(), kind, on: on?, arguments: given })
 }
 

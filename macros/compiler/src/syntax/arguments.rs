@@ -375,11 +375,8 @@ impl Arguments {
         for (name, value) in self.named.drain(..) {
             let word = name.text.as_str();
             let near = nearest(word, known).is_some();
-            let help = match argument_advice(whose, word) {
-                Some(help) => Some(help.to_string()),
-                None => words::argument_help(whose, owner, word, known),
-            };
-            let help = help.or((!near && known.len() < 2).then(|| format!("write `{example}`")));
+            let help = words::argument_help(whose, owner, word, known)
+                .or((!near && known.len() < 2).then(|| format!("write `{example}`")));
             if let Some(help) = &help {
                 if answers.contains(help) {
                     continue;
@@ -413,18 +410,5 @@ impl Arguments {
             cx.error(parent.place.join(&child.place), format!("{whose} joins nothing"))
                 .help("`parent -> child` stands in a joint");
         }
-    }
-}
-
-/// Returns the help for an unknown argument with a known meaning.
-fn argument_advice(whose: &str, name: &str) -> Option<&'static str> {
-    match (whose, name) {
-        ("a Body", "rotation" | "axes" | "rpy" | "orientation") => Some(
-            "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",
-        ),
-        ("a Rolling constraint", "friction" | "speed") => {
-            Some("surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`")
-        }
-        _ => None,
     }
 }

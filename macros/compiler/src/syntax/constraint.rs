@@ -1,8 +1,10 @@
-//! Constraints: equations, and surfaces in contact.
+//! Constraints, equations and surfaces in contact, and limits of coordinates.
 
 use super::arguments::Arguments;
-use super::{Constraint, ConstraintKind, Description, Name, SlipFriction};
+use super::keys::{Keys, check_relations};
+use super::{Constraint, ConstraintKind, Description, Limit, Name};
 use crate::diag::Diagnostics;
+use crate::language::{Key, OtherKind};
 
 /// Reads an equation, an expression that remains zero, or a pair of surfaces.
 pub fn read_constraint(
@@ -12,15 +14,11 @@ pub fn read_constraint(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let slips = kind == ConstraintKind::Slipping;
-    let keys: &[&str] = if slips { &["friction", "speed"] } else { &[] };
-    let speed = if slips { arguments.take_expr("speed", cx) } else { None };
-    let coefficient =
-        if slips { arguments.need_expr("friction", "mu", "constraint", keys, cx) } else { None };
-    let friction = coefficient.map(|coefficient| SlipFriction { coefficient, speed });
-    let found = arguments.take_equation();
     let element = kind.element();
-    let (whose, example) = (format!("a {} constraint", element.name()), element.row().example);
+    let (row, names) = (element.row(), &element.keys());
+    let (given, _) = Keys::of(element, names).read(arguments, cx);
+    let found = arguments.take_equation();
+    let (whose, example) = (format!("a {} constraint", row.name), row.example);
     if let (Some((value, None)), [second, ..]) = (&found, arguments.plain()) {
         let (message, help) = match kind.pair() {
             Some(pair) => (format!("expected a pair that {}", pair.verb()), format!("write `{example}`")),
@@ -33,7 +31,7 @@ pub fn read_constraint(
         return;
     }
     let is_empty = arguments.is_empty();
-    arguments.finish(&whose, keys, cx);
+    arguments.finish(&whose, names, cx);
     let Some((value, other)) = found else {
         if is_empty {
             cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
@@ -45,5 +43,28 @@ pub fn read_constraint(
         cx.error(other.place.clone(), "a pair of surfaces is no equation").help(format!("write `{example}`"));
         return;
     }
-    description.constraints.push(Constraint { name, kind, value, other, friction });
+    description.constraints.push(Constraint { name, kind, value, other, arguments: given });
+}
+
+/// Reads the bounds of a coordinate, its velocity and its force.
+pub fn read_limit(
+    name: Name,
+    arguments: &mut Arguments,
+    description: &mut Description,
+    cx: &mut Diagnostics,
+) {
+    let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.keys());
+    let on = arguments.need_expr("on", "joint", "limit", names, cx);
+    let (given, _) = Keys::of(OtherKind::Limit, names).read(arguments, cx);
+    let is_empty = arguments.is_empty();
+    arguments.finish("a Limit", names, cx);
+    let Some(on) = on else { return };
+    if given.iter().all(|(key, _)| key == Key::Restitution) {
+        if is_empty {
+            cx.error(name.place.clone(), format!("the limit `{}` bounds nothing", name.text))
+                .help("write what it bounds: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
+        }
+    } else if check_relations(row.relations, &given, &name, cx) {
+        description.limits.push(Limit { name, on, arguments: given });
+    }
 }

@@ -2,11 +2,10 @@
 
 use super::action::read_action;
 use super::arguments::Arguments;
-use super::constraint::read_constraint;
+use super::constraint::{read_constraint, read_limit};
 use super::contact::read_contact;
 use super::expression::parse_expr;
 use super::joint::read_joint;
-use super::limit::read_limit;
 use super::{
     Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, Rank, words,
@@ -42,9 +41,6 @@ pub const ATTRIBUTES: [&str; 17] = [
 
 /// Attribute of outputs.
 const OUTPUT: &str = "output";
-
-/// Argument of the axes of an output's components.
-const AXES: &str = "resolved_in";
 
 /// Numeric types of Rust that parameters cannot have.
 const RUST_NUMBERS: [&str; 12] =
@@ -133,8 +129,9 @@ pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut D
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.with_owner(name);
-    let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
-    arguments.finish("a State", &["rate"], cx);
+    let keys = &OtherKind::State.keys();
+    let rate = arguments.need_expr("rate", "(command - level) / lag", "state", keys, cx);
+    arguments.finish("a State", keys, cx);
     rate
 }
 
@@ -364,7 +361,7 @@ fn read_other(
                 cx.error(name.place.clone(), "a point says where it is")
                     .help("write `#[point(on = body, at = length * x)]`");
             }
-            arguments.finish("a Point", &["on", "at"], cx);
+            arguments.finish("a Point", &kind.keys(), cx);
             description.points.push(Point { name, on, at });
         }
         OtherKind::Limit => read_limit(name, arguments, description, cx),
@@ -383,15 +380,15 @@ fn read_other(
         // `read_state` reads these fields, because they are also parameters.
         OtherKind::State => {}
         OtherKind::Potential => {
-            let value = read_expression(&name, kind, attribute, arguments, &[], cx);
+            let value = read_expression(&name, kind, attribute, arguments, cx);
             description.energies.extend(value.map(|value| (name, value)));
         }
         OtherKind::Rayleigh => {
-            let value = read_expression(&name, kind, attribute, arguments, &[], cx);
+            let value = read_expression(&name, kind, attribute, arguments, cx);
             description.dissipations.extend(value.map(|value| (name, value)));
         }
         OtherKind::Speed => {
-            let Some(value) = read_expression(&name, kind, attribute, arguments, &[], cx) else { return };
+            let Some(value) = read_expression(&name, kind, attribute, arguments, cx) else { return };
             description.speeds.push(name.clone());
             description.definitions.push(Definition { name, rank: Rank::Scalar, value, resolved_in: None });
         }
@@ -419,10 +416,8 @@ fn read_definition(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let has_axes = rank != Rank::Scalar;
-    let resolved_in = if has_axes { arguments.take_expr(AXES, cx) } else { None };
-    let keys: &[&str] = if has_axes { &[AXES] } else { &[] };
-    let Some(value) = read_expression(&name, kind, attribute, arguments, keys, cx) else { return };
+    let resolved_in = kind.row().own.first().and_then(|axes| arguments.take_expr(axes, cx));
+    let Some(value) = read_expression(&name, kind, attribute, arguments, cx) else { return };
     let list = match attribute {
         Some(OUTPUT) => &mut description.outputs,
         _ => &mut description.definitions,
@@ -430,13 +425,12 @@ fn read_definition(
     list.push(Definition { name, rank, value, resolved_in });
 }
 
-/// Reads the expression of an element that consists of one; `keys` are its other arguments.
+/// Reads the expression of an element that consists of one, apart from the arguments of its row.
 fn read_expression(
     name: &Name,
     kind: OtherKind,
     attribute: Option<&str>,
     arguments: &mut Arguments,
-    keys: &[&str],
     cx: &mut Diagnostics,
 ) -> Option<Expr> {
     let mut plain = arguments.take_plain();
@@ -452,7 +446,7 @@ fn read_expression(
         return None;
     }
     let is_empty = arguments.is_empty();
-    arguments.finish(&ElementKind::Other(kind).phrase(), keys, cx);
+    arguments.finish(&ElementKind::Other(kind).phrase(), &kind.keys(), cx);
     if value.is_none() && is_empty {
         cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
             .help(format!("write `#[{word}(expression)]`"));

@@ -17,7 +17,7 @@ mod field;
 pub mod file_parameters;
 pub mod guard;
 pub mod joint;
-pub mod limit;
+mod keys;
 mod lists;
 pub mod mechanism;
 mod options;
@@ -33,10 +33,10 @@ pub mod words;
 pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, Base, BinaryOp, Body, Callee, Collision, Compliance, Constraint, ConstraintKind, Contact,
-    Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
-    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
-    Restitution, ScalarType, Shape, SlipFriction, Table, Target, Term, Visual, Wrench,
+    Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
+    Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
+    FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank, ScalarType,
+    Shape, Table, Target, Term, Visual, Wrench, WrittenArguments, restitution,
 };
 pub use duplicate::second_definition;
 pub use mechanism::{

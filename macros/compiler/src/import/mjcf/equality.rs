@@ -9,6 +9,7 @@ use crate::import::pose::{Pose, of_quaternion};
 use crate::import::robot::{bare_joint, unused};
 use crate::syntax::{
     BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
+    WrittenArguments,
 };
 
 const LEAVE_OUT: &str = "to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`";
@@ -147,7 +148,7 @@ impl<'a> Reader<'a> {
             kind: ConstraintKind::Holonomic,
             value,
             other: Some(other),
-            friction: None,
+            arguments: WrittenArguments::default(),
         };
         self.robot.constraints.push(constraint);
     }

@@ -4,7 +4,7 @@ use super::defaults::Element;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::pose::{Pose, apply};
-use crate::syntax::{Contact, Expr, ExprKind, GROUND, Name};
+use crate::syntax::{Contact, Expr, ExprKind, GROUND, Key, Name, WrittenArguments};
 use std::cmp::Ordering;
 
 /// Contact parameters of a shape.
@@ -97,17 +97,14 @@ impl CollisionShape {
         let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
         let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
         let coefficient = |number: f64| (number != 0.0).then(|| Expr::number(number, at));
-        let [friction, torsional, rolling] = self.law.friction_with(&plane.law).map(coefficient);
+        let keys = [Key::Friction, Key::TorsionalFriction, Key::RollingFriction];
+        let values = self.law.friction_with(&plane.law).map(coefficient);
+        let given = keys.into_iter().zip(values).filter_map(|(key, value)| Some((key, value?)));
         Contact {
             name: as_name(&name),
             first: method(body(link), "collision", Expr::number(self.number as f64, at)),
             second: method(point, "plane", normal),
-            friction,
-            stiction: None,
-            torsional,
-            rolling,
-            restitution: None,
-            soft: None,
+            arguments: WrittenArguments(given.collect()),
             of_file: true,
         }
     }

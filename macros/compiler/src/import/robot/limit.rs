@@ -1,7 +1,7 @@
 //! Limits of a joint as a file specifies them.
 
 use crate::import::imported::Placed;
-use crate::syntax::{Expr, ExprKind, Limit, Name, Restitution};
+use crate::syntax::{Expr, ExprKind, Key, Limit, Name, WrittenArguments};
 
 /// Limits of a joint; `None` for a quantity without a limit.
 #[derive(Default)]
@@ -32,18 +32,21 @@ impl FileLimits {
     pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
         let expression =
             |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));
-        let limit = Limit {
-            name: joint.clone(),
-            on: Expr { kind: ExprKind::Name(joint.text.clone()), place: joint.place.clone() },
-            from: expression(&self.lower),
-            to: expression(&self.upper),
-            max_speed: expression(&self.velocity),
-            max_effort: expression(&self.effort).filter(|_| !follows),
-            restitution: stops
-                .then(|| Restitution { value: Expr::number(0.0, &joint.place), of_impulses: false })
-                .filter(|_| self.lower.is_some() || self.upper.is_some()),
-        };
-        let bounds = [&limit.from, &limit.to, &limit.max_speed, &limit.max_effort];
-        bounds.iter().any(|bound| bound.is_some()).then_some(limit)
+        let bounds = [
+            (Key::From, expression(&self.lower)),
+            (Key::To, expression(&self.upper)),
+            (Key::MaxSpeed, expression(&self.velocity)),
+            (Key::MaxEffort, expression(&self.effort).filter(|_| !follows)),
+        ];
+        let mut given: Vec<(Key, Expr)> =
+            bounds.into_iter().filter_map(|(key, bound)| Some((key, bound?))).collect();
+        if given.is_empty() {
+            return None;
+        }
+        if stops && (self.lower.is_some() || self.upper.is_some()) {
+            given.push((Key::Restitution, Expr::number(0.0, &joint.place)));
+        }
+        let on = Expr { kind: ExprKind::Name(joint.text.clone()), place: joint.place.clone() };
+        Some(Limit { name: joint.clone(), on, arguments: WrittenArguments(given) })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::mjcf::{check_model, mjcf};
 use super::*;
+use crate::syntax::Key;
 
 #[test]
 fn servos_are_inputs_with_springs() {
@@ -319,7 +320,7 @@ fn efforts_of_several_actuators() {
         );
         let mut cx = Diagnostics::new();
         let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
-        let effort = imported.limits.iter().find_map(|limit| limit.max_effort.as_ref()?.literal());
+        let effort = imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal());
         assert_eq!(effort, expected, "{joint} {actuators}");
     }
 }

@@ -326,11 +326,9 @@ fn planes_are_touched() {
                 .contacts
                 .iter()
                 .map(|contact| {
-                    let mut friction =
-                        contact.friction.as_ref().map_or_else(|| "none".to_string(), render_expr);
-                    for more in [&contact.torsional, &contact.rolling].into_iter().flatten() {
-                        friction = format!("{friction} {}", render_expr(more));
-                    }
+                    let coefficients: Vec<String> =
+                        contact.arguments.iter().map(|(_, e)| render_expr(e)).collect();
+                    let friction = coefficients.join(" ");
                     let (first, second) = (render_expr(&contact.first), render_expr(&contact.second));
                     format!("{}: {first} {second} {friction}\n", contact.name.text)
                 })

@@ -1,97 +1,13 @@
 //! Force elements: springs, dashpots, inerters, friction, gravity, forces and torques.
 
 use super::super::Words;
-use super::super::dimension::{ATTRACTION, Dimension, GRAVITATION, STRENGTH};
+use super::keys::{Key, Relation};
 use super::words::{AT, NO_INERTANCE, ON, SATURATION};
 use crate::mechanism::PieceKind;
-use ForceQuantity::{Coordinate, Damping, Energy, Inertance, Speed, Stiffness};
 use Key::{
     About, Along, Constant, Coulomb, FreeAngle, FreeLength, Mu, Stiction, Strength, StribeckSpeed, Value,
     Viscous,
 };
-
-/// A row of the table of arguments of force elements.
-#[derive(Debug)]
-pub struct KeyRow {
-    /// The name.
-    pub name: &'static str,
-    /// Names in other tools; the elements list them.
-    pub synonyms: &'static str,
-    /// Quantity of the argument.
-    pub quantity: ForceQuantity,
-}
-
-/// A quantity of a force element. Its dimension follows from the coordinate or the distance on which the
-/// element acts.
-#[derive(Debug)]
-pub enum ForceQuantity {
-    /// Force by displacement.
-    Stiffness,
-    /// Force by velocity.
-    Damping,
-    /// Force by acceleration.
-    Inertance,
-    /// A force or a torque.
-    Force,
-    /// An energy.
-    Energy,
-    /// The coordinate or the distance itself.
-    Coordinate,
-    /// Rate of the coordinate or the distance.
-    Speed,
-    /// This dimension.
-    Fixed(Dimension),
-    /// The direction of an input.
-    Direction,
-    /// The value of a force or a torque; without it the element is an input.
-    Load,
-}
-
-const fn key(name: &'static str, quantity: ForceQuantity) -> KeyRow {
-    KeyRow { name, synonyms: "", quantity }
-}
-
-table! {
-    /// An argument of a force element.
-    Key: KeyRow {
-        /// Stiffness of a spring.
-        Stiffness = key("stiffness", Stiffness);
-        /// Force, as an expression of the stretch or the speed.
-        Force = key("force", ForceQuantity::Force);
-        /// Energy, as an expression of the stretch.
-        Energy = key("energy", Energy);
-        /// Length at which the force of a spring is zero.
-        FreeLength = key("free_length", Coordinate);
-        /// Angle at which the torque of a spring is zero.
-        FreeAngle = key("free_angle", Coordinate);
-        /// Coefficient of a dashpot.
-        Damping = key("damping", Damping);
-        /// Inertance of an inerter.
-        Inertance = key("inertance", Inertance);
-        /// Force of sliding friction.
-        Coulomb = key("coulomb", ForceQuantity::Force);
-        /// Force at breakaway.
-        Stiction = key("stiction", ForceQuantity::Force);
-        /// Speed at which the force has fallen from breakaway to sliding.
-        StribeckSpeed = key("stribeck_speed", Speed);
-        /// Viscous coefficient.
-        Viscous = key("viscous", Damping);
-        /// Speed of the regularisation.
-        Speed = key("speed", Speed);
-        /// Gravitational constant, for two bodies with mass.
-        Constant = key("constant", ForceQuantity::Fixed(GRAVITATION));
-        /// Gravitational parameter of the attracting body.
-        Mu = key("mu", ForceQuantity::Fixed(ATTRACTION));
-        /// Force times the square of the distance.
-        Strength = key("strength", ForceQuantity::Fixed(STRENGTH));
-        /// Direction of a force on a body.
-        Along = key("along", ForceQuantity::Direction);
-        /// Direction of a torque on a body.
-        About = key("about", ForceQuantity::Direction);
-        /// Value of a force or a torque.
-        Value = key("value", ForceQuantity::Load);
-    }
-}
 
 /// A row of the table of force elements.
 #[derive(Debug)]
@@ -111,8 +27,8 @@ pub struct ForceRow {
     pub laws: &'static [Key],
     /// Arguments that must be given, with an example each.
     pub required: &'static [(Key, &'static str)],
-    /// Two arguments that exclude each other, with the error and the help if both are given.
-    pub exclusive: Option<([Key; 2], &'static str, &'static str)>,
+    /// Conditions on which arguments are given together.
+    pub relations: &'static [Relation],
     /// Names of the stretch and the speed in the expression of the law.
     pub locals: Locals,
     /// Whether the element can act on a body, not only on a coordinate or a length.
@@ -151,7 +67,7 @@ const PLAIN: ForceRow = ForceRow {
     arguments: &[],
     laws: &[],
     required: &[],
-    exclusive: None,
+    relations: &[],
     locals: Locals::None,
     on_bodies: false,
     torque: false,
@@ -172,11 +88,12 @@ table! {
             arguments: &[Key::Stiffness, Key::Force, Key::Energy, FreeLength, FreeAngle],
             laws: &[Key::Force, Key::Energy, Key::Stiffness],
             required: &[(Key::Stiffness, "k")],
-            exclusive: Some((
-                [FreeLength, FreeAngle],
+            relations: &[Relation::excludes(
+                FreeAngle,
+                &[FreeLength],
                 "a spring has one of `free_length` and `free_angle`",
                 "`free_length` goes with what slides, `free_angle` with what turns",
-            )),
+            )],
             locals: Locals::Stretch,
             pieces: Some([PieceKind::Coil, PieceKind::Spiral]),
             words: &[

@@ -3,11 +3,13 @@
 #[macro_use]
 mod joints;
 mod forces;
+mod keys;
 mod others;
 pub mod words;
 
-pub use forces::{ForceKind, ForceQuantity, Key, Locals};
+pub use forces::{ForceKind, Locals};
 pub use joints::{CoordinateNames, DrawnAxis, JointKind};
+pub use keys::{Key, Quantity, Relation};
 pub use others::OtherKind;
 
 use super::Words;
@@ -50,6 +52,10 @@ const BODY_WORDS: Words = &[
     ("position pos origin xyz translation location", PLACED),
     ("parent child joint on base", ENDS),
     ("color colour visual name", "nothing is drawn: remove it"),
+    (
+        "rotation axes rpy orientation",
+        "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",
+    ),
 ];
 
 /// Words for the arguments of a particle.

@@ -1,7 +1,12 @@
 //! Elements other than bodies, joints and force elements.
 
 use super::super::Words;
+use super::keys::{Key, Relation};
 use super::words::ON;
+use Key::{
+    Dissipation, Friction, From, Hertz, MaxEffort, MaxSpeed, Restitution, RollingFriction, Speed,
+    StaticFriction, Stiffness, To, TorsionalFriction,
+};
 
 /// A row of the table of other elements.
 #[derive(Debug)]
@@ -12,6 +17,14 @@ pub struct OtherRow {
     pub synonyms: &'static str,
     /// The attributes that belong to it.
     pub attributes: &'static [&'static str],
+    /// Names of the arguments that belong to this element alone, before the others.
+    pub own: &'static [&'static str],
+    /// The other arguments, in the order in which messages list them.
+    pub arguments: &'static [Key],
+    /// Arguments that must be given, with an example each.
+    pub required: &'static [(Key, &'static str)],
+    /// Conditions on which arguments are given together.
+    pub relations: &'static [Relation],
     /// Words of other tools for its arguments.
     pub words: Words,
     /// Example of a declaration.
@@ -25,7 +38,17 @@ const fn row(
     words: Words,
     example: &'static str,
 ) -> OtherRow {
-    OtherRow { name, synonyms, attributes, words, example }
+    OtherRow {
+        name,
+        synonyms,
+        attributes,
+        own: &[],
+        arguments: &[],
+        required: &[],
+        relations: &[],
+        words,
+        example,
+    }
 }
 
 table! {
@@ -41,11 +64,24 @@ table! {
         Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
             &["frame"], &[], "#[frame(ground, z(angle))]");
         /// A point.
-        Point = row("Point", "site marker location position landmark waypoint",
-            &["point"], POINT, "#[point(on = body, at = length * x)]");
+        Point = OtherRow {
+            own: &["on", "at"],
+            ..row("Point", "site marker location position landmark waypoint",
+            &["point"], POINT, "#[point(on = body, at = length * x)]")
+        };
         /// A limit of a coordinate.
-        Limit = row("Limit", "limits range bounds jointlimit jointlimits",
-            &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]");
+        Limit = OtherRow {
+            own: &["on"],
+            arguments: &[From, To, MaxSpeed, MaxEffort, Restitution],
+            relations: &[Relation::needs(
+                Restitution,
+                &[From, To],
+                "there is no bound to strike",
+                "write where it is: `from = …`, `to = …`, or both",
+            )],
+            ..row("Limit", "limits range bounds jointlimit jointlimits",
+            &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]")
+        };
         /// A potential energy.
         Potential = row("Potential", "potentialenergy energy", &["energy"], &[], "#[energy(expression)]");
         /// A Rayleigh dissipation function.
@@ -59,17 +95,38 @@ table! {
             &["constraint"], &[], "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]");
         /// Two surfaces that roll on each other.
         Rolling = row("Rolling", "",
-            &["constraint"], &[], "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
+            &["constraint"], ROLLING, "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
         /// Two surfaces that slip on each other, with friction.
-        Slipping = row("Slipping",
+        Slipping = OtherRow {
+            arguments: &[Friction, Speed],
+            required: &[(Friction, "mu")],
+            ..row("Slipping",
             "",
-            &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]");
+            &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]")
+        };
         /// A unilateral contact.
-        Contact = row("Contact",
+        Contact = OtherRow {
+            arguments: &[
+                Friction,
+                StaticFriction,
+                TorsionalFriction,
+                RollingFriction,
+                Restitution,
+                Stiffness,
+                Hertz,
+                Dissipation,
+                Speed,
+            ],
+            relations: COMPLIANCE,
+            ..row("Contact",
             "",
-            &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]");
+            &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]")
+        };
         /// A state of first order.
-        State = row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]");
+        State = OtherRow {
+            own: &["rate"],
+            ..row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]")
+        };
         /// An equilibrium.
         Equilibrium = row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
         /// A generalized speed.
@@ -79,12 +136,21 @@ table! {
         /// A scalar with a name.
         Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
         /// A vector with a name.
-        Vector = row("Vector", "vector3 vec3 vector3d vec",
-            &["define", "output"], AXES, "#[output(expression)]");
+        Vector = OtherRow {
+            own: AXES,
+            ..row("Vector", "vector3 vec3 vector3d vec",
+            &["define", "output"], AXES_WORDS, "#[output(expression)]")
+        };
         /// A matrix with a name.
-        Matrix = row("Matrix", "", &["define", "output"], AXES, "#[output(expression)]");
+        Matrix = OtherRow {
+            own: AXES,
+            ..row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
+        };
         /// A free-body diagram.
-        FreeBody = row("FreeBody", "", &["output"], AXES, "#[output(body)]");
+        FreeBody = OtherRow {
+            own: AXES,
+            ..row("FreeBody", "", &["output"], AXES_WORDS, "#[output(body)]")
+        };
     }
 }
 
@@ -120,4 +186,53 @@ const LIMIT: Words = &[
 const POINT: Words = &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
 
 /// Words for the axes of an output's components.
-const AXES: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
+const AXES_WORDS: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
+
+/// Words for the arguments of rolling surfaces.
+const ROLLING: Words = &[(
+    "friction speed",
+    "surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`",
+)];
+
+/// Argument with the axes of an output's components.
+const AXES: &[&str] = &["resolved_in"];
+
+/// Arguments of rigid and of compliant surfaces.
+const COMPLIANCE: &[Relation] = &[
+    Relation::excludes(
+        Hertz,
+        &[Stiffness],
+        "`NAME` has two stiffnesses",
+        "`stiffness` is force by overlap, `hertz` force by its power of 3/2: write one",
+    ),
+    Relation::needs(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    Relation::needs(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    Relation::excludes(
+        Restitution,
+        &[Stiffness, Hertz],
+        "surfaces that yield have no coefficient of restitution",
+        "`dissipation`, s/m, takes energy from their impacts",
+    ),
+    Relation::excludes(
+        StaticFriction,
+        &[Stiffness, Hertz],
+        "the friction of surfaces that yield is smooth in the slip: it has no stiction",
+        "leave out `stiffness` or `hertz`, or `stiction`",
+    ),
+    Relation::needs(
+        StaticFriction,
+        &[Friction],
+        "`NAME` has stiction, but no friction while it slides",
+        "add `friction = …`: the coefficient of sliding, at most that of stiction",
+    ),
+];
+const RIGID: &str = "`NAME` is rigid: nothing yields in it";
+const ADD_STIFFNESS: &str = "add `stiffness = …`, N/m, where surfaces yield";
+
+impl OtherKind {
+    /// Returns the names of all arguments, as messages list them.
+    pub fn keys(self) -> Vec<&'static str> {
+        let row = self.row();
+        row.own.iter().copied().chain(row.arguments.iter().map(|key| key.name())).collect()
+    }
+}

@@ -4,6 +4,7 @@ use super::unilateral::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
+use crate::language::Key;
 use crate::mechanism::{LinkId, Quantity};
 use crate::resolve::call::Call;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
@@ -91,13 +92,17 @@ pub(super) fn check_relative_rotation(
     let has_no_rotation =
         |axis: usize| points.iter().all(|point| velocity_gradient(point.angular_rates[axis]).is_empty());
     let checks = [
-        (&contact.torsional, "about the normal of this contact", has_no_rotation(0)),
-        (&contact.rolling, "about the tangents of this contact", has_no_rotation(1) && has_no_rotation(2)),
+        (Key::TorsionalFriction, "about the normal of this contact", has_no_rotation(0)),
+        (
+            Key::RollingFriction,
+            "about the tangents of this contact",
+            has_no_rotation(1) && has_no_rotation(2),
+        ),
     ];
-    for (e, about, _) in
+    for (key, about, _) in
         checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
     {
-        let Some(e) = e else { continue };
+        let Some(e) = contact.arguments.get(key) else { continue };
         cx.error(e.place.clone(), format!("nothing turns {about}"))
             .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");
     }

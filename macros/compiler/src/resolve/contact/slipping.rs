@@ -4,6 +4,7 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
+use crate::language::Key;
 use crate::mechanism::{Constraint, FrictionTerm, Pose, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
@@ -37,19 +38,22 @@ impl<'g> Builder<'_, 'g> {
         constraint: &syntax::Constraint,
         cx: &mut Diagnostics,
     ) -> Option<(Expr<'g>, Expr<'g>)> {
-        let given = constraint.friction.as_ref()?;
+        let written = constraint.arguments.get(Key::Friction)?;
         let ground = Some((None, Pose::identity(self.scope.graph)));
-        let coefficient = self
-            .scope
-            .in_context(Context::new(Allowed::Placement, ground), |s| s.scalar(&given.coefficient, cx))?;
+        let coefficient =
+            self.scope.in_context(Context::new(Allowed::Placement, ground), |s| s.scalar(written, cx))?;
         if let Some(n) = coefficient.value().filter(|n| *n < 0.0) {
-            let place = given.coefficient.place.clone();
-            cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"))
-                .help("friction opposes the motion by itself: write its size");
+            cx.error(
+                written.place.clone(),
+                format!("a coefficient of friction cannot be negative, but it is {n}"),
+            )
+            .help("friction opposes the motion by itself: write its size");
         }
         let name = &constraint.name.text;
         self.scope.require(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
-        let Some(written) = &given.speed else { return Some((coefficient, self.model.friction_speed)) };
+        let Some(written) = constraint.arguments.get(Key::Speed) else {
+            return Some((coefficient, self.model.friction_speed));
+        };
         let speed =
             self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(written, cx))?;
         if let Some(n) = speed.value().filter(|n| *n <= 0.0) {

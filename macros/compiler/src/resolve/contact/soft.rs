@@ -6,10 +6,11 @@ use super::unilateral::{CandidatePoint, ContactCoefficients};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
+use crate::language::Key;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, ContactLoads, Context};
-use crate::syntax::{self, Compliance};
+use crate::syntax::{self, WrittenArguments};
 
 /// Default slip speed below which friction is regularised, m/s.
 const DEFAULT_SLIP_SPEED: f64 = 1e-3;
@@ -29,7 +30,7 @@ impl<'g> Builder<'_, 'g> {
     /// Reads stiffness and dissipation; `None` after an error.
     pub(super) fn read_compliance(
         &self,
-        soft: &Compliance,
+        given: &WrittenArguments,
         cx: &mut Diagnostics,
     ) -> Option<CompliantContact<'g>> {
         let g = self.scope.graph;
@@ -44,18 +45,19 @@ impl<'g> Builder<'_, 'g> {
             self.scope.require(rule, || format!("the {what} of a contact"), &[value]);
             Some(value)
         };
-        let stiffness = read(&soft.stiffness, "stiffness", Rule::Positive);
-        let dissipation = match &soft.dissipation {
+        let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
+        let stiffness = linear.or(hertz).and_then(|e| read(e, "stiffness", Rule::Positive));
+        let dissipation = match given.get(Key::Dissipation) {
             Some(e) => read(e, "dissipation", Rule::NotNegative),
             None => Some(g.zero()),
         };
-        let speed = match &soft.speed {
+        let speed = match given.get(Key::Speed) {
             Some(e) => read(e, "speed", Rule::Positive),
             None => Some(g.num(DEFAULT_SLIP_SPEED)),
         };
         Some(CompliantContact {
             stiffness: stiffness?,
-            hertz: soft.hertz,
+            hertz: linear.is_none(),
             dissipation: dissipation?,
             speed: speed?,
         })

@@ -1,10 +1,10 @@
 //! Stops: contacts of coordinates and expressions at the bounds of limits.
 
-use super::unilateral::{ContactCoefficients, split_restitution};
+use super::unilateral::ContactCoefficients;
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
-use crate::mechanism::Rule;
+use crate::language::Key;
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
@@ -12,8 +12,7 @@ use crate::syntax;
 impl<'g> Builder<'_, 'g> {
     /// Adds the stops at the bounds of a limit.
     pub(super) fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let (value, of_impulses) = split_restitution(limit.restitution.as_ref());
-        let restitution = self.coefficient(value, "restitution", Rule::Fraction, &limit.name.text, cx);
+        let (restitution, of_impulses) = self.restitution(&limit.arguments, &limit.name.text, cx);
         let (Some(restitution), Some((limited, rate, turns))) = (restitution, self.stop_value(limit, cx))
         else {
             return;
@@ -24,11 +23,11 @@ impl<'g> Builder<'_, 'g> {
             true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
             false => self.scope.scalar(e, &mut Diagnostics::unread()),
         };
-        let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
-        let bounds = bounds.map(|(word, e, side)| Some((word, bound_value(e.as_ref()?)?, side)));
-        for (word, bound, side) in bounds.into_iter().flatten() {
+        let bounds = [(Key::From, 1.0), (Key::To, -1.0)]
+            .map(|(key, side)| Some((key, bound_value(limit.arguments.get(key)?)?, side)));
+        for (key, bound, side) in bounds.into_iter().flatten() {
             let gap = (limited - bound) * g.num(side);
-            let name = format!("{}.{word}", limit.name.text);
+            let name = format!("{}.{}", limit.name.text, key.name());
             let (friction, torsional, rolling) = (g.zero(), g.zero(), g.zero());
             let coefficients = ContactCoefficients {
                 friction,

@@ -7,14 +7,14 @@ use super::{PointContact, SurfacePair, perpendicular, sphere_contact, support_po
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
-use crate::language::{Method, OtherKind};
+use crate::language::{Key, Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::{ForceCounts, is_power_used};
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
 use crate::syntax::contact::collision;
-use crate::syntax::{self, ExprKind, GROUND};
+use crate::syntax::{self, ExprKind, GROUND, WrittenArguments};
 
 /// Maximum number of contact points of a mechanism: the generated code grows with their number.
 const MAX_CONTACT_POINTS: usize = 128;
@@ -59,11 +59,6 @@ pub(super) struct CandidatePoint<'g> {
     pub(super) place: Terms<'g>,
 }
 
-/// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses.
-pub(super) fn split_restitution(restitution: Option<&syntax::Restitution>) -> (Option<&syntax::Expr>, bool) {
-    restitution.map_or((None, false), |e| (Some(&e.value), e.of_impulses))
-}
-
 impl<'g> Builder<'_, 'g> {
     /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
     pub fn add_contacts(&mut self, _: Moving, cx: &mut Diagnostics) {
@@ -71,7 +66,8 @@ impl<'g> Builder<'_, 'g> {
         for contact in &description.contacts {
             self.add_contact(contact, cx);
         }
-        for limit in description.limits.iter().filter(|limit| limit.restitution.is_some()) {
+        for limit in description.limits.iter().filter(|limit| limit.arguments.get(Key::Restitution).is_some())
+        {
             self.add_stops(limit, cx);
         }
         let count = self.model.contacts.len();
@@ -90,7 +86,7 @@ impl<'g> Builder<'_, 'g> {
             None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
             _ => self.contact_surfaces(&contact.second, cx),
         };
-        let soft = contact.soft.as_ref().map(|soft| self.read_compliance(soft, cx));
+        let soft = contact.is_compliant().then(|| self.read_compliance(&contact.arguments, cx));
         let (Some(firsts), Some(seconds), Some(coefficients)) = (firsts, seconds, coefficients) else {
             return;
         };
@@ -257,20 +253,18 @@ impl<'g> Builder<'_, 'g> {
         contact: &syntax::Contact,
         cx: &mut Diagnostics,
     ) -> Option<ContactCoefficients<'g>> {
-        let name = &contact.name.text;
-        let mut read =
-            |e: &Option<syntax::Expr>, what, rule| self.coefficient(e.as_ref(), what, rule, name, cx);
-        let friction = read(&contact.friction, "friction", Rule::NotNegative);
-        let stiction = match &contact.stiction {
-            Some(_) => read(&contact.stiction, "static friction", Rule::NotNegative),
+        let (name, given) = (&contact.name.text, &contact.arguments);
+        let mut read = |key, what| self.coefficient(given.get(key), what, Rule::NotNegative, name, cx);
+        let friction = read(Key::Friction, "friction");
+        let stiction = match given.get(Key::StaticFriction) {
+            Some(_) => read(Key::StaticFriction, "static friction"),
             None => friction,
         };
-        let torsional = read(&contact.torsional, "torsional friction", Rule::NotNegative);
-        let rolling = read(&contact.rolling, "rolling friction", Rule::NotNegative);
-        let (value, of_impulses) = split_restitution(contact.restitution.as_ref());
-        let restitution = self.coefficient(value, "restitution", Rule::Fraction, name, cx);
+        let torsional = read(Key::TorsionalFriction, "torsional friction");
+        let rolling = read(Key::RollingFriction, "rolling friction");
+        let restitution = self.restitution(given, name, cx);
         let (friction, stiction) = (friction?, stiction?);
-        if let Some(e) = contact.stiction.as_ref().filter(|_| contact.friction.is_some()) {
+        if let Some(e) = given.get(Key::StaticFriction).filter(|_| given.get(Key::Friction).is_some()) {
             match (friction.value(), stiction.value()) {
                 (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
@@ -292,9 +286,21 @@ impl<'g> Builder<'_, 'g> {
             stiction,
             torsional: torsional?,
             rolling: rolling?,
-            restitution: restitution?,
-            of_impulses,
+            restitution: restitution.0?,
+            of_impulses: restitution.1,
         })
+    }
+
+    /// Reads a coefficient of restitution, `None` after an error, and whether it is a ratio of impulses.
+    pub(super) fn restitution(
+        &self,
+        given: &WrittenArguments,
+        name: &str,
+        cx: &mut Diagnostics,
+    ) -> (Option<Expr<'g>>, bool) {
+        let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution).unzip();
+        let value = self.coefficient(e, "restitution", Rule::Fraction, name, cx);
+        (value, of_impulses == Some(true))
     }
 
     /// Reads a coefficient, zero if it is absent; `None` after an error.

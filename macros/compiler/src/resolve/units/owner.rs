@@ -83,11 +83,8 @@ fn fields(d: &Description) -> OwnedExpressions<'_> {
     for constraint in &d.constraints {
         let sides = [Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten();
         all.extend(sides.map(|e| ("", constraint.name.text.as_str(), e)));
-        all.extend(
-            constraint.friction.iter().map(|f| ("friction", constraint.name.text.as_str(), &f.coefficient)),
-        );
-        let speed = constraint.friction.iter().filter_map(|f| f.speed.as_ref());
-        all.extend(speed.map(|e| ("speed", constraint.name.text.as_str(), e)));
+        let name = constraint.name.text.as_str();
+        all.extend(constraint.arguments.iter().map(|(key, e)| (key.name(), name, e)));
     }
     all
 }

@@ -3,15 +3,15 @@
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::Value;
 use crate::language::dimension::{
-    ACCELERATION, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED, TIME,
+    ACCELERATION, Dimension, ENERGY, INERTIA, LENGTH, MASS, PLAIN, POWER, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, ArgumentKind, Callable, ForceQuantity, Key, Locals, Method};
+use crate::language::{Argument, ArgumentKind, Callable, Key, Locals, Method, Quantity};
 use crate::resolve::contact::TERRAIN_COORDINATES;
 use crate::syntax::contact::collision;
 use crate::syntax::{
     Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
-    Member, Target,
+    Member, Target, WrittenArguments, restitution,
 };
 
 /// An expression with its expected dimension.
@@ -38,16 +38,30 @@ pub struct DimensionedExpressions<'a> {
     pub sides: Vec<Dimension>,
 }
 
-/// Coordinate on which a force element does work.
+/// Coordinate on which an element does work.
 struct Work {
     /// Dimension of the coordinate or the distance.
     coordinate: Dimension,
-    /// Notation of the units of force, stiffness, damping and inertance.
-    units: [&'static str; 4],
+    /// Dimension of the force or the torque.
+    force: Dimension,
+    /// Notation of the units of force, stiffness, damping, inertance, coordinate and speed.
+    units: [&'static str; 6],
 }
 
-const LINEAR_UNITS: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
-const ANGULAR_UNITS: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
+const LINEAR_UNITS: [&str; 6] = ["N", "N/m", "N·s/m", "kg", "m", "m/s"];
+const ANGULAR_UNITS: [&str; 6] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²", "rad", "rad/s"];
+
+impl Work {
+    /// Returns the work on a coordinate of this dimension.
+    fn on(coordinate: Dimension) -> Option<Work> {
+        let units = match (coordinate.is_plain(), coordinate.is_known()) {
+            (true, _) => ANGULAR_UNITS,
+            (_, true) => LINEAR_UNITS,
+            _ => [""; 6],
+        };
+        Some(Work { force: ENERGY.quotient(&coordinate)?, coordinate, units })
+    }
+}
 
 /// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
 /// because all their values are numbers.
@@ -97,22 +111,8 @@ pub fn collect<'a>(
     for contact in &d.contacts {
         places.add_surface(&contact.first);
         places.add_surface(&contact.second);
-        places.add_all(
-            contact
-                .friction
-                .iter()
-                .chain(&contact.stiction)
-                .chain(contact.restitution.iter().map(|e| &e.value)),
-            &PLAIN,
-            "1",
-        );
-        places.add_all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
-        if let Some(soft) = &contact.soft {
-            let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
-            let dimension = power.and_then(|power| FORCE.quotient(&LENGTH.power(power)?));
-            places.add_if_known([&soft.stiffness], dimension, if soft.hertz { "" } else { "N/m" });
-            places.add_if_known(&soft.dissipation, TIME.quotient(&LENGTH), "s/m");
-            places.add_all(&soft.speed, &SPEED, "m/s");
+        if let Some(work) = Work::on(LENGTH) {
+            places.add_written(&contact.arguments, &work, Locals::None);
         }
     }
     for (_, e) in &d.energies {
@@ -238,19 +238,17 @@ impl<'a> DimensionedExpressions<'a> {
             }
         };
         let on_point = on.is_none();
-        let units = match &on {
-            Some(d) if d.is_plain() => ANGULAR_UNITS,
-            Some(d) if !d.is_known() => [""; 4],
-            _ => LINEAR_UNITS,
-        };
-        let work = Work { coordinate: on.unwrap_or(LENGTH), units };
+        let Some(mut work) = Work::on(on.unwrap_or(LENGTH)) else { return };
+        let row = action.kind.row();
         // A force at a point does work on a length, a torque on an angle.
-        let force = match on_point && action.kind.row().torque {
-            true => Some(ENERGY),
-            false => ENERGY.quotient(&work.coordinate),
-        };
-        if let Some(force) = force {
-            self.add_element(action, &work, &force, inference);
+        if on_point && row.torque {
+            work = Work { force: ENERGY, units: ANGULAR_UNITS, ..work };
+        }
+        self.add_written(&action.arguments, &work, row.locals);
+        if action.is_input() {
+            let is_direction = |key: &Key| matches!(key.row().quantity, Quantity::Direction);
+            let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
+            input(action, direction, &work.force, inference);
         }
     }
 
@@ -260,15 +258,9 @@ impl<'a> DimensionedExpressions<'a> {
             self.add(&limit.on, &unknown, "");
             unknown
         });
-        let [length, speed, effort] = match (q.is_plain(), q.is_known()) {
-            (true, _) => ["rad", "rad/s", "N·m"],
-            (_, true) => ["m", "m/s", "N"],
-            _ => [""; 3],
-        };
-        self.add_all(limit.from.iter().chain(&limit.to), &q, length);
-        self.add_if_known(&limit.max_speed, q.quotient(&TIME), speed);
-        self.add_if_known(&limit.max_effort, ENERGY.quotient(&q), effort);
-        self.add_all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
+        if let Some(work) = Work::on(q) {
+            self.add_written(&limit.arguments, &work, Locals::None);
+        }
     }
 
     /// Adds the value at rest of a coordinate, an input or a state.
@@ -282,34 +274,31 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    fn add_element(
-        &mut self,
-        action: &'a Action,
-        work: &Work,
-        force: &Dimension,
-        inference: &mut Inference<'a>,
-    ) {
-        let [n, stiffness, damping, inertance] = work.units;
+    /// Adds the written arguments of an element.
+    fn add_written(&mut self, written: &'a WrittenArguments, work: &Work, locals: Locals) {
+        let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
-        let per = |times: i64| force.quotient(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
-        let row = action.kind.row();
-        for (key, e) in &action.arguments {
+        let per = |times: i64| work.force.quotient(q)?.times(&TIME.power(Ratio::integer(times))?);
+        for (key, e) in written.iter() {
             let (dimension, unit) = match &key.row().quantity {
-                ForceQuantity::Stiffness => (per(0), stiffness),
-                ForceQuantity::Damping => (per(1), damping),
-                ForceQuantity::Inertance => (per(2), inertance),
-                ForceQuantity::Force => (Some(force.clone()), n),
-                ForceQuantity::Energy => (Some(ENERGY), "J"),
-                ForceQuantity::Coordinate => (Some(q.clone()), if q.is_plain() { "rad" } else { "" }),
-                ForceQuantity::Speed => (q.quotient(&TIME), ""),
-                ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
-                ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
-                // The direction belongs to an input, whose unit is set below.
-                ForceQuantity::Direction => continue,
+                Quantity::Stiffness => (per(0), stiffness),
+                Quantity::HertzStiffness => {
+                    let power = Ratio::new(3, 2).and_then(|power| q.power(power));
+                    (power.and_then(|power| work.force.quotient(&power)), "")
+                }
+                Quantity::Damping => (per(1), damping),
+                Quantity::Inertance => (per(2), inertance),
+                Quantity::Force | Quantity::Load => (Some(work.force.clone()), force),
+                Quantity::Energy => (Some(ENERGY), "J"),
+                Quantity::Coordinate => (Some(q.clone()), coordinate),
+                Quantity::Speed => (q.quotient(&TIME), speed),
+                Quantity::Fixed(dimension, unit) => (Some(dimension.clone()), *unit),
+                // The direction belongs to an input, whose unit is set separately.
+                Quantity::Direction => continue,
             };
             let Some(dimension) = dimension else { continue };
             // Coefficients are not expressions of the stretch or the speed.
-            let locals = match (row.locals, key) {
+            let locals = match (locals, key) {
                 (Locals::Stretch, Key::Force | Key::Energy) => {
                     vec![("stretch", q.clone()), ("length", q.clone())]
                 }
@@ -318,12 +307,8 @@ impl<'a> DimensionedExpressions<'a> {
                 }
                 _ => Vec::new(),
             };
+            let e = if key == Key::Restitution { restitution(e).0 } else { e };
             self.tasks.push(Task { e, dimension, unit, locals });
-        }
-        if action.is_input() {
-            let is_direction = |key: &Key| matches!(key.row().quantity, ForceQuantity::Direction);
-            let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
-            input(action, direction, force, inference);
         }
     }
 
@@ -336,9 +321,8 @@ impl<'a> DimensionedExpressions<'a> {
             self.add_all(&constraint.other, &side, "");
             return;
         }
-        if let Some(friction) = &constraint.friction {
-            self.add(&friction.coefficient, &PLAIN, "1");
-            self.add_all(&friction.speed, &SPEED, "m/s");
+        if let Some(work) = Work::on(LENGTH) {
+            self.add_written(&constraint.arguments, &work, Locals::None);
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
         pair.iter().for_each(|surface| self.add_surface(surface));
@@ -363,17 +347,6 @@ impl<'a> DimensionedExpressions<'a> {
                 _ => Vec::new(),
             };
             self.tasks.push(Task { e, dimension, unit, locals });
-        }
-    }
-
-    fn add_if_known(
-        &mut self,
-        e: impl IntoIterator<Item = &'a Expr>,
-        dimension: Option<Dimension>,
-        unit: &'static str,
-    ) {
-        if let Some(dimension) = dimension {
-            self.add_all(e, &dimension, unit);
         }
     }
 }

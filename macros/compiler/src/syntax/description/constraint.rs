@@ -1,7 +1,7 @@
 //! Restrictions of motion: constraints, contacts, limits.
 
-use super::{Expr, Name};
-use crate::language::{Callable, OtherKind};
+use super::{Expr, ExprKind, Name, WrittenArguments};
+use crate::language::{Callable, Key, OtherKind};
 
 /// Kind of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,15 +37,6 @@ impl ConstraintKind {
     }
 }
 
-/// Coulomb friction of slipping surfaces.
-#[derive(Clone, Debug)]
-pub struct SlipFriction {
-    /// Coefficient of friction.
-    pub coefficient: Expr,
-    /// Speed at which friction is regularised; that of the mechanism if absent.
-    pub speed: Option<Expr>,
-}
-
 /// An expression that remains zero, two that remain equal, or a pair of surfaces.
 #[derive(Clone, Debug)]
 pub struct Constraint {
@@ -57,8 +48,8 @@ pub struct Constraint {
     pub value: Expr,
     /// Right side of the equation; zero if absent.
     pub other: Option<Expr>,
-    /// Friction of slipping surfaces.
-    pub friction: Option<SlipFriction>,
+    /// Friction of slipping surfaces and speed at which it is regularised.
+    pub arguments: WrittenArguments,
 }
 
 /// Bounds of a coordinate.
@@ -68,25 +59,8 @@ pub struct Limit {
     pub name: Name,
     /// Joint, coordinate of a joint, declared coordinate, or expression.
     pub on: Expr,
-    /// Lower bound.
-    pub from: Option<Expr>,
-    /// Upper bound.
-    pub to: Option<Expr>,
-    /// Maximum speed, in both directions.
-    pub max_speed: Option<Expr>,
-    /// Maximum force or torque, in both directions.
-    pub max_effort: Option<Expr>,
-    /// Coefficient of restitution; if present, the bounds are stops.
-    pub restitution: Option<Restitution>,
-}
-
-/// A coefficient of restitution.
-#[derive(Clone, Debug)]
-pub struct Restitution {
-    /// Value of the coefficient.
-    pub value: Expr,
-    /// Whether it is a ratio of impulses (Poisson) instead of velocities (Newton).
-    pub of_impulses: bool,
+    /// Bounds; with a restitution they are stops.
+    pub arguments: WrittenArguments,
 }
 
 /// Two surfaces that may separate, collide, slide and stick.
@@ -98,31 +72,25 @@ pub struct Contact {
     pub first: Expr,
     /// Second surface.
     pub second: Expr,
-    /// Coefficient of friction; zero if absent.
-    pub friction: Option<Expr>,
-    /// Coefficient of static friction; that of sliding if absent.
-    pub stiction: Option<Expr>,
-    /// Maximum friction moment about the normal per unit normal force, m; zero if absent.
-    pub torsional: Option<Expr>,
-    /// Maximum friction moment about the tangents per unit normal force, m; zero if absent.
-    pub rolling: Option<Expr>,
-    /// Coefficient of restitution; zero if absent.
-    pub restitution: Option<Restitution>,
-    /// Stiffness and dissipation of compliant surfaces; rigid if absent.
-    pub soft: Option<Compliance>,
+    /// Coefficients of friction and restitution, stiffness and dissipation; surfaces without a stiffness are
+    /// rigid.
+    pub arguments: WrittenArguments,
     /// Whether the contact is from a file. Pairs that never separate are then omitted.
     pub of_file: bool,
 }
 
-/// Stiffness and dissipation of compliant surfaces.
-#[derive(Clone, Debug)]
-pub struct Compliance {
-    /// Force per penetration, or per penetration to the power of 3/2.
-    pub stiffness: Expr,
-    /// Whether the power is 3/2, that of round bodies (Hertz).
-    pub hertz: bool,
-    /// Dissipation per speed of approach (Hunt and Crossley), s/m; zero if absent.
-    pub dissipation: Option<Expr>,
-    /// Slip speed below which friction is regularised, m/s.
-    pub speed: Option<Expr>,
+impl Contact {
+    /// Whether the surfaces yield.
+    pub fn is_compliant(&self) -> bool {
+        [Key::Stiffness, Key::Hertz].into_iter().any(|key| self.arguments.get(key).is_some())
+    }
+}
+
+/// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses, `poisson(e)`,
+/// instead of velocities.
+pub fn restitution(e: &Expr) -> (&Expr, bool) {
+    match &e.kind {
+        ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) => (list.first().unwrap_or(e), true),
+        _ => (e, false),
+    }
 }

@@ -14,7 +14,23 @@ pub struct Action {
     /// Coordinate, body or points on which the element acts.
     pub on: Target,
     /// Written arguments.
-    pub arguments: Vec<(Key, Expr)>,
+    pub arguments: WrittenArguments,
+}
+
+/// Arguments of an element, as written.
+#[derive(Clone, Debug, Default)]
+pub struct WrittenArguments(pub Vec<(Key, Expr)>);
+
+impl WrittenArguments {
+    /// Returns the expression of an argument.
+    pub fn get(&self, key: Key) -> Option<&Expr> {
+        self.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
+    }
+
+    /// Returns the arguments with their expressions.
+    pub fn iter(&self) -> impl Iterator<Item = (Key, &Expr)> {
+        self.0.iter().map(|(key, e)| (*key, e))
+    }
 }
 
 /// A spring, damper, rotor or motor of a file.
@@ -131,13 +147,13 @@ impl Target {
 impl Action {
     /// Returns the expression of an argument.
     pub fn get(&self, key: Key) -> Option<&Expr> {
-        self.arguments.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
+        self.arguments.get(key)
     }
 
     /// Returns the written law, with its argument.
     pub fn law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
-        self.arguments.iter().find(|(key, _)| laws.contains(key)).map(|(key, e)| (*key, e))
+        self.arguments.iter().find(|(key, _)| laws.contains(key))
     }
 
     /// Whether the element is a force or a torque without a value: an input.

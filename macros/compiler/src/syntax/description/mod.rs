@@ -10,10 +10,10 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Compliance, Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction};
+pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench};
+pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench, WrittenArguments};
 pub use geometry::{Collision, Mesh, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 

@@ -1,0 +1,153 @@
+//! Arguments of elements, and conditions on which of them are given together.
+
+use super::super::dimension::{ATTRACTION, Dimension, GRAVITATION, LENGTH, PLAIN, SLOWNESS, STRENGTH};
+use Quantity::{
+    Coordinate, Damping, Direction, Energy, Fixed, Force, HertzStiffness, Inertance, Load, Speed, Stiffness,
+};
+
+/// A row of the table of arguments.
+#[derive(Debug)]
+pub struct KeyRow {
+    /// The name.
+    pub name: &'static str,
+    /// Names in other tools; the elements list them.
+    pub synonyms: &'static str,
+    /// Quantity of the argument.
+    pub quantity: Quantity,
+}
+
+/// A quantity of an element. Its dimension follows from the coordinate or the distance on which the element
+/// acts.
+#[derive(Debug)]
+pub enum Quantity {
+    /// Force by displacement.
+    Stiffness,
+    /// Force by displacement to the power of 3/2.
+    HertzStiffness,
+    /// Force by velocity.
+    Damping,
+    /// Force by acceleration.
+    Inertance,
+    /// A force or a torque.
+    Force,
+    /// An energy.
+    Energy,
+    /// The coordinate or the distance itself.
+    Coordinate,
+    /// Rate of the coordinate or the distance.
+    Speed,
+    /// This dimension, with the text of its unit (empty for the default).
+    Fixed(Dimension, &'static str),
+    /// The direction of an input.
+    Direction,
+    /// The value of a force or a torque; without it the element is an input.
+    Load,
+}
+
+const fn key(name: &'static str, quantity: Quantity) -> KeyRow {
+    KeyRow { name, synonyms: "", quantity }
+}
+
+table! {
+    /// An argument of a force element, a contact, a limit or a pair of slipping surfaces.
+    Key: KeyRow {
+        /// Stiffness of a spring.
+        Stiffness = key("stiffness", Stiffness);
+        /// Force, as an expression of the stretch or the speed.
+        Force = key("force", Force);
+        /// Energy, as an expression of the stretch.
+        Energy = key("energy", Energy);
+        /// Length at which the force of a spring is zero.
+        FreeLength = key("free_length", Coordinate);
+        /// Angle at which the torque of a spring is zero.
+        FreeAngle = key("free_angle", Coordinate);
+        /// Coefficient of a dashpot.
+        Damping = key("damping", Damping);
+        /// Inertance of an inerter.
+        Inertance = key("inertance", Inertance);
+        /// Force of sliding friction.
+        Coulomb = key("coulomb", Force);
+        /// Force at breakaway.
+        Stiction = key("stiction", Force);
+        /// Speed at which the force has fallen from breakaway to sliding.
+        StribeckSpeed = key("stribeck_speed", Speed);
+        /// Viscous coefficient.
+        Viscous = key("viscous", Damping);
+        /// Speed of the regularisation.
+        Speed = key("speed", Speed);
+        /// Gravitational constant, for two bodies with mass.
+        Constant = key("constant", Fixed(GRAVITATION, ""));
+        /// Gravitational parameter of the attracting body.
+        Mu = key("mu", Fixed(ATTRACTION, ""));
+        /// Force times the square of the distance.
+        Strength = key("strength", Fixed(STRENGTH, ""));
+        /// Coefficient of friction while surfaces slide.
+        Friction = key("friction", PLAIN_NUMBER);
+        /// Coefficient of friction at rest.
+        StaticFriction = key("stiction", PLAIN_NUMBER);
+        /// Maximum friction moment about the normal per unit normal force.
+        TorsionalFriction = key("torsional", METERS);
+        /// Maximum friction moment about the tangents per unit normal force.
+        RollingFriction = key("rolling", METERS);
+        /// Coefficient of restitution: `e`, a ratio of velocities, or `poisson(e)`, a ratio of impulses.
+        Restitution = key("restitution", PLAIN_NUMBER);
+        /// Stiffness of round bodies (Hertz).
+        Hertz = key("hertz", HertzStiffness);
+        /// Dissipation per speed of approach (Hunt and Crossley).
+        Dissipation = key("dissipation", Fixed(SLOWNESS, "s/m"));
+        /// Lower bound of a limit.
+        From = key("from", Coordinate);
+        /// Upper bound of a limit.
+        To = key("to", Coordinate);
+        /// Maximum speed, in both directions.
+        MaxSpeed = key("max_speed", Speed);
+        /// Maximum force or torque, in both directions.
+        MaxEffort = key("max_effort", Force);
+        /// Direction of a force on a body.
+        Along = key("along", Direction);
+        /// Direction of a torque on a body.
+        About = key("about", Direction);
+        /// Value of a force or a torque.
+        Value = key("value", Load);
+    }
+}
+
+const PLAIN_NUMBER: Quantity = Fixed(PLAIN, "1");
+const METERS: Quantity = Fixed(LENGTH, "m");
+
+/// A condition on which arguments are given together.
+#[derive(Debug)]
+pub struct Relation {
+    /// Argument at which a violation is reported.
+    pub key: Key,
+    /// True if the argument needs one of the others, false if it excludes them.
+    pub needs: bool,
+    /// The other arguments.
+    pub others: &'static [Key],
+    /// The error; `NAME` is the name of the element.
+    pub message: &'static str,
+    /// The help.
+    pub help: &'static str,
+}
+
+impl Relation {
+    /// Returns the condition that an argument is not given together with others.
+    pub const fn excludes(
+        key: Key,
+        others: &'static [Key],
+        message: &'static str,
+        help: &'static str,
+    ) -> Relation {
+        Relation { key, needs: false, others, message, help }
+    }
+
+    /// Returns the condition that an argument is given together with one of the others.
+    pub const fn needs(
+        key: Key,
+        others: &'static [Key],
+        message: &'static str,
+        help: &'static str,
+    ) -> Relation {
+        Relation { key, needs: true, others, message, help }
+    }
+}

@@ -1,0 +1,83 @@
+//! Arguments by the tables of the language: keys with expressions, and conditions on which of them are given
+//! together.
+
+use super::arguments::Arguments;
+use super::{Expr, ExprKind, Name, WrittenArguments};
+use crate::diag::Diagnostics;
+use crate::language::{Callable, Key, OtherKind, Relation};
+
+/// Arguments that the row of an element lists.
+pub struct Keys<'a> {
+    /// All of them.
+    pub all: &'a [Key],
+    /// Alternative laws, of which one is given.
+    pub laws: &'a [Key],
+    /// Arguments that must be given, with an example each.
+    pub required: &'a [(Key, &'a str)],
+    /// Attribute of the element.
+    pub attribute: &'a str,
+    /// Names of all arguments of the element.
+    pub names: &'a [&'a str],
+}
+
+impl<'a> Keys<'a> {
+    /// Returns the arguments of an element that is no force element.
+    pub fn of(kind: OtherKind, names: &'a [&'a str]) -> Keys<'a> {
+        let row = kind.row();
+        let attribute = row.attributes.first().copied().unwrap_or_default();
+        Keys { all: row.arguments, laws: &[], required: row.required, attribute, names }
+    }
+
+    /// Reads the arguments, laws first. The result is false if a required one is missing.
+    pub fn read(&self, arguments: &mut Arguments, cx: &mut Diagnostics) -> (WrittenArguments, bool) {
+        let mut given: Vec<(Key, Expr)> = Vec::new();
+        let mut is_complete = true;
+        let others = self.all.iter().filter(|key| !self.laws.contains(key));
+        for key in self.laws.iter().chain(others) {
+            let has_law = self.laws.contains(key) && given.iter().any(|(known, _)| self.laws.contains(known));
+            let value = match self.required.iter().find(|(known, _)| known == key) {
+                Some((_, example)) if !has_law => {
+                    let value = arguments.need_expr(key.name(), example, self.attribute, self.names, cx);
+                    is_complete &= value.is_some();
+                    value
+                }
+                _ => arguments.take_expr(key.name(), cx),
+            };
+            let value = value.filter(|e| *key != Key::Restitution || check_restitution(e, cx));
+            given.extend(value.map(|value| (*key, value)));
+        }
+        (WrittenArguments(given), is_complete)
+    }
+}
+
+/// Reports a coefficient of restitution by impulses without its value. Returns false then.
+fn check_restitution(e: &Expr, cx: &mut Diagnostics) -> bool {
+    match &e.kind {
+        ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) && list.len() != 1 => {
+            cx.error(word.place.clone(), "`poisson` takes one coefficient")
+                .help("write `restitution = poisson(e)`");
+            false
+        }
+        _ => true,
+    }
+}
+
+/// Reports arguments that exclude each other or need others, each once. Returns false then.
+pub fn check_relations(
+    relations: &[Relation],
+    given: &WrittenArguments,
+    name: &Name,
+    cx: &mut Diagnostics,
+) -> bool {
+    let mut reported: Vec<&Relation> = Vec::new();
+    for relation in relations {
+        let Some(e) = given.get(relation.key) else { continue };
+        let has_other = relation.others.iter().any(|key| given.get(*key).is_some());
+        let is_known = |known: &&Relation| known.key == relation.key || known.message == relation.message;
+        if has_other != relation.needs && !reported.iter().any(is_known) {
+            cx.error(e.place.clone(), relation.message.replace("NAME", &name.text)).help(relation.help);
+            reported.push(relation);
+        }
+    }
+    reported.is_empty()
+}
