@@ -6,11 +6,9 @@ use super::quantities::{in_links, vector};
 use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::diff::Derivative;
-use crate::expr::replace::replace;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
-use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
+use crate::mechanism::{Quantity, Space};
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
@@ -132,56 +130,6 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds a force on a rate. Terms that are linear in the accelerations are separated from the others.
-    pub fn add_value_load(&mut self, rate: Expr<'g>, force: Expr<'g>, place: &Place, cx: &mut Diagnostics) {
-        let graph = self.scope.graph;
-        let acceleration = |s| match Quantity::of(s) {
-            Quantity::Acceleration(k) => Some((s, k)),
-            _ => None,
-        };
-        let acceleration_symbols: Vec<_> =
-            symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
-        if acceleration_symbols.is_empty() {
-            self.model.loads.push(Load { rate, force, dissipative: false });
-            return;
-        }
-        let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).differentiate(force));
-        let factors: Vec<(usize, Expr<'g>)> =
-            acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
-        let all: Vec<Expr<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
-        let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
-        if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
-            cx.error(place.clone(), "a force can depend on accelerations linearly alone")
-                .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one of them each");
-            return;
-        }
-        if quantities.iter().any(|q| matches!(q, Quantity::Input(_))) {
-            cx.error(place.clone(), "what multiplies an acceleration cannot depend on inputs")
-                .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
-            return;
-        }
-        let remainder = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
-        if !remainder.is_zero() {
-            self.model.loads.push(Load { rate, force: remainder, dissipative: false });
-        }
-        if !factors.is_empty() {
-            self.model.acceleration_forces.push(AccelerationForce { rate, factors, place: place.clone() });
-        }
-    }
-
-    /// Adds a force vector at a point: a load for each component.
-    pub fn add_load(&mut self, rate: Vec3<'g>, force: Vec3<'g>, place: &Place, cx: &mut Diagnostics) {
-        for k in 0..3 {
-            let before = cx.len();
-            if !force[k].is_zero() {
-                self.add_value_load(rate[k], force[k], place, cx);
-            }
-            if cx.len() > before {
-                return;
-            }
-        }
-    }
-
     /// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The
     /// constraint and contact forces are computed with a symmetric mass matrix.
     pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {

@@ -2,7 +2,9 @@
 //! body.
 
 use super::builder::Builder;
-use super::forces::{Law, report_unused_input};
+use super::forces::{
+    Forces, Law, dry_friction, inertance, input_load, report_unused_input, spring_law, value_load,
+};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -34,44 +36,60 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         if let DriveLaw::Input(unit) = drive.law {
-            self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms, unit)));
-            if let Some(stretch) = self.spatial_stretch(&drive.on, cx) {
-                self.add_input_load(&drive.name.text, stretch.rate);
-            }
-            return;
+            self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms.clone(), unit)));
         }
-        if let [on] = terms.as_slice()
-            && self.add_to_coordinate(*on, drive.law)
-        {
-            return;
-        }
-        let stretch = match &drive.on {
-            DriveOn::Sum(_) => Some(self.sum_stretch(&terms)),
-            on => self.spatial_stretch(on, cx),
-        };
-        // A force on a constant length has no effect.
-        let Some(stretch) = stretch else { return };
+        let forces = self.drive_forces(drive, &terms, cx);
+        forces.into_iter().for_each(|forces| forces.add_to(&mut self.model));
+    }
+
+    /// Returns the forces of an element; `None` without an effect.
+    fn drive_forces(&self, drive: &Drive, terms: &[Coordinate], cx: &mut Diagnostics) -> Option<Forces<'g>> {
         let (place, g) = (&drive.name.place, self.scope.graph);
+        let on = if let [on] = terms { Some(*on) } else { None };
+        // The ratio of the coordinate is the weight.
+        match (on, drive.law) {
+            (Some(on), DriveLaw::Spring { stiffness, free }) => {
+                let springs = vec![Spring { on, stiffness: g.num(stiffness), free: g.num(free) }];
+                return Some(Forces { springs, ..Forces::default() });
+            }
+            (Some(on), DriveLaw::Damper(damping)) => {
+                let dashpots = vec![Dashpot { on, damping: g.num(damping) }];
+                return Some(Forces { dashpots, ..Forces::default() });
+            }
+            (Some(on), DriveLaw::Friction(force)) => {
+                let frictions = vec![CoulombFriction { on, friction: g.num(force) }];
+                return Some(Forces { frictions, ..Forces::default() });
+            }
+            (None, _)
+            | (_, DriveLaw::Slack { .. } | DriveLaw::Inerter(_) | DriveLaw::Push(_) | DriveLaw::Input(_)) => {
+            }
+        }
+        // A force on a constant length has no effect.
+        let stretch = match (&drive.on, drive.law) {
+            (DriveOn::Sum(_), DriveLaw::Input(_)) => return None,
+            (DriveOn::Sum(_), _) => self.sum_stretch(terms),
+            (on, _) => self.spatial_stretch(on, cx)?,
+        };
         let number = |value| Expr::number(value, place);
         match drive.law {
             DriveLaw::Spring { stiffness, free } => {
-                self.add_spring_law(stretch, &Law::Linear(&number(stiffness)), g.num(free), cx);
+                spring_law(self, stretch, &Law::Linear(&number(stiffness)), g.num(free), cx)
             }
             DriveLaw::Slack { stiffness, range: [low, high] } => {
                 let short = (stretch.value - g.num(low)).extreme(Extreme::Min, g.zero());
                 let long = (stretch.value - g.num(high)).extreme(Extreme::Max, g.zero());
-                self.model.potentials.push(g.num(stiffness) * 0.5 * (short.square() + long.square()));
+                Some(Forces::of_potentials([g.num(stiffness) * 0.5 * (short.square() + long.square())]))
             }
             DriveLaw::Damper(damping) => {
-                let damping = self.scope.scalar(&number(damping), cx);
-                self.push_damping(stretch.rate, damping.map(|damping| damping * stretch.rate));
+                let damping = self.scope.scalar(&number(damping), cx)?;
+                Some(Forces::resisting(stretch.rate, damping * stretch.rate))
             }
             DriveLaw::Friction(force) => {
-                self.push_friction(stretch.rate, [Some(&number(force)), None, None, None, None], place, cx);
+                dry_friction(self, stretch.rate, [Some(&number(force)), None, None, None, None], place, cx)
             }
-            DriveLaw::Inerter(inertance) => self.push_inertance(stretch.rate, &number(inertance), cx),
-            DriveLaw::Push(force) => self.add_value_load(stretch.rate, g.num(force), place, cx),
-            DriveLaw::Input(_) => {}
+            DriveLaw::Inerter(value) => inertance(self, stretch.rate, &number(value), cx),
+            DriveLaw::Push(force) => value_load(self, stretch.rate, g.num(force), place, cx),
+            DriveLaw::Input(_) => input_load(self, &drive.name.text, stretch.rate),
         }
     }
 
@@ -122,23 +140,6 @@ impl<'g> Builder<'_, 'g> {
             [(_, c, _)] => Some(Coordinate { ratio: weight * c.ratio, offset: weight * c.offset, ..*c }),
             _ => None,
         }
-    }
-
-    /// Adds springs, dampers and friction on a single coordinate; returns false for other laws. The ratio of
-    /// the [`Coordinate`] is the weight.
-    fn add_to_coordinate(&mut self, on: Coordinate, law: DriveLaw) -> bool {
-        let g = self.scope.graph;
-        match law {
-            DriveLaw::Spring { stiffness, free } => {
-                self.model.springs.push(Spring { on, stiffness: g.num(stiffness), free: g.num(free) });
-            }
-            DriveLaw::Damper(damping) => self.model.dashpots.push(Dashpot { on, damping: g.num(damping) }),
-            DriveLaw::Friction(force) => {
-                self.model.frictions.push(CoulombFriction { on, friction: g.num(force) });
-            }
-            _ => return false,
-        }
-        true
     }
 
     /// Returns the stretch of a sum of coordinates.

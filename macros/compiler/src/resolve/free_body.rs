@@ -6,8 +6,8 @@
 //! coordinates.
 
 use super::builder::Builder;
+use super::forces::Forces;
 use super::holders::name_of;
-use super::power::ForceCounts;
 use super::reaction::RELEASED;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
 use crate::diag::Diagnostics;
@@ -63,9 +63,8 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Records the generalized forces of a new element on the coordinates of released joints. `before` counts
-    /// the elements of the model before it.
-    pub fn record_applied(&mut self, before: &ForceCounts, name: &str) {
+    /// Records the generalized forces of an element on the coordinates of released joints.
+    pub fn record_applied(&mut self, applied: &Forces<'g>, name: &str) {
         let Some((joints, _)) = self.releasing else { return };
         if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
             return;
@@ -79,22 +78,22 @@ impl<'g> Builder<'_, 'g> {
             }
         };
         let a = |k: usize| Quantity::Acceleration(k).expr(m.graph);
-        for load in &m.loads[before.loads..] {
+        for load in &applied.loads {
             add(load.rate, load.force);
         }
-        for energy in &m.potentials[before.potentials..] {
+        for energy in &applied.potentials {
             add(time_derivative(m.space(), *energy), -m.graph.one());
         }
-        for function in &m.dissipations[before.dissipations..] {
+        for function in &applied.dissipations {
             add(*function, -m.graph.one());
         }
-        for element in &m.inertances[before.inertances..] {
+        for element in &applied.inertances {
             let gradient = velocity_gradient(element.rate);
             let start = time_derivative(m.space(), element.rate);
             let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * a(k));
             add(element.rate, -(element.inertance * change));
         }
-        for force in &m.acceleration_forces[before.acceleration_forces..] {
+        for force in &applied.acceleration_forces {
             let value = force.factors.iter().fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * a(*k));
             add(force.rate, value);
         }

@@ -2,42 +2,14 @@
 
 use super::builder::Builder;
 use super::call::Call;
+use super::forces::Forces;
 use super::scope::{Allowed, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
+use crate::mechanism::{Direction, Input, LinkId, Quantity};
 use crate::syntax::{self, Description, Name};
-
-/// Number of forces of each kind in the model.
-#[derive(Clone, Copy, PartialEq)]
-pub struct ForceCounts {
-    pub(super) springs: usize,
-    pub(super) dashpots: usize,
-    pub(super) frictions: usize,
-    pub(super) loads: usize,
-    pub(super) potentials: usize,
-    pub(super) dissipations: usize,
-    pub(super) inertances: usize,
-    pub(super) acceleration_forces: usize,
-}
-
-impl ForceCounts {
-    /// Counts the forces of a model.
-    pub fn of_model(model: &Model<'_>) -> ForceCounts {
-        ForceCounts {
-            springs: model.springs.len(),
-            dashpots: model.dashpots.len(),
-            frictions: model.frictions.len(),
-            loads: model.loads.len(),
-            potentials: model.potentials.len(),
-            dissipations: model.dissipations.len(),
-            inertances: model.inertances.len(),
-            acceleration_forces: model.acceleration_forces.len(),
-        }
-    }
-}
 
 /// Whether an output or a definition contains the power of an element.
 pub fn is_power_used(d: &Description, element: &Name) -> bool {
@@ -54,36 +26,36 @@ pub fn is_power_used(d: &Description, element: &Name) -> bool {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the power of the forces that an element has added since `before`: products of forces and
-    /// rates, and the rate of decrease of energies along the motion.
-    pub fn power_since(&self, before: &ForceCounts, element: &str) -> ElementPower<'g> {
-        let (m, now) = (&self.model, ForceCounts::of_model(&self.model));
-        if now.inertances > before.inertances || now.acceleration_forces > before.acceleration_forces {
+    /// Returns the power of the forces of an element: products of forces and rates, and the rate of decrease
+    /// of energies along the motion.
+    pub fn power_of(&self, forces: &Forces<'g>, element: &str) -> ElementPower<'g> {
+        let m = &self.model;
+        if !forces.inertances.is_empty() || !forces.acceleration_forces.is_empty() {
             return Err("its force depends on accelerations");
         }
         let mut power = m.graph.zero();
-        for spring in &m.springs[before.springs..] {
+        for spring in &forces.springs {
             power +=
                 -(spring.stiffness * (position_in(m.graph, &spring.on) - spring.free) * rate(m, &spring.on));
         }
-        for dashpot in &m.dashpots[before.dashpots..] {
+        for dashpot in &forces.dashpots {
             power += -(dashpot.damping * rate(m, &dashpot.on).square());
         }
-        for dry in &m.frictions[before.frictions..] {
+        for dry in &forces.frictions {
             let speed = rate(m, &dry.on);
             power += -(dry.friction * (speed / m.friction_speed).call(Function::Tanh) * speed);
         }
-        for load in &m.loads[before.loads..] {
+        for load in &forces.loads {
             power += load.force * load.rate;
         }
-        let energies = &m.potentials[before.potentials..];
+        let energies = &forces.potentials;
         if symbols_in(energies).into_iter().any(|s| Quantity::of(s) == Quantity::Time) {
             return Err("its energy depends on time");
         }
         for energy in energies {
             power += -time_derivative(m.space(), *energy);
         }
-        for function in &m.dissipations[before.dissipations..] {
+        for function in &forces.dissipations {
             for (k, d) in velocity_gradient(*function) {
                 power += -(d * Quantity::Velocity(k).expr(m.graph));
             }

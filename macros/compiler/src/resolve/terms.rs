@@ -3,7 +3,7 @@
 
 use super::builder::Builder;
 use super::constraint::Constrained;
-use super::power::ForceCounts;
+use super::forces::Forces;
 use super::scope::{Allowed, Context};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -96,9 +96,7 @@ impl<'g> Builder<'_, 'g> {
         for (name, e) in &d.energies {
             let context = Context::new(Allowed::Placement, ground());
             let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
-            let before = ForceCounts::of_model(&self.model);
-            self.model.potentials.extend(energy);
-            self.record_applied(&before, &name.text);
+            self.add_forces(&name.text, Forces::of_potentials(energy));
         }
         for (name, e) in &d.dissipations {
             let context = Context::new(Allowed::Motion, ground());
@@ -108,9 +106,8 @@ impl<'g> Builder<'_, 'g> {
                 cx.error(e.place.clone(), "this contains no velocity, and has no effect")
                     .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
             }
-            let before = ForceCounts::of_model(&self.model);
-            self.model.dissipations.extend(function);
-            self.record_applied(&before, &name.text);
+            let dissipations = function.into_iter().collect();
+            self.add_forces(&name.text, Forces { dissipations, ..Forces::default() });
         }
         self.add_outputs(cx);
         // Unused definitions are checked as well.

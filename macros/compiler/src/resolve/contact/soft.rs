@@ -9,6 +9,7 @@ use crate::kinematics::velocity_gradient;
 use crate::language::Key;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::forces::Forces;
 use crate::resolve::scope::{Allowed, ContactLoads, Context};
 use crate::syntax::{self, WrittenArguments};
 
@@ -63,36 +64,36 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Adds the effects of a contact point: potential energy of the penetration, dissipation and friction.
-    pub(super) fn add_soft_point(
-        &mut self,
+    /// Returns the effects of a contact point: potential energy of the penetration, dissipation and friction.
+    pub(super) fn soft_point(
+        &self,
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
         soft: &CompliantContact<'g>,
         exerted: &mut ContactLoads<'g>,
-    ) {
+    ) -> Forces<'g> {
         let g = self.scope.graph;
         let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
         let root = if soft.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = soft.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
-        self.model.potentials.push(energy);
+        let mut forces = Forces::of_potentials([energy]);
         let [(normal, rate), tangents @ ..] = point.rates;
         // Surfaces do not pull at each other.
         let damping = (-(elastic * soft.dissipation * rate)).extreme(Extreme::Max, -elastic);
         let pressure = elastic + damping;
         if !soft.dissipation.is_zero() {
-            self.model.loads.push(Load { rate, force: damping, dissipative: true });
+            forces.loads.push(Load { rate, force: damping, dissipative: true });
         }
         exerted.forces.push((point.ancestor, normal * pressure));
         for (about, most) in [(0..1, coefficients.torsional), (1..3, coefficients.rolling)] {
             let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.angular_rates[k])).collect();
-            let moments = self.add_moment(&turns, most, pressure, soft.speed);
+            let moments = add_moment(&turns, most, pressure, soft.speed, &mut forces);
             exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
         }
         let friction = coefficients.friction;
         if friction.is_zero() {
-            return;
+            return forces;
         }
         let slip = tangents.iter().fold(soft.speed.square(), |sum, (_, rate)| sum + rate.square()).sqrt();
         for (direction, rate) in tangents {
@@ -100,33 +101,33 @@ impl<'g> Builder<'_, 'g> {
                 continue;
             }
             let force = -(friction * pressure * rate / slip);
-            self.model.loads.push(Load { rate, force, dissipative: true });
+            forces.loads.push(Load { rate, force, dissipative: true });
             exerted.forces.push((point.ancestor, direction * force));
         }
+        forces
     }
+}
 
-    /// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment
-    /// is `coefficient` times the normal force. The moment is smaller if `coefficient` times the angular
-    /// velocity is below the regularisation speed.
-    fn add_moment(
-        &mut self,
-        rotations: &[(Vec3<'g>, Expr<'g>)],
-        coefficient: Expr<'g>,
-        pressure: Expr<'g>,
-        speed: Expr<'g>,
-    ) -> Vec<Vec3<'g>> {
-        if coefficient.is_zero() {
-            return Vec::new();
-        }
-        let square =
-            rotations.iter().fold(speed.square(), |sum, (_, rate)| sum + (coefficient * *rate).square());
-        let magnitude = square.sqrt();
-        let mut moments = Vec::new();
-        for (direction, rate) in rotations.iter().filter(|(_, rate)| !velocity_gradient(*rate).is_empty()) {
-            let force = -(coefficient * pressure * (coefficient * *rate) / magnitude);
-            self.model.loads.push(Load { rate: *rate, force, dissipative: true });
-            moments.push(*direction * force);
-        }
-        moments
+/// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment
+/// is `coefficient` times the normal force. The moment is smaller if `coefficient` times the angular
+/// velocity is below the regularisation speed.
+fn add_moment<'g>(
+    rotations: &[(Vec3<'g>, Expr<'g>)],
+    coefficient: Expr<'g>,
+    pressure: Expr<'g>,
+    speed: Expr<'g>,
+    forces: &mut Forces<'g>,
+) -> Vec<Vec3<'g>> {
+    if coefficient.is_zero() {
+        return Vec::new();
     }
+    let square = rotations.iter().fold(speed.square(), |sum, (_, rate)| sum + (coefficient * *rate).square());
+    let magnitude = square.sqrt();
+    let mut moments = Vec::new();
+    for (direction, rate) in rotations.iter().filter(|(_, rate)| !velocity_gradient(*rate).is_empty()) {
+        let force = -(coefficient * pressure * (coefficient * *rate) / magnitude);
+        forces.loads.push(Load { rate: *rate, force, dissipative: true });
+        moments.push(*direction * force);
+    }
+    moments
 }

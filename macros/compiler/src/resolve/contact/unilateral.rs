@@ -10,8 +10,9 @@ use crate::kinematics::{motion_rates, velocity_gradient};
 use crate::language::{Key, Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::forces::Forces;
 use crate::resolve::motion::Moving;
-use crate::resolve::power::{ForceCounts, is_power_used};
+use crate::resolve::power::is_power_used;
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
 use crate::syntax::contact::collision;
 use crate::syntax::{self, ExprKind, GROUND, WrittenArguments};
@@ -119,23 +120,28 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         check_relative_rotation(contact, &separable, cx);
-        let (several, mut exerted, before) =
-            (separable.len() > 1, ContactLoads::default(), ForceCounts::of_model(&self.model));
+        let (several, mut exerted) = (separable.len() > 1, ContactLoads::default());
+        let mut all = Forces::default();
         for (k, point) in separable.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
             match soft.as_ref().and_then(Option::as_ref) {
-                Some(soft) => self.add_soft_point(point, coefficients, soft, &mut exerted),
+                Some(soft) => {
+                    let forces = self.soft_point(point, coefficients, soft, &mut exerted);
+                    all.potentials.extend(forces.potentials);
+                    all.loads.extend(forces.loads);
+                }
                 None => self.add_point(name, point, coefficients, &mut exerted),
             }
         }
         if is_power_used(self.description, &contact.name) {
             let power = match (&soft, exerted.power) {
                 (None, Some(power)) => Ok(power),
-                _ => self.power_since(&before, &contact.name.text),
+                _ => self.power_of(&all, &contact.name.text),
             };
             self.scope.kinematics.powers.insert(contact.name.text.clone(), power);
         }
+        all.add_to(&mut self.model);
         self.scope.kinematics.contact_loads.insert(contact.name.text.clone(), exerted);
     }
 

@@ -1,45 +1,38 @@
 //! Dashpots: linear, and with a force as an expression of the speed.
 
-use super::ActedOn;
+use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
-use crate::expr::Expr;
-use crate::mechanism::{Dashpot, Load, Pose, Rule};
+use crate::mechanism::{Dashpot, Pose, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
-use crate::resolve::terms::Stretch;
 use crate::syntax::{Action, Key};
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds a dashpot. A linear dashpot on a coordinate is stored separately in the model.
-    pub(super) fn add_dashpot(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        let damping = action.get(Key::Damping);
-        if let (Some(written), Some(on)) = (damping, on.coordinate) {
-            let damping = self.scope.scalar(written, cx);
-            if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
-                cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
-                    .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
-            }
-            if let Some(damping) = damping {
-                let quantity = || format!("the damping of `{}`", action.name.text);
-                self.scope.require(Rule::NotNegative, quantity, &[damping]);
-                self.model.dashpots.push(Dashpot { on, damping });
-            }
-            return;
+/// Returns the force of a dashpot. A linear dashpot on a coordinate is stored separately in the model.
+pub fn dashpot<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    on: ActedOn<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let damping = action.get(Key::Damping);
+    if let (Some(written), Some(on)) = (damping, on.coordinate) {
+        let damping = b.scope.scalar(written, cx)?;
+        if let Some(d) = damping.value().filter(|d| *d < 0.0) {
+            cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
+                .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
         }
-        let Some(Stretch { rate, .. }) = self.stretch_on(on) else { return };
-        if let Some(damping) = damping {
-            let force = self.scope.scalar(damping, cx).map(|damping| damping * rate);
-            self.push_damping(rate, force);
-        } else if let Some(force) = action.get(Key::Force) {
-            let ground = Some((None, Pose::identity(self.scope.graph)));
+        b.scope.require(Rule::NotNegative, || format!("the damping of `{}`", action.name.text), &[damping]);
+        return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });
+    }
+    let rate = b.stretch_on(on)?.rate;
+    let force = match damping {
+        Some(damping) => b.scope.scalar(damping, cx)? * rate,
+        None => {
+            let ground = Some((None, Pose::identity(b.scope.graph)));
             let context = Context::new(Allowed::Motion, ground).with_locals(vec![("speed", rate)]);
-            let force = self.scope.in_context(context, |scope| scope.scalar(force, cx));
-            self.push_damping(rate, force);
+            let written = action.get(Key::Force)?;
+            b.scope.in_context(context, |scope| scope.scalar(written, cx))?
         }
-    }
-
-    /// Adds a force that opposes a rate, if it is present.
-    pub fn push_damping(&mut self, rate: Expr<'g>, force: Option<Expr<'g>>) {
-        self.model.loads.extend(force.map(|force| Load { rate, force: -force, dissipative: true }));
-    }
+    };
+    Some(Forces::resisting(rate, force))
 }

@@ -1,69 +1,70 @@
 //! Dry and viscous friction.
 
-use super::ActedOn;
+use super::{ActedOn, Forces};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};
-use crate::mechanism::{Load, Rule};
+use crate::mechanism::Rule;
 use crate::resolve::builder::Builder;
 use crate::syntax::{self, Action, Key};
 
 /// Default regularisation speed of friction, m/s or rad/s.
 const FRICTION_SPEED: f64 = 0.01;
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds a friction element.
-    pub(super) fn add_friction(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
-        let Some(stretch) = self.stretch_on(on) else { return };
-        self.push_friction(stretch.rate, all.map(|key| action.get(key)), action.on.place(), cx);
-    }
+/// Returns the force of a friction element.
+pub fn friction<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    on: ActedOn<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
+    dry_friction(b, b.stretch_on(on)?.rate, all.map(|key| action.get(key)), action.on.place(), cx)
+}
 
-    /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
-    /// friction: `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
-    pub fn push_friction(
-        &mut self,
-        v: Expr<'g>,
-        [coulomb, stiction, stribeck, viscous, speed]: [Option<&syntax::Expr>; 5],
-        place: &Place,
-        cx: &mut Diagnostics,
-    ) {
-        let g = self.scope.graph;
-        let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
-            Some(e) => self.scope.scalar(e, cx),
-            None => Some(g.num(default)),
-        };
-        let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
-        let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
-        let mut check =
-            |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
-                if let Some(found) = found {
-                    let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-                    self.scope.require(rule, || format!("a {what} of dry friction"), &[found]);
-                }
-                let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
-                if n < 0.0 || positive && n == 0.0 {
-                    let must = if positive { "must be positive" } else { "cannot be negative" };
-                    cx.error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
-                }
-            };
-        for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
-            check(written, found, false, "friction");
+/// Returns dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
+/// friction: `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
+pub fn dry_friction<'g>(
+    b: &Builder<'_, 'g>,
+    v: Expr<'g>,
+    [coulomb, stiction, stribeck, viscous, speed]: [Option<&syntax::Expr>; 5],
+    place: &Place,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let g = b.scope.graph;
+    let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
+        Some(e) => b.scope.scalar(e, cx),
+        None => Some(g.num(default)),
+    };
+    let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
+    let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
+    let mut check = |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
+        if let Some(found) = found {
+            let rule = if positive { Rule::Positive } else { Rule::NotNegative };
+            b.scope.require(rule, || format!("a {what} of dry friction"), &[found]);
         }
-        for (written, found) in [(stribeck, vs.flatten()), (speed, v0)] {
-            check(written, found, true, "speed");
+        let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
+        if n < 0.0 || positive && n == 0.0 {
+            let must = if positive { "must be positive" } else { "cannot be negative" };
+            cx.error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
         }
-        let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return };
-        let dry = match (fs, vs) {
-            (None, None) => fc,
-            (Some(Some(fs)), Some(Some(vs))) => fc + (fs - fc) * (-(v / vs).square()).call(Function::Exp),
-            (Some(None), _) | (_, Some(None)) => return,
-            _ => {
-                cx.error(place.clone(), "`stiction` and `stribeck_speed` go together")
-                    .help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
-                return;
-            }
-        };
-        let force = dry * (v / v0).call(Function::Tanh) + c * v;
-        self.model.loads.push(Load { rate: v, force: -force, dissipative: true });
+    };
+    for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
+        check(written, found, false, "friction");
     }
+    for (written, found) in [(stribeck, vs.flatten()), (speed, v0)] {
+        check(written, found, true, "speed");
+    }
+    let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return None };
+    let dry = match (fs, vs) {
+        (None, None) => fc,
+        (Some(Some(fs)), Some(Some(vs))) => fc + (fs - fc) * (-(v / vs).square()).call(Function::Exp),
+        (Some(None), _) | (_, Some(None)) => return None,
+        _ => {
+            cx.error(place.clone(), "`stiction` and `stribeck_speed` go together")
+                .help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
+            return None;
+        }
+    };
+    let force = dry * (v / v0).call(Function::Tanh) + c * v;
+    Some(Forces::resisting(v, force))
 }

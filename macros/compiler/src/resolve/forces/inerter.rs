@@ -1,29 +1,34 @@
 //! Inerters: forces proportional to relative accelerations.
 
-use super::ActedOn;
+use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Inertance, Rule};
 use crate::resolve::builder::Builder;
 use crate::syntax::{self, Action, Key};
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds an inerter.
-    pub(super) fn add_inerter(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        if let (Some(inertance), Some(stretch)) = (action.get(Key::Inertance), self.stretch_on(on)) {
-            self.push_inertance(stretch.rate, inertance, cx);
-        }
-    }
+/// Returns the force of an inerter.
+pub fn inerter<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    on: ActedOn<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    inertance(b, b.stretch_on(on)?.rate, action.get(Key::Inertance)?, cx)
+}
 
-    /// Adds an inertance on a rate.
-    pub fn push_inertance(&mut self, rate: Expr<'g>, inertance: &syntax::Expr, cx: &mut Diagnostics) {
-        if let Some(b) = self.scope.scalar(inertance, cx) {
-            if let Some(n) = b.value().filter(|n| *n < 0.0) {
-                cx.error(inertance.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
-                    .help("it resists accelerations as a mass does: write its size");
-            }
-            self.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[b]);
-            self.model.inertances.push(Inertance { rate, inertance: b });
-        }
+/// Returns the force of an inertance on a rate.
+pub fn inertance<'g>(
+    b: &Builder<'_, 'g>,
+    rate: Expr<'g>,
+    written: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let inertance = b.scope.scalar(written, cx)?;
+    if let Some(n) = inertance.value().filter(|n| *n < 0.0) {
+        cx.error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
+            .help("it resists accelerations as a mass does: write its size");
     }
+    b.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
+    Some(Forces { inertances: vec![Inertance { rate, inertance }], ..Forces::default() })
 }

@@ -7,20 +7,81 @@ mod inerter;
 mod load;
 mod spring;
 
-pub use spring::Law;
+pub use friction::dry_friction;
+pub use inerter::inertance;
+pub use load::{input_load, value_load};
+pub use spring::{Law, spring_law};
 
 use super::builder::Builder;
 use super::motion::Moving;
-use super::power::{ForceCounts, is_power_used};
+use super::power::is_power_used;
 use super::target::Target;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
-use crate::mechanism::{Coordinate, Input};
+use crate::expr::Expr;
+use crate::mechanism::{
+    AccelerationForce, Coordinate, CoulombFriction, Dashpot, Inertance, Input, Load, Model, Spring,
+};
 use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
+
+/// Forces of an element, which the builder adds to those of the others.
+#[derive(Default)]
+pub struct Forces<'g> {
+    /// Linear springs on coordinates.
+    pub springs: Vec<Spring<'g>>,
+    /// Linear dashpots on coordinates.
+    pub dashpots: Vec<Dashpot<'g>>,
+    /// Coulomb friction on coordinates.
+    pub frictions: Vec<CoulombFriction<'g>>,
+    /// Forces on rates.
+    pub loads: Vec<Load<'g>>,
+    /// Potential energies.
+    pub potentials: Vec<Expr<'g>>,
+    /// Dissipation functions.
+    pub dissipations: Vec<Expr<'g>>,
+    /// Inertances on rates.
+    pub inertances: Vec<Inertance<'g>>,
+    /// Forces that are linear in accelerations.
+    pub acceleration_forces: Vec<AccelerationForce<'g>>,
+    /// Effect of the entry of `u` that belongs to the element.
+    pub input: Option<Input<'g>>,
+}
+
+impl<'g> Forces<'g> {
+    /// Returns the forces of potential energies.
+    pub fn of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
+        Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
+    }
+
+    /// Returns a force that opposes a rate and dissipates energy.
+    pub fn resisting(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
+        Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
+    }
+
+    /// Whether there is no force and no input.
+    fn is_empty(&self) -> bool {
+        let linear = self.springs.len() + self.dashpots.len() + self.frictions.len();
+        let functions = self.potentials.len() + self.dissipations.len();
+        let forces = self.loads.len() + self.inertances.len() + self.acceleration_forces.len();
+        linear + functions + forces == 0 && self.input.is_none()
+    }
+
+    /// Adds the forces to those of a model.
+    pub fn add_to(self, model: &mut Model<'g>) {
+        model.springs.extend(self.springs);
+        model.dashpots.extend(self.dashpots);
+        model.frictions.extend(self.frictions);
+        model.loads.extend(self.loads);
+        model.potentials.extend(self.potentials);
+        model.dissipations.extend(self.dissipations);
+        model.inertances.extend(self.inertances);
+        model.acceleration_forces.extend(self.acceleration_forces);
+    }
+}
 
 impl<'g> Builder<'_, 'g> {
     /// Resolves force elements on coordinates, which need no positions.
-    pub fn check_actions(&mut self, cx: &mut Diagnostics) {
+    pub fn check_actions(&self, cx: &mut Diagnostics) {
         for action in &self.description.actions {
             let on_joint = match &action.on {
                 On::On(e) => match &e.kind {
@@ -31,7 +92,7 @@ impl<'g> Builder<'_, 'g> {
                 On::Between(..) => false,
             };
             if on_joint && !needs_motion(action) {
-                self.add_action(action, cx);
+                let _ = self.forces_of(action, cx);
             }
         }
     }
@@ -44,42 +105,45 @@ impl<'g> Builder<'_, 'g> {
             self.model.inputs.push((input.text.clone(), Input::Named));
         }
         for action in &self.description.actions {
-            let before = ForceCounts::of_model(&self.model);
-            self.add_action(action, cx);
+            let mut forces = self.forces_of(action, cx).unwrap_or_default();
             // An element without an effect may be zero by its values. An input has an entry of `u` in any
             // case.
-            let has_no_effect =
-                ForceCounts::of_model(&self.model) == before && !self.is_input(&action.name.text);
-            if cx.is_empty() && action.is_input() && has_no_effect {
+            if cx.is_empty() && action.is_input() && forces.is_empty() {
                 report_unused_input(&action.name, cx);
             }
-            self.record_applied(&before, &action.name.text);
+            if let Some(input) = forces.input.take()
+                && let Some((_, slot)) =
+                    self.model.inputs.iter_mut().find(|(known, _)| *known == action.name.text)
+            {
+                *slot = input;
+            }
             if is_power_used(self.description, &action.name) {
-                let power = self.power_since(&before, &action.name.text);
+                let power = self.power_of(&forces, &action.name.text);
                 self.scope.kinematics.powers.insert(action.name.text.clone(), power);
             }
+            self.add_forces(&action.name.text, forces);
         }
     }
 
-    /// Whether an input with this name has its own entry of `u` on a coordinate or a body.
-    fn is_input(&self, name: &str) -> bool {
-        self.model.inputs.iter().any(|(known, input)| known == name && !matches!(input, Input::Named))
+    /// Adds the forces of an element, and records them for free-body diagrams.
+    pub fn add_forces(&mut self, name: &str, forces: Forces<'g>) {
+        self.record_applied(&forces, name);
+        forces.add_to(&mut self.model);
     }
 
-    /// Adds one force element or input to the model.
-    fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
-        let add = match action.kind {
-            ForceKind::Gravity => return self.add_gravity(action, cx),
-            ForceKind::Force | ForceKind::Torque => return self.add_acting(action, cx),
-            ForceKind::Spring => Self::add_spring,
-            ForceKind::Dashpot => Self::add_dashpot,
-            ForceKind::Inerter => Self::add_inerter,
-            ForceKind::Friction => Self::add_friction,
-            ForceKind::Attraction => Self::add_attraction,
+    /// Returns the forces of an element; `None` after an error.
+    fn forces_of(&self, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
+        let forces = match action.kind {
+            ForceKind::Gravity => return gravity::gravity(self, action, cx),
+            ForceKind::Force | ForceKind::Torque => return load::load(self, action, cx),
+            ForceKind::Spring => spring::spring,
+            ForceKind::Dashpot => dashpot::dashpot,
+            ForceKind::Inerter => inerter::inerter,
+            ForceKind::Friction => friction::friction,
+            ForceKind::Attraction => gravity::attraction,
         };
-        if let Some(on) = self.acted_on(action, cx) {
-            add(self, action, on, cx);
-        }
+        let on = self.acted_on(action, cx)?;
+        forces(self, action, on, cx)
     }
 
     /// Returns the length or the angle on which a force element acts.

@@ -1,6 +1,6 @@
 //! Springs: linear, and with a force or an energy as an expression of the stretch.
 
-use super::ActedOn;
+use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace;
@@ -27,133 +27,144 @@ pub enum Law<'e> {
     Energy(&'e syntax::Expr),
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds a spring. A linear spring on a coordinate is stored separately in the model.
-    pub(super) fn add_spring(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        let law = match action.law() {
-            Some((Key::Force, e)) => Law::Force(e),
-            Some((Key::Energy, e)) => Law::Energy(e),
-            Some((_, e)) => Law::Linear(e),
-            None => return,
-        };
-        if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
-            let stiffness = self.scope.scalar(stiffness, cx);
-            let free = self.free_length(action, angle, cx);
-            if let (Some(stiffness), Some(free)) = (stiffness, free) {
-                self.model.springs.push(Spring { on, stiffness, free });
-            }
-            return;
-        }
-        let angle = on.angle;
-        let Some(stretch) = self.stretch_on(on) else { return };
-        if let Some(free) = self.free_length(action, angle, cx) {
-            self.add_spring_law(stretch, &law, free, cx);
-        }
+/// Returns the force of a spring. A linear spring on a coordinate is stored separately in the model.
+pub fn spring<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    on: ActedOn<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let law = match action.law()? {
+        (Key::Force, e) => Law::Force(e),
+        (Key::Energy, e) => Law::Energy(e),
+        (_, e) => Law::Linear(e),
+    };
+    if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
+        let stiffness = b.scope.scalar(stiffness, cx);
+        let free = free_length(b, action, angle, cx);
+        let spring = Spring { on, stiffness: stiffness?, free: free? };
+        return Some(Forces { springs: vec![spring], ..Forces::default() });
     }
+    let angle = on.angle;
+    let stretch = b.stretch_on(on)?;
+    let free = free_length(b, action, angle, cx)?;
+    spring_law(b, stretch, &law, free, cx)
+}
 
-    /// Adds a spring with any law.
-    pub fn add_spring_law(
-        &mut self,
-        stretch: Stretch<'g>,
-        law: &Law<'_>,
-        free: Expr<'g>,
-        cx: &mut Diagnostics,
-    ) {
-        let g = self.scope.graph;
-        let length =
-            if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
-        let value = length - free;
-        let symbol = Quantity::Stretch.symbol();
-        let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
-        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
-        let energy = match law {
-            // Smooth even where the points coincide.
-            Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
-            Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
-            Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
-            Law::Force(e) => self.energy_of(e, &context, cx),
-        };
-        if let Some(energy) = energy {
-            self.model.potentials.push(replace(energy, &|s| (s == symbol).then_some(value)));
-        }
-    }
+/// Returns the force of a spring with any law.
+pub fn spring_law<'g>(
+    b: &Builder<'_, 'g>,
+    stretch: Stretch<'g>,
+    law: &Law<'_>,
+    free: Expr<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
+    let g = b.scope.graph;
+    let length =
+        if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
+    let value = length - free;
+    let symbol = Quantity::Stretch.symbol();
+    let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
+    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
+    let energy = match law {
+        // Smooth even where the points coincide.
+        Law::Linear(k) if free.is_zero() => b.scope.scalar(k, cx)? * 0.5 * stretch.square,
+        Law::Linear(k) => b.scope.scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
+        Law::Energy(e) => b.scope.in_context(context, |scope| scope.scalar(e, cx))?,
+        Law::Force(e) => energy_of(b, e, &context, cx)?,
+    };
+    Some(Forces::of_potentials([replace(energy, &|s| (s == symbol).then_some(value))]))
+}
 
-    /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
-    /// sum of the energies of its pieces.
-    fn energy_of(&self, e: &syntax::Expr, context: &Context<'g>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
-            self.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
+/// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
+/// sum of the energies of its pieces.
+fn energy_of<'g>(
+    b: &Builder<'_, 'g>,
+    e: &syntax::Expr,
+    context: &Context<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Expr<'g>> {
+    let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
+        b.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
+    };
+    let force = read(e, cx)?;
+    let local = |e: &syntax::Expr| {
+        context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
+    };
+    if let ExprKind::Call(name, arguments) = &e.kind
+        && let [left, right, below, above] = arguments.as_slice()
+        && name.id == Some(Callable::If)
+    {
+        let found = match (local(left), local(right)) {
+            (Some(x), None) => Some((x, right, [below, above])),
+            (None, Some(x)) => Some((x, left, [above, below])),
+            _ => None,
         };
-        let force = read(e, cx)?;
-        let local = |e: &syntax::Expr| {
-            context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
-        };
-        if let ExprKind::Call(name, arguments) = &e.kind
-            && let [left, right, below, above] = arguments.as_slice()
-            && name.id == Some(Callable::If)
-        {
-            let found = match (local(left), local(right)) {
-                (Some(x), None) => Some((x, right, [below, above])),
-                (None, Some(x)) => Some((x, left, [above, below])),
-                _ => None,
-            };
-            if let Some((own, border, pieces)) = found {
-                let symbol = Quantity::Stretch.symbol();
-                let x = self.scope.graph.symbol(symbol);
-                let border = read(border, cx)? - (own - x);
-                let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
-                let substitute_stretch =
-                    |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
-                let (below, above) = (below?, above?);
-                let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
-                return Some(
-                    substitute_stretch(below, low) + substitute_stretch(above, high)
-                        - substitute_stretch(above, border),
-                );
-            }
+        if let Some((own, border, pieces)) = found {
+            let symbol = Quantity::Stretch.symbol();
+            let x = b.scope.graph.symbol(symbol);
+            let border = read(border, cx)? - (own - x);
+            let [below, above] = pieces.map(|piece| energy_of(b, piece, context, cx));
+            let substitute_stretch = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+            let (below, above) = (below?, above?);
+            let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
+            return Some(
+                substitute_stretch(below, low) + substitute_stretch(above, high)
+                    - substitute_stretch(above, border),
+            );
         }
-        self.integral(force, e, cx)
     }
+    integral(b, force, e, cx)
+}
 
-    /// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
-    /// series.
-    fn integral(&self, force: Expr<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        let g = self.scope.graph;
-        let symbol = Quantity::Stretch.symbol();
-        let x = g.symbol(symbol);
-        let mut d = Derivative::with_respect_to(symbol, g);
-        let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
-        for n in 1..=HIGHEST_POWER + 1 {
-            factorial *= n as f64;
-            let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
-            energy += at_zero * (1.0 / factorial) * power;
-            power = power * x;
-            derivative = d.differentiate(derivative);
-            // A law with corner points is a polynomial between them.
-            if derivative.is_zero() && !has_corners(force, symbol) {
-                return Some(energy);
-            }
+/// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
+/// series.
+fn integral<'g>(
+    b: &Builder<'_, 'g>,
+    force: Expr<'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Expr<'g>> {
+    let g = b.scope.graph;
+    let symbol = Quantity::Stretch.symbol();
+    let x = g.symbol(symbol);
+    let mut d = Derivative::with_respect_to(symbol, g);
+    let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
+    for n in 1..=HIGHEST_POWER + 1 {
+        factorial *= n as f64;
+        let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
+        energy += at_zero * (1.0 / factorial) * power;
+        power = power * x;
+        derivative = d.differentiate(derivative);
+        // A law with corner points is a polynomial between them.
+        if derivative.is_zero() && !has_corners(force, symbol) {
+            return Some(energy);
         }
-        cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
-            .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
-        None
     }
+    cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
+        .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
+    None
+}
 
-    /// Returns the length or the angle at which the force of a spring is zero.
-    fn free_length(&self, action: &Action, angle: Option<bool>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        let free_angle = action.get(Key::FreeAngle);
-        let is_angle = free_angle.is_some();
-        let Some(free) = action.get(Key::FreeLength).or(free_angle) else {
-            return Some(self.scope.graph.zero());
-        };
-        if let Some(angle) = angle.filter(|angle| *angle != is_angle) {
-            let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
-            cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
-                .help(format!("write `{key} = …`"));
-            return None;
-        }
-        if is_angle { self.scope.plane_angle(free, cx) } else { self.scope.scalar(free, cx) }
+/// Returns the length or the angle at which the force of a spring is zero.
+fn free_length<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    angle: Option<bool>,
+    cx: &mut Diagnostics,
+) -> Option<Expr<'g>> {
+    let free_angle = action.get(Key::FreeAngle);
+    let is_angle = free_angle.is_some();
+    let Some(free) = action.get(Key::FreeLength).or(free_angle) else {
+        return Some(b.scope.graph.zero());
+    };
+    if let Some(angle) = angle.filter(|angle| *angle != is_angle) {
+        let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+        cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+            .help(format!("write `{key} = …`"));
+        return None;
     }
+    if is_angle { b.scope.plane_angle(free, cx) } else { b.scope.scalar(free, cx) }
 }
 
 /// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the
