@@ -1,6 +1,10 @@
-//! Processor model of the compiler: latencies, costs and limits that were tuned by measurement. Latencies are
+//! Processor model of the compiler: latencies, costs, and limits that depend on the processor. Latencies are
 //! typical values of processors with fused operations; limits were tuned on the robots of `benches`, on
 //! x86-64 processors with 512-bit registers.
+//!
+//! Other constants are defined in the stage that uses them: limits of the effort of a pass (`lower`,
+//! `vectorise`), costs of link frames in operations (`passes::cost`), tolerances of rounding, and limits of
+//! the size of mechanisms (`resolve`).
 
 /// Time units per cycle, and operations issued per cycle.
 pub const CYCLE: u32 = 3;

@@ -2,7 +2,7 @@
 //! `matrices` composes the results.
 
 use super::scalar::ScalarSpelling;
-use crate::catalogue::{Argument, Shape};
+use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
@@ -16,7 +16,7 @@ pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
 /// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a
 /// body of its own. The call avoids two copies of a long body, which rustc would have to process.
 pub fn filled(f: &Function) -> Option<usize> {
-    let has_variant = f.name == "inverse_dynamics_derivatives";
+    let has_variant = f.id == Id::InverseDynamicsDerivatives;
     match f.shape {
         _ if !matrix_arguments(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),

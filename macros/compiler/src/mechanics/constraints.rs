@@ -13,7 +13,7 @@
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
 use super::friction;
-use super::ldl::{self, Solution, solve_in};
+use super::ldl::{self, solve_in};
 use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
 use crate::mechanism::{Model, Pivot, Quantity, Supplied};
@@ -62,15 +62,13 @@ pub fn solve<'g>(
     let nv = mass.len();
     let k = system(mass, jacobian);
     let (order, _) = elimination_order(&k, nv, &[]);
-    let mut r = force;
-    r.extend(bias.into_iter().map(|b| -b));
-    let Solution { mut x, pivots, taken } = solve_in(k, r, &order, nv);
-    for multiplier in &mut x[nv..] {
-        *multiplier = -*multiplier;
-    }
-    x.extend(pivots[nv..].iter().map(|p| -*p));
-    x.extend_from_slice(&taken[nv..]);
-    x
+    solve_in(k, right_side(force, bias), &order, nv).with_reliability(nv)
+}
+
+/// Returns the right side of the equations of motion with constraints: forces, then negative biases.
+pub(super) fn right_side<'g>(mut force: Vec<Expr<'g>>, bias: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    force.extend(bias.into_iter().map(|b| -b));
+    force
 }
 
 /// Returns the terms from which multipliers of minimum norm are computed for dependent constraints: the

@@ -18,7 +18,7 @@
 //! pivots keep their sign. If a pivot changes sign, friction jams (Painlevé's paradox: Génot and Brogliato,
 //! *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 
-use super::constraints::{elimination_order, jacobian, system};
+use super::constraints::{elimination_order, jacobian, right_side, system};
 use super::crba::Matrix;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
@@ -63,15 +63,7 @@ pub fn solve<'g>(
         }
     }
     let (order, _) = elimination_order(&k, nv, &last);
-    let mut r = force;
-    r.extend(bias.into_iter().map(|b| -b));
-    let Solution { mut x, pivots, taken } = eliminate(k, r, &order, nv);
-    for multiplier in &mut x[nv..] {
-        *multiplier = -*multiplier;
-    }
-    x.extend(pivots[nv..].iter().map(|p| -*p));
-    x.extend_from_slice(&taken[nv..]);
-    x
+    eliminate(k, right_side(force, bias), &order, nv).with_reliability(nv)
 }
 
 /// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the

@@ -21,6 +21,19 @@ pub struct Solution<'g> {
     pub taken: Vec<Expr<'g>>,
 }
 
+impl<'g> Solution<'g> {
+    /// Returns the accelerations, of which there are `nv`, and the multipliers, then measures of the
+    /// reliability of the multipliers: their pivots, and the amounts that the elimination has subtracted.
+    pub fn with_reliability(mut self, nv: usize) -> Vec<Expr<'g>> {
+        for multiplier in &mut self.x[nv..] {
+            *multiplier = -*multiplier;
+        }
+        self.x.extend(self.pivots[nv..].iter().map(|p| -*p));
+        self.x.extend_from_slice(&self.taken[nv..]);
+        self.x
+    }
+}
+
 /// Solves `m x = r` for a symmetric `m`, eliminated in a given order.
 pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
     let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);

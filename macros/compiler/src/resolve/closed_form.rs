@@ -48,20 +48,18 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
         let can_be_solved = |k: &usize| {
-            matches!(d.joints[*k].kind, JointKind::Pin | JointKind::Sleeve)
-                && d.joints[*k].mimic.is_none()
-                && !is_in_other_loop(*k)
+            d.joints[*k].kind.rotates().is_some() && d.joints[*k].mimic.is_none() && !is_in_other_loop(*k)
         };
         let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
-        match (joint.kind, sides) {
-            (JointKind::Pin, [Some(a), Some(b)]) if a != b && pins > 0 => {
-                found.push(ClosedFormLoop { closing: j, sides: [a, b] });
-            }
-            _ => {
-                cx.error(branch.place.clone(), "this loop is not solved in closed form")
-                    .help(CLOSED_FORM_HELP);
-            }
+        if let [Some(a), Some(b)] = sides
+            && joint.kind == JointKind::Pin
+            && a != b
+            && pins > 0
+        {
+            found.push(ClosedFormLoop { closing: j, sides: [a, b] });
+        } else {
+            cx.error(branch.place.clone(), "this loop is not solved in closed form").help(CLOSED_FORM_HELP);
         }
     }
     found

@@ -7,6 +7,7 @@ use crate::diag::{Diagnostics, all_of};
 use crate::expr::Expr;
 use crate::expr::replace::replace;
 use crate::kinematics::{speeds, symbols_in, velocity_gradient};
+use crate::language::Key;
 use crate::mechanism::{InV, Pose, Quantity, Speeds};
 use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
@@ -167,16 +168,15 @@ impl<'a, 'g> Builder<'a, 'g> {
             return false;
         }
         let bounded = self.model.limits.iter().find_map(|limit| {
-            let key = if limit.speed.is_some() { "max_speed" } else { "max_effort" };
-            let bounds = limit.speed.or(limit.effort).is_some();
-            (bounds && columns.contains(&limit.v.0)).then_some((limit.v.0, key))
+            let key = limit.speed.map(|_| Key::MaxSpeed).or(limit.effort.map(|_| Key::MaxEffort))?;
+            columns.contains(&limit.v.0).then_some((limit.v.0, key))
         });
         if let Some((k, key)) = bounded {
             let (rate, what) =
-                (list(&[k]), if key == "max_speed" { "the rate" } else { "the force on the rate" });
+                (list(&[k]), if key == Key::MaxSpeed { "the rate" } else { "the force on the rate" });
             cx.error(
                 declared[0].name.place.clone(),
-                format!("speeds replace the rate of {rate}, which has a `{key}`"),
+                format!("speeds replace the rate of {rate}, which has a `{}`", key.name()),
             )
             .help(format!("it bounds {what} of {rate}, which is none of the velocities any more: leave it out, or choose speeds that keep this rate; bounds `from` and `to` of the coordinate may stay"));
             return false;

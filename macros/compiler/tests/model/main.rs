@@ -1,6 +1,7 @@
 //! Tests of the model: compare the model of a mechanism, or the errors, as text.
 
 mod solids;
+mod surfaces;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval_one;

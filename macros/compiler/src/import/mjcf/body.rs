@@ -288,12 +288,8 @@ impl<'a> Reader<'a> {
         let mut carrier = parent.clone();
         for (k, joint) in joints.into_iter().enumerate() {
             let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
-            let outer = match (k, joint.kind) {
-                // The coordinates of a free joint are the pose of the body in the world.
-                (_, JointKind::Free) => Pose::ZERO,
-                (0, _) => *pose,
-                _ => Pose::ZERO,
-            };
+            // The coordinates of a free joint are the pose of the body in the world.
+            let outer = if k == 0 && joint.kind != JointKind::Free { *pose } else { Pose::ZERO };
             if let Some(damping) = &joint.spread {
                 self.spread(&joint, damping, &carrier, &child);
             }
@@ -420,10 +416,10 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
 fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
-    match joint.kind {
-        JointKind::Pin if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
-        JointKind::Sleeve => inner.at = add(inner.at, scale(axis, -joint.reference)),
-        _ => {}
+    match joint.kind.rotates() {
+        Some(true) if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
+        Some(false) => inner.at = add(inner.at, scale(axis, -joint.reference)),
+        Some(true) | None => {}
     }
     let free = joint.kind == JointKind::Free;
     let pose = if free {

@@ -62,7 +62,7 @@ impl<'a> Reader<'a> {
     ) -> Option<BodyJoint> {
         let (word, kind) = if free { ("free", JointKind::Free) } else { read_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
-        let alone = matches!(kind, JointKind::Pin | JointKind::Sleeve);
+        let alone = kind.rotates().is_some();
         let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place(at, cx) };
         let mut anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
         anchor.value = add(outer.at, apply(&outer.axes, anchor.value));
@@ -196,22 +196,17 @@ impl<'a> Reader<'a> {
 
     fn armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
         let Some(armature) = element.nonzero("armature", cx) else { return };
-        match joint.kind {
-            JointKind::Pin | JointKind::Sleeve => {
-                if armature.value < 0.0 {
-                    cx.error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
-                }
-                self.drive(joint, DriveLaw::Inerter(armature.value));
+        if joint.kind.rotates().is_some() {
+            if armature.value < 0.0 {
+                cx.error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
             }
-            _ => {
-                let message = format!("`armature` of a `{}` joint is not supported", joint.word);
-                cx.error(&armature.place, message, |d| {
-                    d.help(
-                        "it adds to the mass matrix what no body does: write `armature=\"0\"` into the joint",
-                    )
-                });
-            }
+            self.drive(joint, DriveLaw::Inerter(armature.value));
+            return;
         }
+        let message = format!("`armature` of a `{}` joint is not supported", joint.word);
+        cx.error(&armature.place, message, |d| {
+            d.help("it adds to the mass matrix what no body does: write `armature=\"0\"` into the joint")
+        });
     }
 
     fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
@@ -226,25 +221,24 @@ impl<'a> Reader<'a> {
     fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
         refuse_yield(element, cx);
         let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) else { return };
-        match joint.kind {
-            JointKind::Pin | JointKind::Sleeve => {
-                self.drive(joint, DriveLaw::Spring { stiffness: stiffness.value, free: rest });
-            }
-            _ => {
-                let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
-                cx.error(&stiffness.place, message, |d| d.help(IGNORE_PASSIVE));
-            }
+        if joint.kind.rotates().is_some() {
+            self.drive(joint, DriveLaw::Spring { stiffness: stiffness.value, free: rest });
+        } else {
+            let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
+            cx.error(&stiffness.place, message, |d| d.help(IGNORE_PASSIVE));
         }
     }
 
     fn dissipation(&mut self, element: &Element<'a>, joint: &mut BodyJoint, cx: &mut Cx<'_>) {
-        for (which, acts) in [("damping", self.dampers), ("frictionloss", self.friction)] {
+        for (which, is_damping, acts) in
+            [("damping", true, self.dampers), ("frictionloss", false, self.friction)]
+        {
             if !acts {
                 continue;
             }
-            let found = match which {
-                "damping" => element.linear(which, IGNORE_PASSIVE, cx),
-                _ => element.nonzero(which, cx),
+            let found = match is_damping {
+                true => element.linear(which, IGNORE_PASSIVE, cx),
+                false => element.nonzero(which, cx),
             };
             let Some(found) = found else { continue };
             if found.value < 0.0 {
@@ -252,11 +246,11 @@ impl<'a> Reader<'a> {
                 cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
             }
             let value = || Some(Expr::number(found.value, &found.place));
-            match (joint.kind, which) {
-                (JointKind::Pin | JointKind::Sleeve, "damping") => joint.damping = value(),
-                (JointKind::Pin | JointKind::Sleeve, _) => joint.friction = value(),
-                (_, "damping") => joint.spread = Some(found),
-                _ => {
+            match (joint.kind.rotates(), is_damping) {
+                (Some(_), true) => joint.damping = value(),
+                (Some(_), false) => joint.friction = value(),
+                (None, true) => joint.spread = Some(found),
+                (None, false) => {
                     let message = format!("`{which}` of a `{}` joint is not supported", joint.word);
                     cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
                 }

@@ -16,16 +16,17 @@ impl Reader<'_> {
         for joint in &self.robot.joints {
             let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
             let axis = joint.axis.value;
-            let motion = match joint.kind {
-                JointKind::Pin => Pose { axes: axis_rotation(axis, rest), ..Pose::ZERO },
-                JointKind::Sleeve => Pose { at: scale(axis, rest), ..Pose::ZERO },
-                _ => Pose::ZERO,
+            let motion = match joint.kind.rotates() {
+                Some(true) => Pose { axes: axis_rotation(axis, rest), ..Pose::ZERO },
+                Some(false) => Pose { at: scale(axis, rest), ..Pose::ZERO },
+                None => Pose::ZERO,
             };
             let parent = poses.get(&joint.parent.text).copied().unwrap_or(Pose::ZERO);
             let back = Pose { at: scale(joint.anchor, -1.0), ..Pose::ZERO };
-            let pose = match joint.kind {
-                JointKind::Free => self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO),
-                _ => parent.then(&pose_of(&joint.origin)).then(&motion).then(&back),
+            let pose = if joint.kind == JointKind::Free {
+                self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO)
+            } else {
+                parent.then(&pose_of(&joint.origin)).then(&motion).then(&back)
             };
             poses.insert(joint.child.text.clone(), pose);
         }

@@ -153,10 +153,10 @@ pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
     let has_axis = given.has_axis();
     let mut joint = bare_joint(given.name, given.kind, parent, child);
     let axis = Expr::vector(given.axis.value, &given.axis.place);
-    match given.kind {
-        // A planar joint moves in the plane perpendicular to its axis.
-        JointKind::Pin | JointKind::Planar | JointKind::Screw => joint.about.push(axis),
-        JointKind::Sleeve => joint.along.push(axis),
+    // A planar joint moves in the plane perpendicular to its axis.
+    match given.kind.row().arguments {
+        ["about", ..] if has_axis => joint.about.push(axis),
+        ["along", ..] if has_axis => joint.along.push(axis),
         _ => {}
     }
     joint.normalise_axis = has_axis;
@@ -171,9 +171,9 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
         return;
     }
     let axis = unit(given.axis.value);
-    match given.kind {
-        JointKind::Pin => end.rotated.push(turn_about(axis, coordinate, given)),
-        JointKind::Sleeve => {
+    match given.kind.rotates() {
+        Some(true) => end.rotated.push(turn_about(axis, coordinate, given)),
+        Some(false) => {
             let shift = given.origin.rotate(axis);
             let from = given.origin.xyz.value;
             let at = [0, 1, 2].map(|k| from[k] + coordinate * shift[k]);
@@ -183,7 +183,7 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
             }
             end.at = (at != [0.0; 3]).then(|| Expr::vector(at, &given.origin.xyz.place));
         }
-        _ => {}
+        None => {}
     }
 }
 

@@ -28,7 +28,11 @@ fn without_locked(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Driv
     match &mut drive.law {
         DriveLaw::Spring { free, .. } => *free -= offset,
         DriveLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
-        _ => {}
+        DriveLaw::Damper(_)
+        | DriveLaw::Friction(_)
+        | DriveLaw::Inerter(_)
+        | DriveLaw::Push(_)
+        | DriveLaw::Input(_) => {}
     }
     (!terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
 }

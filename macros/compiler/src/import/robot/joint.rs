@@ -53,7 +53,7 @@ impl FileJoint {
 
 /// Returns true if joints of this type have exactly one coordinate that limits and locks refer to.
 pub(in crate::import) fn has_coordinate(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Pin | JointKind::Sleeve)
+    kind.rotates().is_some()
 }
 
 /// Returns true if joints of this type move about or along an axis.

@@ -127,11 +127,24 @@ impl JointKind {
             let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();
             return (names.clone(), names);
         }
-        let (q, v): (&[&str], &[&str]) = match self.row().coordinates {
-            CoordinateNames::Ball => (&["qx", "qy", "qz", "qw"], &["wx", "wy", "wz"]),
-            _ => (&["x", "y", "z", "qx", "qy", "qz", "qw"], &["vx", "vy", "vz", "wx", "wy", "wz"]),
+        let is_ball = matches!(self.row().coordinates, CoordinateNames::Ball);
+        let (q, v): (&[&str], &[&str]) = match is_ball {
+            true => (&["qx", "qy", "qz", "qw"], &["wx", "wy", "wz"]),
+            false => (&["x", "y", "z", "qx", "qy", "qz", "qw"], &["vx", "vy", "vz", "wx", "wy", "wz"]),
         };
         (q.to_vec(), v.to_vec())
+    }
+
+    /// Returns true for a joint with a rotation about one axis alone, false for one with a displacement along
+    /// one axis alone.
+    pub fn rotates(self) -> Option<bool> {
+        match (self.row().coordinates, self.row().arguments) {
+            (Plain([("", true)]), ["about"]) => Some(true),
+            (Plain([("", false)]), ["along"]) => Some(false),
+            (Plain(_) | CoordinateNames::PerAxis(_) | CoordinateNames::Ball | CoordinateNames::Free, _) => {
+                None
+            }
+        }
     }
 
     /// True if a plain coordinate is an angle, false if it is a length.

@@ -1,0 +1,57 @@
+//! Pairs of surfaces: the contacts and the rolling pairs that the table lists are supported, and no others.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::language::{ArgumentKind, SurfaceId};
+use linkwork_compiler::read;
+use linkwork_compiler::resolve::build_model;
+use std::path::Path;
+
+/// Returns a surface of a body with plausible arguments, or the body itself, which is a point.
+fn written(body: &str, surface: Option<SurfaceId>) -> String {
+    let Some(id) = surface else { return body.to_string() };
+    let arguments = id.row().arguments.iter().map(|argument| match (argument.kind, id) {
+        (ArgumentKind::Direction, _) => "z".to_string(),
+        (ArgumentKind::HalfAngle, SurfaceId::Cone) => "0.3".to_string(),
+        (ArgumentKind::HalfAngle, _) => "0.6".to_string(),
+        (ArgumentKind::Height, _) => "0.1 * sin(3 * u)".to_string(),
+        (ArgumentKind::Coordinate, _) => argument.name.to_string(),
+        (_, SurfaceId::Sheet) => "[u, w, u * w]".to_string(),
+        _ => "0.1".to_string(),
+    });
+    format!("{body}.{}({})", id.name(), arguments.collect::<Vec<_>>().join(", "))
+}
+
+/// Returns the errors of a mechanism with a pair of surfaces.
+fn errors(pair: &str) -> String {
+    let coordinates = if pair.contains("surface(") { "u: Coordinate, w: Coordinate," } else { "" };
+    let item = format!(
+        "struct S {{ {coordinates} #[body(mass = 1, inertia = sphere(1, 1))] b: Body,
+            #[joint(ground.at([0.1, 0.2, 0.5]) -> b)] j: Free, {pair} }}"
+    );
+    let mut cx = Diagnostics::new();
+    let source = read("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+    cx.messages().join("\n")
+}
+
+#[test]
+fn listed_pairs_of_surfaces_are_supported() {
+    let unknown = "where these surfaces touch is not known";
+    for below in SurfaceId::ALL.iter().copied() {
+        let base = written("ground", Some(below));
+        for above in SurfaceId::ALL.iter().copied() {
+            let touches =
+                below.row().contacts.contains(&Some(above)) || above.row().contacts.contains(&Some(below));
+            let rolls = below.row().rollers.contains(&above) || above.row().rollers.contains(&below);
+            let moving = written("b", Some(above));
+            let found = errors(&format!("#[contact({moving}, {base})] c: Contact"));
+            assert_eq!(found.contains(unknown), !touches, "contact of {moving} and {base}: {found}");
+            let found = errors(&format!("#[constraint(rolls({moving}, {base}))] c: Rolling"));
+            assert_eq!(found.contains(unknown), !rolls, "{moving} rolling on {base}: {found}");
+        }
+        let touches = below.row().contacts.contains(&None);
+        let found = errors(&format!("#[contact(b, {base})] c: Contact"));
+        assert_eq!(found.contains(unknown), !touches, "contact of a point and {base}: {found}");
+    }
+}
