@@ -67,7 +67,7 @@ pub mod surfaces;
 
 pub use argument::{Argument, ArgumentKind};
 pub use callable::Callable;
-pub use elements::{ElementKind, ForceKind, JointKind, Key, Locals, OtherKind, Quantity, Relation};
+pub use elements::{ArgumentQuantity, ElementKind, ForceKind, JointKind, Key, Locals, OtherKind, Relation};
 pub use functions::{Dependence, FunctionId, UnitRule};
 pub use methods::Method;
 pub use names::{Builtin, axis_of_name};

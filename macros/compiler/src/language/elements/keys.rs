@@ -1,7 +1,7 @@
 //! Arguments of elements, and conditions on which of them are given together.
 
 use super::super::dimension::{ATTRACTION, Dimension, GRAVITATION, LENGTH, PLAIN, SLOWNESS, STRENGTH};
-use Quantity::{
+use ArgumentQuantity::{
     Coordinate, Damping, Direction, Energy, Fixed, Force, HertzStiffness, Inertance, Load, Speed, Stiffness,
 };
 
@@ -13,13 +13,13 @@ pub struct KeyRow {
     /// Names in other tools; the elements list them.
     pub synonyms: &'static str,
     /// Quantity of the argument.
-    pub quantity: Quantity,
+    pub quantity: ArgumentQuantity,
 }
 
 /// A quantity of an element. Its dimension follows from the coordinate or the distance on which the element
 /// acts.
 #[derive(Debug)]
-pub enum Quantity {
+pub enum ArgumentQuantity {
     /// Force by displacement.
     Stiffness,
     /// Force by displacement to the power of 3/2.
@@ -44,7 +44,7 @@ pub enum Quantity {
     Load,
 }
 
-const fn key(name: &'static str, quantity: Quantity) -> KeyRow {
+const fn key(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
     KeyRow { name, synonyms: "", quantity }
 }
 
@@ -112,8 +112,8 @@ table! {
     }
 }
 
-const PLAIN_NUMBER: Quantity = Fixed(PLAIN, "1");
-const METERS: Quantity = Fixed(LENGTH, "m");
+const PLAIN_NUMBER: ArgumentQuantity = Fixed(PLAIN, "1");
+const METERS: ArgumentQuantity = Fixed(LENGTH, "m");
 
 /// A condition on which arguments are given together.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ pub mod words;
 
 pub use forces::{ForceKind, Locals};
 pub use joints::{CoordinateNames, DrawnAxis, JointKind};
-pub use keys::{Key, Quantity, Relation};
+pub use keys::{ArgumentQuantity, Key, Relation};
 pub use others::OtherKind;
 
 use super::Words;

@@ -6,7 +6,7 @@ use crate::language::dimension::{
     ACCELERATION, Dimension, ENERGY, INERTIA, LENGTH, MASS, PLAIN, POWER, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, ArgumentKind, Callable, Key, Locals, Method, Quantity};
+use crate::language::{Argument, ArgumentKind, ArgumentQuantity, Callable, Key, Locals, Method};
 use crate::resolve::contact::TERRAIN_COORDINATES;
 use crate::syntax::contact::collision;
 use crate::syntax::{
@@ -246,7 +246,7 @@ impl<'a> DimensionedExpressions<'a> {
         }
         self.add_written(&action.arguments, &work, row.locals);
         if action.is_input() {
-            let is_direction = |key: &Key| matches!(key.row().quantity, Quantity::Direction);
+            let is_direction = |key: &Key| matches!(key.row().quantity, ArgumentQuantity::Direction);
             let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
             input(action, direction, &work.force, inference);
         }
@@ -281,20 +281,20 @@ impl<'a> DimensionedExpressions<'a> {
         let per = |times: i64| work.force.quotient(q)?.times(&TIME.power(Ratio::integer(times))?);
         for (key, e) in written.iter() {
             let (dimension, unit) = match &key.row().quantity {
-                Quantity::Stiffness => (per(0), stiffness),
-                Quantity::HertzStiffness => {
+                ArgumentQuantity::Stiffness => (per(0), stiffness),
+                ArgumentQuantity::HertzStiffness => {
                     let power = Ratio::new(3, 2).and_then(|power| q.power(power));
                     (power.and_then(|power| work.force.quotient(&power)), "")
                 }
-                Quantity::Damping => (per(1), damping),
-                Quantity::Inertance => (per(2), inertance),
-                Quantity::Force | Quantity::Load => (Some(work.force.clone()), force),
-                Quantity::Energy => (Some(ENERGY), "J"),
-                Quantity::Coordinate => (Some(q.clone()), coordinate),
-                Quantity::Speed => (q.quotient(&TIME), speed),
-                Quantity::Fixed(dimension, unit) => (Some(dimension.clone()), *unit),
+                ArgumentQuantity::Damping => (per(1), damping),
+                ArgumentQuantity::Inertance => (per(2), inertance),
+                ArgumentQuantity::Force | ArgumentQuantity::Load => (Some(work.force.clone()), force),
+                ArgumentQuantity::Energy => (Some(ENERGY), "J"),
+                ArgumentQuantity::Coordinate => (Some(q.clone()), coordinate),
+                ArgumentQuantity::Speed => (q.quotient(&TIME), speed),
+                ArgumentQuantity::Fixed(dimension, unit) => (Some(dimension.clone()), *unit),
                 // The direction belongs to an input, whose unit is set separately.
-                Quantity::Direction => continue,
+                ArgumentQuantity::Direction => continue,
             };
             let Some(dimension) = dimension else { continue };
             // Coefficients are not expressions of the stretch or the speed.
