@@ -166,7 +166,8 @@ impl<'g> Builder<'_, 'g> {
             return None;
         };
         pair.center.rate = Vec3([x, y, z]);
-        let candidate_contacts = self.candidate_contacts(&pair);
+        let is_listed = pair.a.form.has_contact_with(&pair.b.form);
+        let candidate_contacts = if is_listed { self.candidate_contacts(&pair) } else { Vec::new() };
         if candidate_contacts.is_empty() {
             let is_cylinder = |surface: &Surface<'g>| {
                 matches!(surface.form, SurfaceForm::Cylinder(..) | SurfaceForm::Drum(..))
