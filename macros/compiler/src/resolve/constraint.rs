@@ -6,6 +6,7 @@ use super::builder::Builder;
 use super::closed_form::Solved;
 use super::corrections;
 use super::motion::Moving;
+use super::rows::Rows;
 use super::scope::{Allowed, Context, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
@@ -49,14 +50,14 @@ impl<'g> Builder<'_, 'g> {
             self.close_loop(*j, cx);
         }
         for (index, constraint) in self.description.constraints.iter().enumerate() {
-            self.group += 1;
             let measure = Measure::Declared(index);
-            match constraint.kind {
-                ConstraintKind::Holonomic => self.add_holonomic(constraint, measure, cx),
-                ConstraintKind::Nonholonomic => self.add_nonholonomic(constraint, measure, cx),
-                ConstraintKind::Rolling => self.add_rolling(constraint, cx),
-                ConstraintKind::Slipping => self.add_slipping(constraint, cx),
-            }
+            let rows = match constraint.kind {
+                ConstraintKind::Holonomic => self.holonomic_rows(constraint, measure, cx),
+                ConstraintKind::Nonholonomic => self.nonholonomic_rows(constraint, measure, cx),
+                ConstraintKind::Rolling => self.rolling_rows(constraint, cx),
+                ConstraintKind::Slipping => self.slipping_rows(constraint, cx),
+            };
+            self.add_rows(&constraint.name.text, rows.unwrap_or_default());
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
         self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
@@ -91,34 +92,28 @@ impl<'g> Builder<'_, 'g> {
         Constrained(())
     }
 
-    fn add_holonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
+    /// Returns the rows of a constraint on configurations; `None` after an error.
+    fn holonomic_rows(
+        &self,
+        constraint: &syntax::Constraint,
+        measure: Measure,
+        cx: &mut Diagnostics,
+    ) -> Option<Rows<'g>> {
         self.scope.records.borrow_mut().in_holonomic_constraint = true;
         let rows = self.difference(constraint, Allowed::Placement, cx);
         self.scope.records.borrow_mut().in_holonomic_constraint = false;
-        for (name, residual) in self.without_vanishing(rows) {
+        let (components, redundant) = without_vanishing(rows);
+        let mut rows = Vec::new();
+        for (name, residual) in components {
             if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
                 cx.error(constraint.value.place.clone(), "this restricts no coordinate")
                     .help("an expression of coordinates stays zero, or equal to another one");
-                return;
+                return None;
             }
             let rate = time_derivative(self.model.space(), residual);
-            self.push_rate((name, &constraint.name.place), measure, Some(residual), rate);
+            rows.push(self.row((name, &constraint.name.place), measure, Some(residual), rate));
         }
-    }
-
-    /// Returns the components of a vector without those that vanish identically, such as the component normal
-    /// to the plane of a planar mechanism. If all vanish, all are returned.
-    fn without_vanishing(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
-        let is_vanishing = |e: &Expr<'g>| {
-            let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
-            symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
-        };
-        let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
-        if remaining.is_empty() {
-            return vanishing;
-        }
-        self.model.redundant.extend(vanishing.into_iter().map(|(name, _)| name));
-        remaining
+        Some(Rows { rows, redundant, contact_point: None })
     }
 
     /// Resolves a constraint only to report its errors.
@@ -135,9 +130,16 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn add_nonholonomic(&mut self, constraint: &syntax::Constraint, measure: Measure, cx: &mut Diagnostics) {
-        let rows = self.difference(constraint, Allowed::Motion, cx);
-        for (name, rate) in self.without_vanishing(rows) {
+    /// Returns the rows of a constraint on velocities; `None` after an error.
+    fn nonholonomic_rows(
+        &self,
+        constraint: &syntax::Constraint,
+        measure: Measure,
+        cx: &mut Diagnostics,
+    ) -> Option<Rows<'g>> {
+        let (components, redundant) = without_vanishing(self.difference(constraint, Allowed::Motion, cx));
+        let mut rows = Vec::new();
+        for (name, rate) in components {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
@@ -147,12 +149,12 @@ impl<'g> Builder<'_, 'g> {
             if gradient.is_empty() {
                 cx.error(place.clone(), "this restricts no velocity")
                     .help("a constraint on coordinates is a `Holonomic` one");
-                return;
+                return None;
             }
             if contains(&[rate], |q| matches!(q, Quantity::Input(_))) {
                 cx.error(place.clone(), "a constraint contains no input")
                     .help("a motion that is given is an expression of time `t`");
-                return;
+                return None;
             }
             let linear = match contains(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
                 true => linear_form(rate, &gradient),
@@ -162,10 +164,11 @@ impl<'g> Builder<'_, 'g> {
                 cx.error(place.clone(), "this constraint is not linear in the velocities").help(
                     "each term holds one velocity at most, as in `dot(v(skate / ground / ground), sled.y)`",
                 );
-                return;
+                return None;
             };
-            self.push_rate((name, &constraint.name.place), measure, None, linear);
+            rows.push(self.row((name, &constraint.name.place), measure, None, linear));
         }
+        Some(Rows { rows, redundant, contact_point: None })
     }
 
     /// Returns the left side minus the right side: one component, or three with names.
@@ -220,6 +223,20 @@ impl<'g> Builder<'_, 'g> {
         let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);
         (0..3).map(|k| (format!("{name}.{}", AXES[k]), gap[k])).collect()
     }
+}
+
+/// Returns the components of a vector without those that vanish identically, such as the component normal to
+/// the plane of a planar mechanism, and the names of these. If all vanish, all are returned.
+fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
+    let is_vanishing = |e: &Expr<'g>| {
+        let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
+        symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
+    };
+    let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
+    if remaining.is_empty() {
+        return (vanishing, Vec::new());
+    }
+    (remaining, vanishing.into_iter().map(|(name, _)| name).collect())
 }
 
 /// Removes velocities from the coefficients of a linear constraint if the coefficients contain velocities but

@@ -2,9 +2,8 @@
 //! body.
 
 use super::builder::Builder;
-use super::forces::{
-    Forces, Law, dry_friction, inertance, input_load, report_unused_input, spring_law, value_load,
-};
+use super::element_forces::Forces;
+use super::forces::{Law, dry_friction, inertance, input_load, report_unused_input, spring_law, value_load};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;

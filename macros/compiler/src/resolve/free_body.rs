@@ -6,7 +6,7 @@
 //! coordinates.
 
 use super::builder::Builder;
-use super::forces::Forces;
+use super::element_forces::Forces;
 use super::holders::name_of;
 use super::reaction::RELEASED;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};

@@ -19,6 +19,7 @@ mod corrections;
 mod curves;
 mod drawing;
 mod drive;
+mod element_forces;
 mod elementary;
 mod equilibria;
 mod expression;

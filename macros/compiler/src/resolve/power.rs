@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::call::Call;
-use super::forces::Forces;
+use super::element_forces::Forces;
 use super::scope::{Allowed, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};

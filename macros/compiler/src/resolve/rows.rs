@@ -1,34 +1,58 @@
 //! Rows of declared constraints, and the motions used to form them.
 
 use super::builder::Builder;
+use super::scope::Terms;
 use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::jet::{self, Moving, Relative};
 use crate::kinematics::time_derivative;
 use crate::mechanism::{Constraint, LinkId, Measure};
 
+/// Rows of a declared constraint, which the builder adds to those of the others.
+#[derive(Default)]
+pub struct Rows<'g> {
+    /// The rows; their groups count from zero.
+    pub rows: Vec<Constraint<'g>>,
+    /// Names of components that vanish identically.
+    pub redundant: Vec<String>,
+    /// Contact point of touching surfaces, from the ground's origin.
+    pub contact_point: Option<Terms<'g>>,
+}
+
 impl<'g> Builder<'_, 'g> {
-    /// Adds a row of a declared constraint with this rate.
-    pub fn push_rate(
-        &mut self,
+    /// Returns a row of a declared constraint with this rate.
+    pub fn row(
+        &self,
         (name, place): (String, &Place),
         measure: Measure,
         residual: Option<Expr<'g>>,
         rate: Expr<'g>,
-    ) {
-        let bias = time_derivative(self.model.space(), rate);
-        self.model.constraints.push(Constraint {
+    ) -> Constraint<'g> {
+        Constraint {
             name,
             place: place.clone(),
             residual,
             rate,
-            bias,
+            bias: time_derivative(self.model.space(), rate),
             measure,
             transmits: Vec::new(),
-            group: self.group,
+            group: 0,
             determines: false,
             friction: Vec::new(),
-        });
+        }
+    }
+
+    /// Adds the rows of a declared constraint.
+    pub fn add_rows(&mut self, name: &str, rows: Rows<'g>) {
+        let first = self.group + 1;
+        self.group = first;
+        for mut row in rows.rows {
+            row.group += first;
+            self.group = self.group.max(row.group);
+            self.model.constraints.push(row);
+        }
+        self.model.redundant.extend(rows.redundant);
+        self.contact_points.extend(rows.contact_point.map(|point| (name.to_string(), point)));
     }
 
     /// Returns the motion of a link relative to the nearest common ancestor of it and another link.

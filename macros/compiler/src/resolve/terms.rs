@@ -3,7 +3,7 @@
 
 use super::builder::Builder;
 use super::constraint::Constrained;
-use super::forces::Forces;
+use super::element_forces::Forces;
 use super::scope::{Allowed, Context};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -23,6 +23,16 @@ pub struct Stretch<'g> {
     pub square: Expr<'g>,
     /// Whether the value is the signed coordinate along a fixed line; the length is then its magnitude.
     pub signed: bool,
+}
+
+/// The length or the angle on which a force element acts.
+pub struct ActedOn<'g> {
+    /// Value and rate of the length or the angle; `None` for a coordinate.
+    pub stretch: Option<Stretch<'g>>,
+    /// Whether it is an angle; `None` if it may also be a length.
+    pub angle: Option<bool>,
+    /// Coordinate, if the element acts on one.
+    pub coordinate: Option<Coordinate>,
 }
 
 impl<'g> Builder<'_, 'g> {

@@ -12,25 +12,26 @@ use super::surface::SurfaceForm;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular;
-use crate::mechanism::{Measure, Rule};
+use crate::mechanism::{Constraint, Measure, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::rows::Rows;
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the rows of a pair whose first surface is a cone.
-    pub(super) fn add_rolling_cone(
-        &mut self,
+    /// Returns the rows of a pair whose first surface is a cone; `None` after an error.
+    pub(super) fn rolling_cone_rows(
+        &self,
         constraint: &syntax::Constraint,
         pair: &SurfacePair<'g>,
         cx: &mut Diagnostics,
-    ) {
+    ) -> Option<Rows<'g>> {
         let g = self.scope.graph;
-        let SurfaceForm::Cone(half, axis) = pair.a.form else { return };
+        let SurfaceForm::Cone(half, axis) = pair.a.form else { return None };
         let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
             SurfaceForm::Plane(n) => (g.one(), g.zero(), n, true),
             SurfaceForm::Cone(half, n) => (half.sin(), half.cos(), n, false),
             SurfaceForm::Funnel(half, n) => (half.sin(), half.cos(), n, true),
-            _ => return,
+            _ => return None,
         };
         let (sine_a, cosine_a) = (half.sin(), half.cos());
         let side = g.num(if inside { 1.0 } else { -1.0 });
@@ -38,7 +39,7 @@ impl<'g> Builder<'_, 'g> {
         if sine.value().is_some_and(|n| n <= 0.0) {
             cx.error(constraint.value.place.clone(), "this cone does not fit into the funnel")
                 .help("give the funnel a larger half angle than the cone");
-            return;
+            return None;
         }
         let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
         self.scope.require(Rule::Positive, room, &[sine]);
@@ -53,21 +54,23 @@ impl<'g> Builder<'_, 'g> {
         };
         let (away, slip) = (pair.center.value - pair.base.value, self.slip(pair, Vec3::zero(g)));
         let (name, place) = (&constraint.name.text, &constraint.name.place);
+        let mut rows = Vec::new();
         for (word, e, is_place) in apex {
             let e = self.second_direction(pair, e).value;
             let gap = is_place.then(|| e.dot(away));
-            self.push_rate((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip));
+            rows.push(self.row((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip)));
         }
-        self.group += 1;
         // The angle by which the wide end is lifted, to first order.
         let cosine = cosine_b * cosine_a + side * sine_b * sine_a;
         let lifted = side / sine;
         let tilt = (a.value.dot(b.value) - cosine) * lifted;
         let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
-        self.push_rate((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
+        let tilt = self.row((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
         let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
         let [w_a, w_b] = self.angular_velocities(pair);
         let spin = normal.dot(w_a - w_b);
-        self.push_rate((format!("{name}.spin"), place), Measure::Angle, None, spin);
+        let spin = self.row((format!("{name}.spin"), place), Measure::Angle, None, spin);
+        rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
+        Some(Rows { rows, ..Rows::default() })
     }
 }

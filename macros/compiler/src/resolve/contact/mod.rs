@@ -21,13 +21,14 @@ pub use slipping::check_pressed;
 pub use terrain::TERRAIN_COORDINATES;
 
 use super::builder::Builder;
+use super::rows::Rows;
 use super::scope::Terms;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::jet::{Moving, Relative};
 use crate::kinematics::{perpendicular, time_derivative};
 use crate::language::Callable;
-use crate::mechanism::{FrictionTerm, Measure};
+use crate::mechanism::{Constraint, FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
 use surface::{Surface, SurfaceForm};
 
@@ -60,33 +61,33 @@ struct SurfacePair<'g> {
 const SUPPORTED_PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the constraint rows of a rolling pair.
-    pub fn add_rolling(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
-        let Some(pair) = self.pair(constraint, cx) else { return };
+    /// Returns the constraint rows of a rolling pair; `None` after an error.
+    pub fn rolling_rows(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Rows<'g>> {
+        let pair = self.pair(constraint, cx)?;
         if let SurfaceForm::Cone(..) = pair.a.form {
-            self.add_rolling_cone(constraint, &pair, cx);
-            return;
+            return self.rolling_cone_rows(constraint, &pair, cx);
         }
-        let Some(contact) = self.contact(&pair) else { return };
-        self.record_contact(&constraint.name.text, &pair, &contact);
+        let contact = self.contact(&pair)?;
         let slip = self.slip(&pair, contact.point);
-        self.add_contact_rows(constraint, &contact, slip, Vec::new());
+        let mut rows = self.contact_rows(constraint, &contact, slip, Vec::new());
         let [_, tangents @ ..] = contact.axes;
         for (word, e) in tangents {
             let name = format!("{}.{word}", constraint.name.text);
-            self.push_rate((name, &constraint.name.place), Measure::Length, None, e.dot(slip));
+            rows.push(self.row((name, &constraint.name.place), Measure::Length, None, e.dot(slip)));
         }
+        let contact_point = Some(self.contact_position(&pair, contact.point));
+        Some(Rows { rows, contact_point, ..Rows::default() })
     }
 
-    /// Adds the rows that keep a pair in contact: the distance, with the friction caused by its normal force,
-    /// and the conditions for the contact coordinates of a surface given by its points.
-    fn add_contact_rows(
-        &mut self,
+    /// Returns the rows that keep a pair in contact: the distance, with the friction caused by its normal
+    /// force, and the conditions for the contact coordinates of a surface given by its points.
+    fn contact_rows(
+        &self,
         constraint: &syntax::Constraint,
         contact: &PointContact<'g>,
         slip: Vec3<'g>,
         friction: Vec<FrictionTerm<'g>>,
-    ) {
+    ) -> Vec<Constraint<'g>> {
         let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
         // The normal of a surface given by its points depends on the contact coordinates. Away from the
         // contact, their velocities change the distance as well.
@@ -95,22 +96,13 @@ impl<'g> Builder<'_, 'g> {
             false => time_derivative(self.model.space(), contact.gap),
         };
         let name = |word| (format!("{}.{word}", constraint.name.text), place);
-        self.push_rate(name(word), Measure::Length, Some(contact.gap), rate);
-        if let Some(row) = self.model.constraints.last_mut() {
-            row.friction = friction;
-        }
-        for (word, distance) in &contact.conditions {
+        let distance = self.row(name(word), Measure::Length, Some(contact.gap), rate);
+        let conditions = contact.conditions.iter().map(|(word, distance)| {
             let rate = time_derivative(self.model.space(), *distance);
-            self.push_rate(name(word), Measure::Length, Some(*distance), rate);
-            if let Some(row) = self.model.constraints.last_mut() {
-                row.determines = true;
-            }
-        }
-    }
-
-    /// Records the contact point of a pair for free-body diagrams.
-    fn record_contact(&mut self, name: &str, pair: &SurfacePair<'g>, contact: &PointContact<'g>) {
-        self.contact_points.insert(name.to_string(), self.contact_position(pair, contact.point));
+            let row = self.row(name(word), Measure::Length, Some(*distance), rate);
+            Constraint { determines: true, ..row }
+        });
+        [Constraint { friction, ..distance }].into_iter().chain(conditions).collect()
     }
 
     /// Returns the position of a point given relative to the centre of the first surface.

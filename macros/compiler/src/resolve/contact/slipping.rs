@@ -7,21 +7,21 @@ use crate::expr::Expr;
 use crate::language::Key;
 use crate::mechanism::{Constraint, FrictionTerm, Pose, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::rows::Rows;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the row of a slipping pair.
-    pub fn add_slipping(&mut self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
+    /// Returns the row of a slipping pair; `None` after an error.
+    pub fn slipping_rows(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Rows<'g>> {
         let found = (self.pair(constraint, cx), self.friction(constraint, cx));
-        let (Some(pair), Some((coefficient, speed))) = found else { return };
+        let (Some(pair), Some((coefficient, speed))) = found else { return None };
         let Some(contact) = self.contact(&pair) else {
             cx.error(constraint.value.place.clone(), "these surfaces touch along a line").help(
                 "where on it friction acts does not follow: let a surface slip that touches at a point",
             );
-            return;
+            return None;
         };
-        self.record_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
         let [_, tangents @ ..] = contact.axes;
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
@@ -29,7 +29,9 @@ impl<'g> Builder<'_, 'g> {
         let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
         let friction =
             moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        self.add_contact_rows(constraint, &contact, slip, friction);
+        let rows = self.contact_rows(constraint, &contact, slip, friction);
+        let contact_point = Some(self.contact_position(&pair, contact.point));
+        Some(Rows { rows, contact_point, ..Rows::default() })
     }
 
     /// Returns the coefficient of friction and the speed of the regularisation.

@@ -9,7 +9,7 @@ use crate::kinematics::velocity_gradient;
 use crate::language::Key;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::forces::Forces;
+use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, ContactLoads, Context};
 use crate::syntax::{self, WrittenArguments};
 

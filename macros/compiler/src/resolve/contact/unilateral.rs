@@ -10,7 +10,7 @@ use crate::kinematics::{motion_rates, velocity_gradient};
 use crate::language::{Key, Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::forces::Forces;
+use crate::resolve::element_forces::Forces;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::is_power_used;
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};

@@ -1,10 +1,11 @@
 //! Dashpots: linear, and with a force as an expression of the speed.
 
-use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::mechanism::{Dashpot, Pose, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::terms::ActedOn;
 use crate::syntax::{Action, Key};
 
 /// Returns the force of a dashpot. A linear dashpot on a coordinate is stored separately in the model.

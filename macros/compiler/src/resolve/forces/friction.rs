@@ -1,10 +1,11 @@
 //! Dry and viscous friction.
 
-use super::{ActedOn, Forces};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};
 use crate::mechanism::Rule;
 use crate::resolve::builder::Builder;
+use crate::resolve::element_forces::Forces;
+use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
 /// Default regularisation speed of friction, m/s or rad/s.

@@ -1,10 +1,10 @@
 //! Central gravity, and inverse-square attraction.
 
-use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::resolve::builder::Builder;
-use crate::resolve::terms::Stretch;
+use crate::resolve::element_forces::Forces;
+use crate::resolve::terms::{ActedOn, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
 /// Returns the force of an attraction between two points.

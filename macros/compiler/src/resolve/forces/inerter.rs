@@ -1,10 +1,11 @@
 //! Inerters: forces proportional to relative accelerations.
 
-use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Inertance, Rule};
 use crate::resolve::builder::Builder;
+use crate::resolve::element_forces::Forces;
+use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
 /// Returns the force of an inerter.

@@ -1,6 +1,5 @@
 //! Applied forces and torques: with a value, or as inputs.
 
-use super::Forces;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace;
@@ -8,6 +7,7 @@ use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, Direction, Input, Load, Pose, Quantity};
 use crate::resolve::builder::Builder;
+use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::resolve::target::Target;
 use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};

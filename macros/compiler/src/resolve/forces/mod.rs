@@ -13,71 +13,14 @@ pub use load::{input_load, value_load};
 pub use spring::{Law, spring_law};
 
 use super::builder::Builder;
+use super::element_forces::Forces;
 use super::motion::Moving;
 use super::power::is_power_used;
 use super::target::Target;
-use super::terms::Stretch;
+use super::terms::{ActedOn, Stretch};
 use crate::diag::Diagnostics;
-use crate::expr::Expr;
-use crate::mechanism::{
-    AccelerationForce, Coordinate, CoulombFriction, Dashpot, Inertance, Input, Load, Model, Spring,
-};
+use crate::mechanism::Input;
 use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
-
-/// Forces of an element, which the builder adds to those of the others.
-#[derive(Default)]
-pub struct Forces<'g> {
-    /// Linear springs on coordinates.
-    pub springs: Vec<Spring<'g>>,
-    /// Linear dashpots on coordinates.
-    pub dashpots: Vec<Dashpot<'g>>,
-    /// Coulomb friction on coordinates.
-    pub frictions: Vec<CoulombFriction<'g>>,
-    /// Forces on rates.
-    pub loads: Vec<Load<'g>>,
-    /// Potential energies.
-    pub potentials: Vec<Expr<'g>>,
-    /// Dissipation functions.
-    pub dissipations: Vec<Expr<'g>>,
-    /// Inertances on rates.
-    pub inertances: Vec<Inertance<'g>>,
-    /// Forces that are linear in accelerations.
-    pub acceleration_forces: Vec<AccelerationForce<'g>>,
-    /// Effect of the entry of `u` that belongs to the element.
-    pub input: Option<Input<'g>>,
-}
-
-impl<'g> Forces<'g> {
-    /// Returns the forces of potential energies.
-    pub fn of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
-        Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
-    }
-
-    /// Returns a force that opposes a rate and dissipates energy.
-    pub fn resisting(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
-        Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
-    }
-
-    /// Whether there is no force and no input.
-    fn is_empty(&self) -> bool {
-        let linear = self.springs.len() + self.dashpots.len() + self.frictions.len();
-        let functions = self.potentials.len() + self.dissipations.len();
-        let forces = self.loads.len() + self.inertances.len() + self.acceleration_forces.len();
-        linear + functions + forces == 0 && self.input.is_none()
-    }
-
-    /// Adds the forces to those of a model.
-    pub fn add_to(self, model: &mut Model<'g>) {
-        model.springs.extend(self.springs);
-        model.dashpots.extend(self.dashpots);
-        model.frictions.extend(self.frictions);
-        model.loads.extend(self.loads);
-        model.potentials.extend(self.potentials);
-        model.dissipations.extend(self.dissipations);
-        model.inertances.extend(self.inertances);
-        model.acceleration_forces.extend(self.acceleration_forces);
-    }
-}
 
 impl<'g> Builder<'_, 'g> {
     /// Resolves force elements on coordinates, which need no positions.
@@ -175,16 +118,6 @@ impl<'g> Builder<'_, 'g> {
     fn stretch_on(&self, on: ActedOn<'g>) -> Option<Stretch<'g>> {
         on.stretch.or_else(|| on.coordinate.map(|c| self.coordinate_stretch(&c)))
     }
-}
-
-/// The length or the angle on which a force element acts.
-pub struct ActedOn<'g> {
-    /// Value and rate of the length or the angle; `None` for a coordinate.
-    pub stretch: Option<Stretch<'g>>,
-    /// Whether it is an angle; `None` if it may also be a length.
-    pub angle: Option<bool>,
-    /// Coordinate, if the element acts on one.
-    pub coordinate: Option<Coordinate>,
 }
 
 /// Whether an element needs positions and velocities: it acts between points or at a point of a body, or it

@@ -1,6 +1,5 @@
 //! Springs: linear, and with a force or an energy as an expression of the stretch.
 
-use super::{ActedOn, Forces};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace;
@@ -9,8 +8,9 @@ use crate::kinematics::symbols_in;
 use crate::language::Callable;
 use crate::mechanism::{Pose, Quantity, Spring};
 use crate::resolve::builder::Builder;
+use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, Context};
-use crate::resolve::terms::Stretch;
+use crate::resolve::terms::{ActedOn, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key};
 use std::collections::BTreeSet;
 

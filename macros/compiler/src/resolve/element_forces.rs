@@ -1,0 +1,59 @@
+//! Forces of a single element.
+
+use crate::expr::Expr;
+use crate::mechanism::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Model, Spring};
+
+/// Forces of an element, which the builder adds to those of the others.
+#[derive(Default)]
+pub struct Forces<'g> {
+    /// Linear springs on coordinates.
+    pub springs: Vec<Spring<'g>>,
+    /// Linear dashpots on coordinates.
+    pub dashpots: Vec<Dashpot<'g>>,
+    /// Coulomb friction on coordinates.
+    pub frictions: Vec<CoulombFriction<'g>>,
+    /// Forces on rates.
+    pub loads: Vec<Load<'g>>,
+    /// Potential energies.
+    pub potentials: Vec<Expr<'g>>,
+    /// Dissipation functions.
+    pub dissipations: Vec<Expr<'g>>,
+    /// Inertances on rates.
+    pub inertances: Vec<Inertance<'g>>,
+    /// Forces that are linear in accelerations.
+    pub acceleration_forces: Vec<AccelerationForce<'g>>,
+    /// Effect of the entry of `u` that belongs to the element.
+    pub input: Option<Input<'g>>,
+}
+
+impl<'g> Forces<'g> {
+    /// Returns the forces of potential energies.
+    pub fn of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
+        Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
+    }
+
+    /// Returns a force that opposes a rate and dissipates energy.
+    pub fn resisting(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
+        Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
+    }
+
+    /// Whether there is no force and no input.
+    pub fn is_empty(&self) -> bool {
+        let linear = self.springs.len() + self.dashpots.len() + self.frictions.len();
+        let functions = self.potentials.len() + self.dissipations.len();
+        let forces = self.loads.len() + self.inertances.len() + self.acceleration_forces.len();
+        linear + functions + forces == 0 && self.input.is_none()
+    }
+
+    /// Adds the forces to those of a model.
+    pub fn add_to(self, model: &mut Model<'g>) {
+        model.springs.extend(self.springs);
+        model.dashpots.extend(self.dashpots);
+        model.frictions.extend(self.frictions);
+        model.loads.extend(self.loads);
+        model.potentials.extend(self.potentials);
+        model.dissipations.extend(self.dissipations);
+        model.inertances.extend(self.inertances);
+        model.acceleration_forces.extend(self.acceleration_forces);
+    }
+}
