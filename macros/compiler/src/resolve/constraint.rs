@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::closed_form::Solved;
 use super::corrections;
 use super::motion::Moving;
-use super::rows::Rows;
+use super::rows::ConstraintRows;
 use super::scope::{Allowed, Context, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
@@ -98,7 +98,7 @@ impl<'g> Builder<'_, 'g> {
         constraint: &syntax::Constraint,
         measure: Measure,
         cx: &mut Diagnostics,
-    ) -> Option<Rows<'g>> {
+    ) -> Option<ConstraintRows<'g>> {
         self.scope.records.borrow_mut().in_holonomic_constraint = true;
         let rows = self.difference(constraint, Allowed::Placement, cx);
         self.scope.records.borrow_mut().in_holonomic_constraint = false;
@@ -113,7 +113,7 @@ impl<'g> Builder<'_, 'g> {
             let rate = time_derivative(self.model.space(), residual);
             rows.push(self.row((name, &constraint.name.place), measure, Some(residual), rate));
         }
-        Some(Rows { rows, redundant, contact_point: None })
+        Some(ConstraintRows { rows, redundant, contact_point: None })
     }
 
     /// Resolves a constraint only to report its errors.
@@ -136,7 +136,7 @@ impl<'g> Builder<'_, 'g> {
         constraint: &syntax::Constraint,
         measure: Measure,
         cx: &mut Diagnostics,
-    ) -> Option<Rows<'g>> {
+    ) -> Option<ConstraintRows<'g>> {
         let (components, redundant) = without_vanishing(self.difference(constraint, Allowed::Motion, cx));
         let mut rows = Vec::new();
         for (name, rate) in components {
@@ -168,7 +168,7 @@ impl<'g> Builder<'_, 'g> {
             };
             rows.push(self.row((name, &constraint.name.place), measure, None, linear));
         }
-        Some(Rows { rows, redundant, contact_point: None })
+        Some(ConstraintRows { rows, redundant, contact_point: None })
     }
 
     /// Returns the left side minus the right side: one component, or three with names.

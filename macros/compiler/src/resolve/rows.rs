@@ -10,7 +10,7 @@ use crate::mechanism::{Constraint, LinkId, Measure};
 
 /// Rows of a declared constraint, which the builder adds to those of the others.
 #[derive(Default)]
-pub struct Rows<'g> {
+pub struct ConstraintRows<'g> {
     /// The rows; their groups count from zero.
     pub rows: Vec<Constraint<'g>>,
     /// Names of components that vanish identically.
@@ -43,7 +43,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the rows of a declared constraint.
-    pub fn add_rows(&mut self, name: &str, rows: Rows<'g>) {
+    pub fn add_rows(&mut self, name: &str, rows: ConstraintRows<'g>) {
         let first = self.group + 1;
         self.group = first;
         for mut row in rows.rows {

@@ -14,7 +14,7 @@ use crate::expr::Vec3;
 use crate::kinematics::perpendicular;
 use crate::mechanism::{Constraint, Measure, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::rows::Rows;
+use crate::resolve::rows::ConstraintRows;
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
@@ -24,7 +24,7 @@ impl<'g> Builder<'_, 'g> {
         constraint: &syntax::Constraint,
         pair: &SurfacePair<'g>,
         cx: &mut Diagnostics,
-    ) -> Option<Rows<'g>> {
+    ) -> Option<ConstraintRows<'g>> {
         let g = self.scope.graph;
         let SurfaceForm::Cone(half, axis) = pair.a.form else { return None };
         let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
@@ -71,6 +71,6 @@ impl<'g> Builder<'_, 'g> {
         let spin = normal.dot(w_a - w_b);
         let spin = self.row((format!("{name}.spin"), place), Measure::Angle, None, spin);
         rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
-        Some(Rows { rows, ..Rows::default() })
+        Some(ConstraintRows { rows, ..ConstraintRows::default() })
     }
 }

@@ -21,7 +21,7 @@ pub use slipping::check_pressed;
 pub use terrain::TERRAIN_COORDINATES;
 
 use super::builder::Builder;
-use super::rows::Rows;
+use super::rows::ConstraintRows;
 use super::scope::Terms;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
@@ -62,7 +62,11 @@ const SUPPORTED_PAIRS: &str = "known are a circle, a torus, a sphere, an ellipso
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the constraint rows of a rolling pair; `None` after an error.
-    pub fn rolling_rows(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Rows<'g>> {
+    pub fn rolling_rows(
+        &self,
+        constraint: &syntax::Constraint,
+        cx: &mut Diagnostics,
+    ) -> Option<ConstraintRows<'g>> {
         let pair = self.pair(constraint, cx)?;
         if let SurfaceForm::Cone(..) = pair.a.form {
             return self.rolling_cone_rows(constraint, &pair, cx);
@@ -76,7 +80,7 @@ impl<'g> Builder<'_, 'g> {
             rows.push(self.row((name, &constraint.name.place), Measure::Length, None, e.dot(slip)));
         }
         let contact_point = Some(self.contact_position(&pair, contact.point));
-        Some(Rows { rows, contact_point, ..Rows::default() })
+        Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
     }
 
     /// Returns the rows that keep a pair in contact: the distance, with the friction caused by its normal

@@ -7,13 +7,17 @@ use crate::expr::Expr;
 use crate::language::Key;
 use crate::mechanism::{Constraint, FrictionTerm, Pose, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::rows::Rows;
+use crate::resolve::rows::ConstraintRows;
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the row of a slipping pair; `None` after an error.
-    pub fn slipping_rows(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Rows<'g>> {
+    pub fn slipping_rows(
+        &self,
+        constraint: &syntax::Constraint,
+        cx: &mut Diagnostics,
+    ) -> Option<ConstraintRows<'g>> {
         let found = (self.pair(constraint, cx), self.friction(constraint, cx));
         let (Some(pair), Some((coefficient, speed))) = found else { return None };
         let Some(contact) = self.contact(&pair) else {
@@ -31,7 +35,7 @@ impl<'g> Builder<'_, 'g> {
             moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
         let rows = self.contact_rows(constraint, &contact, slip, friction);
         let contact_point = Some(self.contact_position(&pair, contact.point));
-        Some(Rows { rows, contact_point, ..Rows::default() })
+        Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
     }
 
     /// Returns the coefficient of friction and the speed of the regularisation.
