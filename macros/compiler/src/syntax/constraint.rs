@@ -16,7 +16,7 @@ pub fn read_constraint(
 ) {
     let element = kind.element();
     let (row, names) = (element.row(), &element.keys());
-    let (given, _) = Keys::of(element, names).read(arguments, cx);
+    let (given, _) = Keys::new(element, names).read(arguments, cx);
     let found = arguments.take_equation();
     let (whose, example) = (format!("a {} constraint", row.name), row.example);
     if let (Some((value, None)), [second, ..]) = (&found, arguments.plain()) {
@@ -55,7 +55,7 @@ pub fn read_limit(
 ) {
     let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.keys());
     let on = arguments.need_expr("on", "joint", "limit", names, cx);
-    let (given, _) = Keys::of(OtherKind::Limit, names).read(arguments, cx);
+    let (given, _) = Keys::new(OtherKind::Limit, names).read(arguments, cx);
     let is_empty = arguments.is_empty();
     arguments.finish("a Limit", names, cx);
     let Some(on) = on else { return };

@@ -18,7 +18,7 @@ pub fn read_contact(
     cx: &mut Diagnostics,
 ) {
     let (row, names) = (OtherKind::Contact.row(), &OtherKind::Contact.keys());
-    let (given, _) = Keys::of(OtherKind::Contact, names).read(arguments, cx);
+    let (given, _) = Keys::new(OtherKind::Contact, names).read(arguments, cx);
     check_relations(row.relations, &given, &name, cx);
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();

@@ -22,7 +22,7 @@ pub struct Keys<'a> {
 
 impl<'a> Keys<'a> {
     /// Returns the arguments of an element that is no force element.
-    pub fn of(kind: OtherKind, names: &'a [&'a str]) -> Keys<'a> {
+    pub fn new(kind: OtherKind, names: &'a [&'a str]) -> Keys<'a> {
         let row = kind.row();
         let attribute = row.attributes.first().copied().unwrap_or_default();
         Keys { all: row.arguments, laws: &[], required: row.required, attribute, names }

@@ -53,7 +53,7 @@ const ANGULAR_UNITS: [&str; 6] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²", 
 
 impl Work {
     /// Returns the work on a coordinate of this dimension.
-    fn on(coordinate: Dimension) -> Option<Work> {
+    fn new(coordinate: Dimension) -> Option<Work> {
         let units = match (coordinate.is_plain(), coordinate.is_known()) {
             (true, _) => ANGULAR_UNITS,
             (_, true) => LINEAR_UNITS,
@@ -111,7 +111,7 @@ pub fn collect<'a>(
     for contact in &d.contacts {
         places.add_surface(&contact.first);
         places.add_surface(&contact.second);
-        if let Some(work) = Work::on(LENGTH) {
+        if let Some(work) = Work::new(LENGTH) {
             places.add_written(&contact.arguments, &work, Locals::None);
         }
     }
@@ -238,7 +238,7 @@ impl<'a> DimensionedExpressions<'a> {
             }
         };
         let on_point = on.is_none();
-        let Some(mut work) = Work::on(on.unwrap_or(LENGTH)) else { return };
+        let Some(mut work) = Work::new(on.unwrap_or(LENGTH)) else { return };
         let row = action.kind.row();
         // A force at a point does work on a length, a torque on an angle.
         if on_point && row.torque {
@@ -258,7 +258,7 @@ impl<'a> DimensionedExpressions<'a> {
             self.add(&limit.on, &unknown, "");
             unknown
         });
-        if let Some(work) = Work::on(q) {
+        if let Some(work) = Work::new(q) {
             self.add_written(&limit.arguments, &work, Locals::None);
         }
     }
@@ -321,7 +321,7 @@ impl<'a> DimensionedExpressions<'a> {
             self.add_all(&constraint.other, &side, "");
             return;
         }
-        if let Some(work) = Work::on(LENGTH) {
+        if let Some(work) = Work::new(LENGTH) {
             self.add_written(&constraint.arguments, &work, Locals::None);
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
