@@ -171,10 +171,10 @@ impl Planner<'_> {
         self.run(&angles.before, &stores)?;
         self.plan.steps.push(Step::Sines);
         self.plan.angles = count;
-        for (at, angle) in list.iter().enumerate() {
-            for (value, first) in [(angle.sine, count), (angle.cosine, 2 * count)] {
-                self.sines.extend(value.map(|k| (k, first + at)));
-            }
+        for k in (0..self.program.instructions.len()).filter(|k| angles.covered[*k]) {
+            let Op::Call(f, operand) = self.program.instructions[k] else { continue };
+            let at = list.iter().position(|angle| angle.angle == operand).ok_or("an angle is missing")?;
+            self.sines.insert(k, if f == Function::Sin { count + at } else { 2 * count + at });
         }
         Ok(())
     }
@@ -264,10 +264,12 @@ impl Planner<'_> {
             self.plan.tables = self.plan.tables.max(lookup.table() + 1);
         }
         let places = self.places_of(op)?;
+        // Their memory is not overwritten before the operation.
+        let mut ended = Vec::new();
         for j in operands {
             self.uses[j].pop();
             if self.uses[j].is_empty() {
-                self.forget(j);
+                ended.extend(self.forget(j));
             }
         }
         // The result replaces an operand that is not used again, preferably an addend.
@@ -277,6 +279,7 @@ impl Planner<'_> {
         });
         let to = dying.unwrap_or_else(|| self.take());
         self.plan.steps.push(Step::Operation(op, to, places));
+        self.free.extend(ended);
         let mut residence = Residence { register: Some(to), memory: None };
         for memory in stores {
             self.plan.steps.push(Step::Store(to, *memory));
@@ -377,14 +380,15 @@ impl Planner<'_> {
         }
     }
 
-    /// Releases register and memory of a value that is not used again.
-    fn forget(&mut self, k: usize) {
-        let Some(Residence { register, memory }) = self.places[k].take() else { return };
+    /// Releases the register of a value that is not used again. Returns its entry of the work space.
+    fn forget(&mut self, k: usize) -> Option<usize> {
+        let Residence { register, memory } = self.places[k].take()?;
         if let Some(register) = register {
             self.values[usize::from(register)] = None;
         }
-        if let Some(Memory::Work(at)) = memory {
-            self.free.push(at);
+        match memory {
+            Some(Memory::Work(at)) => Some(at),
+            _ => None,
         }
     }
 }

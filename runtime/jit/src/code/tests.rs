@@ -12,7 +12,7 @@ use linkwork_compiler::mechanism::Quantity;
 use std::collections::HashMap;
 
 /// Number of programs; the environment variable `LINKWORK_PROGRAMS` chooses another one.
-const PROGRAMS: u64 = 300;
+const PROGRAMS: u64 = 1000;
 /// Numbers of parameters, coordinates and velocities.
 const INPUTS: [usize; 3] = [3, 9, 5];
 const CONSTANTS: [f64; 8] = [0.0, -0.0, 1.0, -1.0, 0.5, 9.81, -1e-3, 1e6];
@@ -138,9 +138,10 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
         sines(array.as_mut_ptr(), count as u64);
     }
     let mut known = HashMap::new();
-    for (at, angle) in list.iter().enumerate() {
-        known.extend(angle.sine.map(|k| (k, array[count + at])));
-        known.extend(angle.cosine.map(|k| (k, array[2 * count + at])));
+    for (k, op) in program.instructions.iter().enumerate().filter(|(k, _)| angles.covered[*k]) {
+        let Op::Call(f, operand) = *op else { continue };
+        let at = list.iter().position(|angle| angle.angle == operand).expect("the angle is in the list");
+        known.insert(k, array[if f == Function::Sin { count + at } else { 2 * count + at }]);
     }
     let all = values(program, &value, table, &known);
     program.outputs.iter().map(|output| value(&all, *output)).collect()
