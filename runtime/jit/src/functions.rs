@@ -40,6 +40,8 @@ pub(crate) struct Entry {
     /// Hidden functions are called by others alone.
     pub hidden: bool,
     pub arguments: Vec<Argument>,
+    /// Number of values of each argument, set at the end of loading.
+    pub lengths: Vec<usize>,
     pub results: Vec<Matrix>,
     /// Number of dimensions of the results: zero for a number, one for vectors, two for matrices.
     pub rank: usize,
@@ -124,6 +126,13 @@ impl Plan {
 }
 
 impl Entry {
+    /// Writes the values of each argument for the state with index `k`, from arguments of all states or of one.
+    pub fn select<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
+        for ((to, list), length) in to.iter_mut().zip(arguments).zip(&self.lengths) {
+            *to = if list.len() == *length { list } else { &list[k * length..(k + 1) * length] };
+        }
+    }
+
     /// Evaluates the function. Lengths are correct.
     pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match &self.plan {
@@ -430,6 +439,7 @@ impl Entry {
             documentation,
             hidden: false,
             arguments,
+            lengths: Vec::new(),
             results,
             rank: 1,
             length,

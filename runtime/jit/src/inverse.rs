@@ -1,6 +1,8 @@
 //! Inverse mass matrices of the parts that programs compute.
 
+use crate::kernels::{self, Kernel, add_multiple};
 use linkwork_compiler::catalogue::InverseForm;
+use std::cmp::Ordering;
 
 /// Assembly of an inverse mass matrix from the outputs of a program: columns, then a row of further values for
 /// each velocity.
@@ -36,29 +38,41 @@ impl Inverse {
 
     /// Completes the inverse from its columns and the further outputs.
     pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
-        match &self.limbs {
-            None => self.add_trunk(matrix, beside),
-            Some(limbs) => self.invert(limbs, matrix, beside, work),
+        if !self.trunk.is_empty() || self.limbs.is_some() {
+            kernels::run(self.n, Completion { inverse: self, matrix, beside, work });
         }
     }
 
     /// Adds to every column its combination of the columns of the trunk.
-    fn add_trunk(&self, matrix: &mut [f64], factors: &[f64]) {
+    #[inline(always)]
+    fn add_trunk(&self, matrix: &mut [f64], factors: &[f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
         let (n, width) = (self.n, self.trunk.len());
         for j in 0..n {
-            for (trunk, by) in self.trunk.iter().zip(&factors[j * width..]) {
-                if *by != 0.0 {
-                    for i in 0..n {
-                        matrix[j * n + i] += by * matrix[trunk * n + i];
-                    }
-                }
+            for (trunk, by) in self.trunk.iter().zip(&factors[j * width..]).filter(|(_, by)| **by != 0.0) {
+                let (before, after) = matrix.split_at_mut(j * n);
+                let (column, after) = after.split_at_mut(n);
+                let other = match trunk.cmp(&j) {
+                    Ordering::Less => &before[trunk * n..(trunk + 1) * n],
+                    Ordering::Greater => &after[(trunk - j - 1) * n..(trunk - j) * n],
+                    // The columns of the trunk are complete.
+                    Ordering::Equal => continue,
+                };
+                add_multiple(*by, other, column, mul_add);
             }
         }
     }
 
     /// Inverts a mass matrix of a trunk and limbs: the matrix has the inverse of the block of each limb,
     /// `borders` the rows of the trunk.
-    fn invert(&self, limbs: &[Option<usize>], matrix: &mut [f64], borders: &[f64], work: &mut [f64]) {
+    #[inline(always)]
+    fn invert(
+        &self,
+        limbs: &[Option<usize>],
+        matrix: &mut [f64],
+        borders: &[f64],
+        work: &mut [f64],
+        mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
+    ) {
         let (n, width) = (self.n, self.trunk.len());
         let (g, rest) = work.split_at_mut(n * width);
         let inner = &mut rest[..width * width];
@@ -66,20 +80,17 @@ impl Inverse {
             inner[c * width..(c + 1) * width].copy_from_slice(&borders[trunk * width..(trunk + 1) * width]);
         }
         g.fill(0.0);
-        for k in (0..n).filter(|k| limbs[*k].is_some()) {
-            for j in (0..n).filter(|j| limbs[*j] == limbs[k]) {
-                let by = matrix[k * n + j];
-                for t in 0..width {
-                    g[k * width + t] -= by * borders[j * width + t];
-                }
+        for (k, limb) in limbs.iter().enumerate().filter(|(_, limb)| limb.is_some()) {
+            let own = &mut g[k * width..(k + 1) * width];
+            for (j, _) in limbs.iter().enumerate().filter(|(_, other)| *other == limb) {
+                let by = -matrix[k * n + j];
+                add_multiple(by, &borders[j * width..(j + 1) * width], own, mul_add);
             }
-            for c in 0..width {
-                for t in 0..width {
-                    inner[c * width + t] += g[k * width + c] * borders[k * width + t];
-                }
+            for (column, by) in inner.chunks_exact_mut(width).zip(&*own) {
+                add_multiple(*by, &borders[k * width..(k + 1) * width], column, mul_add);
             }
         }
-        invert(width, inner);
+        invert(width, inner, mul_add);
         for (c, trunk) in self.trunk.iter().enumerate() {
             for i in 0..n {
                 let products = g[i * width..].iter().zip(&inner[c * width..(c + 1) * width]);
@@ -90,13 +101,51 @@ impl Inverse {
             }
         }
         let g = &work[..n * width];
-        self.add_trunk(matrix, g);
+        self.add_trunk(matrix, g, mul_add);
     }
 
     /// Replaces forces by accelerations, if the program computes forces: with limbs it does.
     pub fn solve(&self, inverse: &[f64], beside: &[f64], column: &mut [f64], work: &mut [f64]) {
-        let Some(limbs) = &self.limbs else { return };
-        let (n, width) = (self.n, self.trunk.len());
+        if let Some(limbs) = &self.limbs {
+            kernels::run(self.n, Solution { inverse: self, limbs, matrix: inverse, beside, column, work });
+        }
+    }
+}
+
+/// Completion of an inverse.
+struct Completion<'a> {
+    inverse: &'a Inverse,
+    matrix: &'a mut [f64],
+    beside: &'a [f64],
+    work: &'a mut [f64],
+}
+
+impl Kernel for Completion<'_> {
+    #[inline(always)]
+    fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
+        let Completion { inverse, matrix, beside, work } = self;
+        match &inverse.limbs {
+            None => inverse.add_trunk(matrix, beside, mul_add),
+            Some(limbs) => inverse.invert(limbs, matrix, beside, work, mul_add),
+        }
+    }
+}
+
+/// Accelerations from forces.
+struct Solution<'a> {
+    inverse: &'a Inverse,
+    limbs: &'a [Option<usize>],
+    matrix: &'a [f64],
+    beside: &'a [f64],
+    column: &'a mut [f64],
+    work: &'a mut [f64],
+}
+
+impl Kernel for Solution<'_> {
+    #[inline(always)]
+    fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
+        let Solution { inverse, limbs, matrix, beside, column, work } = self;
+        let (n, width) = (inverse.n, inverse.trunk.len());
         let (x, rest) = work[..2 * n].split_at_mut(n);
         rest.copy_from_slice(column);
         column.fill(0.0);
@@ -105,14 +154,12 @@ impl Inverse {
         let passes = if limbs.iter().any(Option::is_some) { 1 } else { 2 };
         for _ in 0..passes {
             x.fill(0.0);
-            for k in 0..n {
-                for i in 0..n {
-                    x[i] += rest[k] * inverse[k * n + i];
-                }
+            for (by, own) in rest.iter().zip(matrix.chunks_exact(n)) {
+                add_multiple(*by, own, x, mul_add);
             }
             column.iter_mut().zip(&*x).for_each(|(a, x)| *a += x);
             for k in 0..n {
-                for (t, trunk) in self.trunk.iter().enumerate() {
+                for (t, trunk) in inverse.trunk.iter().enumerate() {
                     rest[*trunk] -= x[k] * beside[k * width + t];
                 }
             }
@@ -122,15 +169,19 @@ impl Inverse {
 
 /// Inverts a symmetric positive definite matrix in place: Gauss-Jordan elimination without interchanges (Golub
 /// and Van Loan 2013, section 3.2).
-fn invert(n: usize, m: &mut [f64]) {
+#[inline(always)]
+fn invert(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
     for k in 0..n {
         let by = 1.0 / m[k * n + k];
         m[k * n + k] = 1.0;
-        (0..n).for_each(|i| m[i * n + k] *= by);
+        m[k * n..(k + 1) * n].iter_mut().for_each(|entry| *entry *= by);
         for i in (0..n).filter(|i| *i != k) {
-            let factor = m[k * n + i];
-            m[k * n + i] = 0.0;
-            (0..n).for_each(|j| m[j * n + i] -= factor * m[j * n + k]);
+            let factor = -m[i * n + k];
+            m[i * n + k] = 0.0;
+            let (before, after) = m.split_at_mut(i.max(k) * n);
+            let (first, last) = (&mut before[i.min(k) * n..][..n], &mut after[..n]);
+            let (pivot, own) = if k < i { (&*first, last) } else { (&*last, first) };
+            add_multiple(factor, pivot, own, mul_add);
         }
     }
 }

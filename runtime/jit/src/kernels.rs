@@ -1,9 +1,45 @@
-//! Dense products with the inverse mass matrix, for the instructions of the host.
+//! Loops over matrices, for the instructions of the host; products with the inverse mass matrix.
 
 #![allow(unsafe_code, reason = "calls of functions for the instructions of the host")]
 
-/// Rows of a tile.
+/// Number of rows that are computed together.
 const ROWS: usize = 8;
+/// Minimum number of rows for which registers of eight numbers are used.
+const LONG: usize = 12;
+
+/// A loop over matrices.
+pub(crate) trait Kernel {
+    /// Runs the loop with a function for `a b + c`. It is inlined into a function with the instructions of the
+    /// host, as is everything that it calls.
+    fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy);
+}
+
+/// Runs a loop over matrices of `n` rows.
+pub(crate) fn run(n: usize, kernel: impl Kernel) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(kernel: impl Kernel) {
+            kernel.run(f64::mul_add);
+        }
+        #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
+        fn long(kernel: impl Kernel) {
+            kernel.run(f64::mul_add);
+        }
+        use std::arch::is_x86_feature_detected as has;
+        if has!("avx2") && has!("fma") {
+            // SAFETY: the processor has these features.
+            return match n >= LONG && has!("avx512f") && has!("avx512vl") {
+                true => unsafe { long(kernel) },
+                false => unsafe { fused(kernel) },
+            };
+        }
+    }
+    match cfg!(target_arch = "aarch64") {
+        true => kernel.run(f64::mul_add),
+        false => kernel.run(|a, b, c| a * b + c),
+    }
+}
 
 /// Columns that are multiplied together, with the rows in which they can be nonzero.
 pub(crate) struct Columns {
@@ -26,9 +62,31 @@ impl Columns {
     }
 }
 
+/// Adds a multiple of a vector to another one.
+#[inline(always)]
+pub(crate) fn add_multiple(
+    by: f64,
+    vector: &[f64],
+    to: &mut [f64],
+    mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
+) {
+    let (chunks, rest) = vector.as_chunks::<ROWS>();
+    let (to_chunks, to_rest) = to.as_chunks_mut::<ROWS>();
+    for (to, chunk) in to_chunks.iter_mut().zip(chunks) {
+        let mut sums = *to;
+        for row in 0..ROWS {
+            sums[row] = mul_add(by, chunk[row], sums[row]);
+        }
+        *to = sums;
+    }
+    for (to, entry) in to_rest.iter_mut().zip(rest) {
+        *to = mul_add(by, *entry, *to);
+    }
+}
+
 /// Number of values of work space that products of matrices with `n` rows need.
 pub(crate) fn work(n: usize) -> usize {
-    n * n.next_multiple_of(ROWS) + Columns::MOST * n
+    Columns::MOST * n
 }
 
 /// Replaces the given columns of each matrix by minus their products with a square matrix of `n` rows. All
@@ -40,64 +98,78 @@ pub(crate) fn minus_products<const K: usize>(
     columns: &[Vec<Columns>; K],
     work: &mut [f64],
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-        #[target_feature(enable = "avx2,fma")]
-        fn fused<const K: usize>(
-            n: usize,
-            square: &[f64],
-            matrices: [&mut [f64]; K],
-            columns: &[Vec<Columns>; K],
-            work: &mut [f64],
-        ) {
-            products(n, square, matrices, columns, work, f64::mul_add);
-        }
-        // SAFETY: the processor has these features.
-        return unsafe { fused(n, square, matrices, columns, work) };
-    }
-    #[cfg(target_arch = "aarch64")]
-    return products(n, square, matrices, columns, work, f64::mul_add);
-    #[cfg(not(target_arch = "aarch64"))]
-    products(n, square, matrices, columns, work, |a, b, c| a * b + c);
+    run(n, Products { n, square, matrices, columns, work });
 }
 
-#[inline(always)]
-fn products<const K: usize>(
+struct Products<'a, const K: usize> {
     n: usize,
-    square: &[f64],
-    matrices: [&mut [f64]; K],
-    columns: &[Vec<Columns>; K],
-    work: &mut [f64],
-    mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
-) {
-    let stride = n.next_multiple_of(ROWS);
-    let (padded, products) = work.split_at_mut(n * stride);
-    for (column, own) in padded.chunks_exact_mut(stride).zip(square.chunks_exact(n)) {
-        column[..n].copy_from_slice(own);
-        column[n..].fill(0.0);
-    }
-    for (matrix, groups) in matrices.into_iter().zip(columns) {
-        for group in groups {
-            match group.columns.len() {
-                1 => tiles::<1>(n, padded, matrix, group, products, mul_add),
-                2 => tiles::<2>(n, padded, matrix, group, products, mul_add),
-                3 => tiles::<3>(n, padded, matrix, group, products, mul_add),
-                _ => tiles::<4>(n, padded, matrix, group, products, mul_add),
+    square: &'a [f64],
+    matrices: [&'a mut [f64]; K],
+    columns: &'a [Vec<Columns>; K],
+    work: &'a mut [f64],
+}
+
+impl<const K: usize> Kernel for Products<'_, K> {
+    #[inline(always)]
+    fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
+        let Products { n, square, matrices, columns, work } = self;
+        macro_rules! small {
+            ($($n:literal)*) => {
+                match n {
+                    $($n => return small::<$n>(square, matrices, columns, mul_add),)*
+                    _ => {}
+                }
+            };
+        }
+        small! { 1 2 3 4 5 6 7 8 }
+        for (matrix, groups) in matrices.into_iter().zip(columns) {
+            for group in groups {
+                match group.columns.len() {
+                    1 => tiles::<1>(n, square, matrix, group, work, mul_add),
+                    2 => tiles::<2>(n, square, matrix, group, work, mul_add),
+                    3 => tiles::<3>(n, square, matrix, group, work, mul_add),
+                    _ => tiles::<4>(n, square, matrix, group, work, mul_add),
+                }
             }
         }
     }
 }
 
+/// Products of matrices with `N` rows.
+#[inline(always)]
+fn small<'a, const N: usize>(
+    square: &[f64],
+    matrices: impl IntoIterator<Item = &'a mut [f64]>,
+    columns: &[Vec<Columns>],
+    mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
+) {
+    let (square, _) = square.as_chunks::<N>();
+    for (matrix, groups) in matrices.into_iter().zip(columns) {
+        let (matrix, _) = matrix.as_chunks_mut::<N>();
+        for group in groups {
+            for j in &group.columns {
+                let mut sums = [0.0; N];
+                for i in &group.rows {
+                    for (sum, entry) in sums.iter_mut().zip(&square[*i]) {
+                        *sum = mul_add(*entry, -matrix[*j][*i], *sum);
+                    }
+                }
+                matrix[*j] = sums;
+            }
+        }
+    }
+}
+
+/// Products of more than [`ROWS`] rows with `M` columns.
 #[inline(always)]
 fn tiles<const M: usize>(
     n: usize,
-    padded: &[f64],
+    square: &[f64],
     matrix: &mut [f64],
     group: &Columns,
     work: &mut [f64],
     mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
 ) {
-    let stride = n.next_multiple_of(ROWS);
     let (factors, _) = work.as_chunks_mut::<M>();
     for (factors, i) in factors.iter_mut().zip(&group.rows) {
         for (factor, j) in factors.iter_mut().zip(&group.columns) {
@@ -105,18 +177,25 @@ fn tiles<const M: usize>(
         }
     }
     for first in (0..n).step_by(ROWS) {
+        // Further rows are those of the next column. Behind the last column there are none.
+        let mut last = [0.0; ROWS];
+        last.iter_mut().zip(&square[(n - 1) * n + first..]).for_each(|(to, from)| *to = *from);
         let mut sums = [[0.0; ROWS]; M];
         for (factors, k) in factors.iter().zip(&group.rows) {
-            let Some(column) = padded[k * stride + first..].first_chunk::<ROWS>() else { continue };
-            for (sum, factor) in sums.iter_mut().zip(factors) {
-                for (sum, entry) in sum.iter_mut().zip(column) {
-                    *sum = mul_add(*entry, *factor, *sum);
+            let chunk = square.get(k * n + first..).and_then(<[f64]>::first_chunk::<ROWS>);
+            let column = *chunk.unwrap_or(&last);
+            for m in 0..M {
+                for row in 0..ROWS {
+                    sums[m][row] = mul_add(column[row], factors[m], sums[m][row]);
                 }
             }
         }
-        let end = n.min(first + ROWS);
         for (sum, j) in sums.iter().zip(&group.columns) {
-            matrix[j * n + first..j * n + end].copy_from_slice(&sum[..end - first]);
+            let rows = &mut matrix[j * n + first..(j + 1) * n];
+            match rows.first_chunk_mut() {
+                Some(rows) => *rows = *sum,
+                None => rows.iter_mut().zip(sum).for_each(|(to, from)| *to = *from),
+            }
         }
     }
 }

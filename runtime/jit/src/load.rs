@@ -286,7 +286,10 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     Space::add(&mut maker);
     constrained::add(&mut maker);
     maker.entries.extend(frames.entries(model.time));
-    let entries = maker.entries;
+    let (mut entries, sizes) = (maker.entries, Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() });
+    for entry in &mut entries {
+        entry.lengths = entry.arguments.iter().map(|argument| sizes.length(*argument)).collect();
+    }
     let index: HashMap<String, usize> =
         entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
     let find = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
@@ -310,7 +313,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     defaults[first..].copy_from_slice(&values);
     Shared {
         name: model.name.clone(),
-        sizes: Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() },
+        sizes,
         configuration: quantities(&mut model.configuration.iter(), &model.units.configuration),
         velocities: quantities(&mut model.velocities.iter().map(|(name, _)| name), &model.units.velocities),
         inputs: quantities(&mut model.inputs.iter().map(|(name, _)| name), &model.units.inputs),

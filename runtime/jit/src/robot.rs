@@ -2,7 +2,7 @@
 
 use crate::AnyTable;
 use crate::error::Error;
-use crate::functions::{Matrix, Plan};
+use crate::functions::{Entry, Matrix, Plan};
 use crate::layout::Layout;
 use crate::routine::Values;
 use crate::shared::{Quantity, Shared};
@@ -434,57 +434,42 @@ impl Robot {
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        self.check_values()?;
         let entry = &self.shared.entries[index];
-        if arguments.len() != entry.arguments.len() {
-            let expected = entry.arguments.iter().map(|argument| argument.name()).collect();
-            return Err(Error::Arguments { of: entry.name.clone(), expected, found: arguments.len() });
+        let fits = |(list, length): (&&[f64], &usize)| list.len() == *length || list.len() == length * count;
+        let fit = arguments.len() == entry.lengths.len()
+            && arguments.iter().zip(&entry.lengths).all(fits)
+            && out.len() == entry.length * count;
+        if !fit || self.missing > 0 {
+            self.check_values()?;
+            return Err(misfit(entry, count, arguments, out.len()));
         }
-        let mut lengths = [0; Layout::MOST];
-        for ((argument, list), length) in entry.arguments.iter().zip(arguments).zip(&mut lengths) {
-            *length = self.shared.sizes.length(*argument);
-            if list.len() != *length && list.len() != *length * count {
-                let (of, name) = (entry.name.clone(), argument.name().to_string());
-                return Err(Error::Length { of, name, expected: *length * count, found: list.len() });
-            }
-        }
-        if out.len() != entry.length * count {
-            let (of, name) = (entry.name.clone(), "the result".to_string());
-            return Err(Error::Length { of, name, expected: entry.length * count, found: out.len() });
-        }
+        let outs = (0..count).map(|k| k * entry.length..(k + 1) * entry.length);
         if let Plan::Constrained(kind) = entry.plan {
-            let lists = |k: usize| {
-                let mut own: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-                for ((own, list), length) in own.iter_mut().zip(arguments).zip(&lengths) {
-                    let first = if list.len() == *length { 0 } else { k * length };
-                    *own = &list[first..first + length];
-                }
-                own
-            };
-            return (0..count)
-                .zip(out.chunks_exact_mut(entry.length.max(1)))
-                .try_for_each(|(k, out)| self.call_constrained(kind, &lists(k)[..arguments.len()], out));
+            let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+            return outs.enumerate().try_for_each(|(k, range)| {
+                entry.select(k, arguments, &mut lists);
+                self.call_constrained(kind, &lists[..arguments.len()], &mut out[range])
+            });
         }
-        WORK.with_borrow_mut(|work| {
-            if work.len() < entry.work {
-                work.resize(entry.work, 0.0);
-            }
+        let run = |work: &mut [f64]| {
             let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
             inputs[0] = parameters;
-            for k in 0..count {
-                for ((input, list), length) in inputs[1..].iter_mut().zip(arguments).zip(&lengths) {
-                    let first = if list.len() == *length { 0 } else { k * length };
-                    *input = &list[first..first + length];
-                }
-                let values = Values {
-                    inputs: &inputs[..=arguments.len()],
-                    tables: &self.tables,
-                    interpreted: self.interpreted,
-                };
-                let out = &mut out[k * entry.length..(k + 1) * entry.length];
-                entry.run(&self.shared, values, out, work);
+            for (k, range) in outs.enumerate() {
+                entry.select(k, arguments, &mut inputs[1..]);
+                let inputs = &inputs[..=arguments.len()];
+                let values = Values { inputs, tables: &self.tables, interpreted: self.interpreted };
+                entry.run(&self.shared, values, &mut out[range], work);
             }
-        });
+        };
+        match entry.work {
+            0 => run(&mut []),
+            count => WORK.with_borrow_mut(|work| {
+                if work.len() < count {
+                    work.resize(count, 0.0);
+                }
+                run(work);
+            }),
+        }
         Ok(())
     }
 
@@ -548,4 +533,22 @@ impl Robot {
             .map(|((name, _), _)| format!("`{name}`"));
         Err(Error::Missing(parameters.chain(tables).collect()))
     }
+}
+
+/// Returns the error of a call whose arguments or results have the wrong length.
+#[cold]
+fn misfit(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+    let of = entry.name.clone();
+    if arguments.len() != entry.arguments.len() {
+        let expected = entry.arguments.iter().map(|argument| argument.name()).collect();
+        return Error::Arguments { of, expected, found: arguments.len() };
+    }
+    let lists = entry.arguments.iter().zip(arguments).zip(&entry.lengths);
+    for ((argument, list), length) in lists {
+        if list.len() != *length && list.len() != length * count {
+            let name = argument.name().to_string();
+            return Error::Length { of, name, expected: length * count, found: list.len() };
+        }
+    }
+    Error::Length { of, name: "the result".to_string(), expected: entry.length * count, found: out }
 }
