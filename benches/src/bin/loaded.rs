@@ -1,14 +1,14 @@
 //! Table of functions of robots that are loaded at run time, next to the same functions compiled in.
 //!
-//! `cargo run --release -p linkwork-benches --bin loaded`, with `RUSTFLAGS="-C target-cpu=native"` for code of
-//! the host, which loaded robots always have. The values are nanoseconds of processor time per call: the
-//! minimum over many batches, in which both take turns, over the same states. Results agree to 10⁻⁹ of the
-//! largest entry, or the program fails.
+//! `cargo run --release -p linkwork-benches --bin loaded`, with `RUSTFLAGS="-C target-cpu=native"` for code
+//! of the host, which loaded robots always have. The values are nanoseconds of processor time per call: the
+//! minimum over many batches, in which both take turns, over the same states. The program fails unless
+//! results agree to 10⁻⁹ of the largest entry.
 //!
 //! An argument chooses the robots whose name contains it.
 
 use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork::{Derivatives, Mechanism};
+use linkwork::Derivatives;
 use linkwork_benches::peers::clock::seconds;
 use linkwork_benches::random::Random;
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Error> {
 }
 
 /// A state: configuration, velocity, and acceleration or force.
-type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
+type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
 /// Prints the rows of a robot.
 fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -59,22 +59,26 @@ where
     let mut random = Random::new(1);
     let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform(bound));
     let mut state = || (own.integrate(&own.neutral(), &vector(1.0)), vector(2.0), vector(2.0));
-    let states: Vec<State<NQ, NV>> = (0..STATES).map(|_| state()).collect();
-    let pair = Pair { name, robot: &robot, states: &states };
-    pair.measure("inverse_dynamics", |(q, v, a)| own.inverse_dynamics(0.0, q, v, a), |x| vec![x.as_slice()])?;
-    pair.measure("mass_matrix", |(q, ..)| own.mass_matrix(0.0, q), |x| vec![x.as_slice()])?;
-    pair.measure(
+    let states: Vec<Sample<NQ, NV>> = (0..STATES).map(|_| state()).collect();
+    let comparison = Comparison { name, robot: &robot, states: &states };
+    comparison.measure(
+        "inverse_dynamics",
+        |(q, v, a)| own.inverse_dynamics(0.0, q, v, a),
+        |x| vec![x.as_slice()],
+    )?;
+    comparison.measure("mass_matrix", |(q, ..)| own.mass_matrix(0.0, q), |x| vec![x.as_slice()])?;
+    comparison.measure(
         "forward_dynamics",
         |(q, v, tau)| own.forward_dynamics(0.0, q, v, tau),
         |x| vec![x.as_slice()],
     )?;
-    pair.measure(
+    comparison.measure(
         "inverse_dynamics_derivatives",
         |(q, v, a)| own.inverse_dynamics_derivatives(0.0, q, v, a),
         |(by_q, by_v)| vec![by_q.as_slice(), by_v.as_slice()],
     )?;
     type Three<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
-    pair.measure(
+    comparison.measure(
         "forward_dynamics_derivatives",
         |(q, v, tau)| own.forward_dynamics_derivatives(0.0, q, v, tau),
         |(by_q, by_v, by_tau): &Three<NV>| vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()],
@@ -82,18 +86,18 @@ where
 }
 
 /// A robot that is loaded, and states to call it with.
-struct Pair<'a, const NQ: usize, const NV: usize> {
+struct Comparison<'a, const NQ: usize, const NV: usize> {
     name: &'a str,
     robot: &'a Robot,
-    states: &'a [State<NQ, NV>],
+    states: &'a [Sample<NQ, NV>],
 }
 
-impl<const NQ: usize, const NV: usize> Pair<'_, NQ, NV> {
+impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
     /// Prints the row of a function.
     fn measure<T>(
         &self,
         function: &str,
-        own: impl Fn(&State<NQ, NV>) -> T,
+        own: impl Fn(&Sample<NQ, NV>) -> T,
         lists: impl for<'t> Fn(&'t T) -> Vec<&'t [f64]>,
     ) -> Result<(), Error> {
         let f = self.robot.function(function)?;
@@ -125,7 +129,7 @@ impl<const NQ: usize, const NV: usize> Pair<'_, NQ, NV> {
     fn call(
         &self,
         (f, count): (&Function, usize),
-        (q, v, a): &State<NQ, NV>,
+        (q, v, a): &Sample<NQ, NV>,
         out: &mut [f64],
     ) -> Result<(), Error> {
         let all = [q.as_slice(), v.as_slice(), a.as_slice()];

@@ -202,7 +202,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let (_, has_step, treats_contacts) = found.copied().unwrap_or(("automatic", false, true));
         if has_contacts && !treats_contacts {
             return Err(Stop::Failure(format!(
-                "`{}` has contacts: `--method` time-stepping, time-stepping-midpoint or event-driven; or `--without-contacts` lets bodies pass through each other",
+                "`{}` has contacts: `--method` time-stepping, time-stepping-midpoint, time-stepping-leapfrog or event-driven; or `--without-contacts` lets bodies pass through each other",
                 self.model.name
             )));
         }

@@ -21,7 +21,7 @@ use crate::table::AnyTable;
 use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_compiler::expr::Function as Elementary;
 use linkwork_compiler::lower::Program;
-use plan::{Plan, TOGETHER};
+use plan::{Allocation, TOGETHER};
 
 /// Declares functions in the calling convention of generated code, that of System V on all systems.
 macro_rules! called {
@@ -80,7 +80,7 @@ impl Code {
         if !x86::is_supported() {
             return Err("the processor has neither AVX2 nor FMA".to_string());
         }
-        let mut plan = Plan::new(program, layout, results, x86::REGISTERS)?;
+        let mut plan = Allocation::new(program, layout, results, x86::REGISTERS)?;
         let bytes = x86::write(&mut plan, results, helper)?;
         let memory = memmap2::MmapMut::map_anon(bytes.len()).and_then(|mut memory| {
             memory.copy_from_slice(&bytes);
@@ -94,13 +94,13 @@ impl Code {
     /// Compiles a program by Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
     fn by_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
-        let plan = Plan::new(program, layout, results, cranelift::REGISTERS)?;
+        let plan = Allocation::new(program, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper)?;
         let outputs = [results, program.outputs.len() - results];
         Ok(Code::new(plan, outputs, address, Executable::Module(module)))
     }
 
-    fn new(plan: Plan, outputs: [usize; 2], address: *const u8, memory: Executable) -> Code {
+    fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: Executable) -> Code {
         // SAFETY: the code at this address was generated with this signature.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
         let (constants, lengths) = (plan.constants.into(), plan.lengths.into());
@@ -183,8 +183,8 @@ called! {
         table.value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
     }
 
-    /// Writes the sines, then the cosines, of `count` angles into the array behind them; `count` is one, two or
-    /// four, or a multiple of [`TOGETHER`].
+    /// Writes the sines, then the cosines, of `count` angles into the array behind them; `count` is one, two
+    /// or four, or a multiple of [`TOGETHER`].
     fn sines(array: *mut f64, count: u64) {
         let count = count as usize;
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.

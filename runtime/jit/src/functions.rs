@@ -126,7 +126,7 @@ impl Plan {
 }
 
 impl Entry {
-    /// Writes the values of each argument for the state with index `k`, from arguments of all states or of one.
+    /// Writes the values of each argument for the state with index `k`, from those of all states or of one.
     pub fn select<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
         for ((to, list), length) in to.iter_mut().zip(arguments).zip(&self.lengths) {
             *to = if list.len() == *length { list } else { &list[k * length..(k + 1) * length] };

@@ -9,8 +9,8 @@ const LONG: usize = 12;
 
 /// A loop over matrices.
 pub(crate) trait Kernel {
-    /// Runs the loop with a function for `a b + c`. It is inlined into a function with the instructions of the
-    /// host, as is everything that it calls.
+    /// Runs the loop with a function for `a b + c`. It is inlined into a function with the instructions of
+    /// the host, as is everything that it calls.
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy);
 }
 
@@ -177,7 +177,7 @@ fn tiles<const M: usize>(
         }
     }
     for first in (0..n).step_by(ROWS) {
-        // Further rows are those of the next column. Behind the last column there are none.
+        // Further rows are those of the next column, and zeros behind the last column.
         let mut last = [0.0; ROWS];
         last.iter_mut().zip(&square[(n - 1) * n + first..]).for_each(|(to, from)| *to = *from);
         let mut sums = [[0.0; ROWS]; M];

@@ -79,7 +79,8 @@ impl Loader {
         Loader { origin, options, name, folder, readable_equations: false, interpreted: false }
     }
 
-    /// Adds options of the attribute, in the same syntax: `base = free, derivatives`.
+    /// Adds options of the attribute, in the same syntax: `base = free, derivatives`. Functions are in double
+    /// precision, with `scalar = f32` as well; `prepare`, `batch` and `packed` have no effect.
     #[must_use]
     pub fn options(mut self, options: &str) -> Loader {
         let separator = if self.options.is_empty() || options.is_empty() { "" } else { ", " };

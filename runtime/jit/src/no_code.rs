@@ -4,7 +4,7 @@ use crate::AnyTable;
 use crate::layout::Layout;
 use linkwork_compiler::lower::Program;
 
-/// A compiled program, of which there are none.
+/// A compiled program: this type has no values.
 pub(crate) enum Code {}
 
 impl Code {

@@ -231,11 +231,14 @@ impl<'a, 'i> Simulation<'a, 'i> {
         };
         let is_contact_method = matches!(
             method,
-            Method::TimeStepping(_) | Method::TimeSteppingMidpoint(_) | Method::EventDriven(_)
+            Method::TimeStepping(_)
+                | Method::TimeSteppingMidpoint(_)
+                | Method::TimeSteppingLeapfrog(_)
+                | Method::EventDriven(_)
         );
         if with_contacts && !is_contact_method {
             return Err(Error::Value(format!(
-                "`{}` has contacts: choose the method `time_stepping`, `time_stepping_midpoint` or `event_driven`, or leave the contacts out",
+                "`{}` has contacts: choose the method `time_stepping`, `time_stepping_midpoint`, `time_stepping_leapfrog` or `event_driven`, or leave the contacts out",
                 robot.name()
             )));
         }

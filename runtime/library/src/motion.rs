@@ -29,6 +29,9 @@ pub enum Way<N> {
     /// Time stepping of contacts with the midpoint rule, with its step size: two evaluations of the dynamics
     /// per step instead of four.
     TimeSteppingMidpoint(N),
+    /// Time stepping of contacts with the leapfrog method, with its step size: one evaluation of the dynamics
+    /// per step.
+    TimeSteppingLeapfrog(N),
 }
 
 /// Interval between evaluations of the controller.
@@ -86,7 +89,10 @@ where
         Way::Rodas(e) => go(m, motion, Rodas::new().tolerance(e, e)),
         Way::Rk4(h) => go(m, motion, Rk4::step(h)),
         Way::ImplicitMidpoint(h) => go(m, motion, ImplicitMidpoint::step(h)),
-        Way::EventDriven(_) | Way::TimeStepping(_) | Way::TimeSteppingMidpoint(_) => {
+        Way::EventDriven(_)
+        | Way::TimeStepping(_)
+        | Way::TimeSteppingMidpoint(_)
+        | Way::TimeSteppingLeapfrog(_) => {
             Err(Failure::of("the mechanism has no contacts: choose a method for smooth motions"))
         }
     }
@@ -109,8 +115,9 @@ where
         Way::EventDriven(e) => go(m, motion, EventDriven::new().tolerance(e, e)),
         Way::TimeStepping(h) => go(m, motion, TimeStepping::step(h)),
         Way::TimeSteppingMidpoint(h) => go(m, motion, TimeStepping::step(h).midpoint()),
+        Way::TimeSteppingLeapfrog(h) => go(m, motion, TimeStepping::step(h).leapfrog()),
         _ => Err(Failure::of(
-            "the mechanism has contacts: choose `event_driven`, `time_stepping` or `time_stepping_midpoint`",
+            "the mechanism has contacts: choose `event_driven` or a method whose name begins with `time_stepping`",
         )),
     }
 }
@@ -128,7 +135,7 @@ where
     let q = SVector::<N, NQ>::from_fn(|k, _| motion.q.get(k).copied().unwrap_or(N::NAN));
     let v = SVector::<N, NV>::from_fn(|k, _| motion.v.get(k).copied().unwrap_or(N::NAN));
     let overlaps = match motion.way {
-        Way::TimeStepping(_) | Way::TimeSteppingMidpoint(_) => Overlaps::Keep,
+        Way::TimeStepping(_) | Way::TimeSteppingMidpoint(_) | Way::TimeSteppingLeapfrog(_) => Overlaps::Keep,
         _ => Overlaps::Refuse,
     };
     let begun = simulate::simulate(m)

@@ -126,8 +126,8 @@ pub struct Settings<N> {
     /// Time between samples, s.
     pub interval: N,
     /// Name of the method: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its
-    /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step
-    /// size, s.
+    /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`,
+    /// `time_stepping_leapfrog`, each with its step size, s.
     pub method: *const c_char,
     /// Tolerance or step size.
     pub setting: N,
@@ -273,9 +273,10 @@ fn way<N>(method: &CStr, setting: N) -> Result<Way<N>, Failure> {
         "event_driven" => Way::EventDriven(setting),
         "time_stepping" => Way::TimeStepping(setting),
         "time_stepping_midpoint" => Way::TimeSteppingMidpoint(setting),
+        "time_stepping_leapfrog" => Way::TimeSteppingLeapfrog(setting),
         other => {
             return Err(Failure(format!(
-                "there is no method `{other}`, but dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping, time_stepping_midpoint"
+                "there is no method `{other}`, but dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping, time_stepping_midpoint, time_stepping_leapfrog"
             )));
         }
     })

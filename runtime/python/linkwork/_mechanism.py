@@ -34,6 +34,7 @@ _METHODS = {
     "semi_implicit_euler": "step",
     "time_stepping": "step",
     "time_stepping_midpoint": "step",
+    "time_stepping_leapfrog": "step",
 }
 
 
@@ -317,9 +318,9 @@ class Mechanism(metaclass=_Kind):
                 `"dormand_prince8"`, `"rodas"` (for stiff equations), `"automatic"` (Dormand–Prince, and Rodas
                 from where the motion is stiff) and, with contacts, `"event_driven"`. Methods with a `step` are
                 `"rk4"`, `"implicit_midpoint"`, `"rosenbrock"`, `"semi_implicit_euler"` and, with contacts,
-                `"time_stepping"` and `"time_stepping_midpoint"`; the latter needs two evaluations of the
-                dynamics per step instead of four. The default is `"dormand_prince"`, or `"event_driven"`
-                with contacts; if `step` is specified, it is `"rk4"`, or `"time_stepping"` with contacts.
+                `"time_stepping"`, `"time_stepping_midpoint"` and `"time_stepping_leapfrog"`, with four, two
+                evaluations and one of the dynamics per step. The default is `"dormand_prince"`, or
+                `"event_driven"` with contacts; if `step` is specified, it is `"rk4"`, or `"time_stepping"` with contacts.
             tolerance: relative and absolute error of a step; the default is 1e-8.
             step: step size, s.
 

@@ -31,7 +31,9 @@ pub fn simulate<'py>(
     let robot = &robot.robot;
     let method = Method::named(method, Some(setting)).map_err(|error| exception(py, &error, None))?;
     let overlaps = match method {
-        Method::TimeStepping(_) | Method::TimeSteppingMidpoint(_) => Overlaps::Keep,
+        Method::TimeStepping(_) | Method::TimeSteppingMidpoint(_) | Method::TimeSteppingLeapfrog(_) => {
+            Overlaps::Keep
+        }
         _ => Overlaps::Refuse,
     };
     let mut rows: Vec<f64> = Vec::new();

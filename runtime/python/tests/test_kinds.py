@@ -119,7 +119,7 @@ class WithContacts(unittest.TestCase):
         self.assertAlmostEqual(top, 0.25, places=5)
         rest = m.simulate([1.0], duration=4.0)
         np.testing.assert_allclose([rest.q[-1, 0], rest.v[-1, 0]], [0.0, 0.0], atol=1e-9)
-        for method in ["time_stepping", "time_stepping_midpoint"]:
+        for method in ["time_stepping", "time_stepping_midpoint", "time_stepping_leapfrog"]:
             stepped = m.simulate([1.0], duration=4.0, method=method, step=1e-3)
             self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
         with self.assertRaisesRegex(linkwork.Error, "has contacts"):

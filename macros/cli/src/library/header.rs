@@ -136,7 +136,8 @@ typedef struct {prefix}_settings {{
     {number} duration; /* s */
     {number} interval; /* time between samples, s */
     /* \"dormand_prince\", \"dormand_prince8\", \"rodas\" (stiff), with contacts \"event_driven\": by a tolerance;
-     * \"rk4\", \"implicit_midpoint\", with contacts \"time_stepping\", \"time_stepping_midpoint\": by a step, s */
+     * \"rk4\", \"implicit_midpoint\", with contacts \"time_stepping\", \"time_stepping_midpoint\",
+     * \"time_stepping_leapfrog\": by a step, s */
     const char *method;
     {number} setting;  /* the tolerance or the step */
     {number} period;   /* the controller is called every so many seconds; 0 for whenever the dynamics are evaluated */

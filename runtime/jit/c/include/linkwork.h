@@ -115,7 +115,7 @@ typedef struct {
     double every;         /* time between samples, s; 0: every step is a sample */
     const char *method;   /* automatic, dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, rosenbrock,
                            * semi_implicit_euler; for contacts automatic, time_stepping, time_stepping_midpoint,
-                           * event_driven; NULL: automatic */
+                           * time_stepping_leapfrog, event_driven; NULL: automatic */
     double setting;       /* tolerance or step, s, of the method; 0: 1e-9 or 1e-3 */
     lw_controller control; /* NULL: the inputs are zero */
     void *user;           /* first argument of the controller */

@@ -1,7 +1,7 @@
 //! Machine code by Cranelift, without its optimiser: the plan has the order of the instructions, and their
 //! values are in registers or in memory.
 
-use super::plan::{Memory, Place, Plan, Step};
+use super::plan::{Allocation, Memory, Place, Step};
 use cranelift_codegen::ir::{
     AbiParam, InstBuilder, MemFlags, StackSlotData, StackSlotKind, Type, Value, types,
 };
@@ -35,7 +35,7 @@ impl Drop for Module {
 
 /// Generates the code of a plan; returns its address in a module.
 pub fn translate(
-    plan: &Plan,
+    plan: &Allocation,
     results: usize,
     helpers: fn(&str) -> Option<*const u8>,
 ) -> Result<(Module, *const u8), String> {
@@ -67,7 +67,7 @@ fn target() -> Result<OwnedTargetIsa, String> {
 
 fn define(
     module: &mut JITModule,
-    plan: &Plan,
+    plan: &Allocation,
     results: usize,
     helpers: fn(&str) -> Option<*const u8>,
 ) -> Result<*const u8, String> {
@@ -109,7 +109,7 @@ fn define(
 struct Translator<'a> {
     builder: FunctionBuilder<'a>,
     pointer: Type,
-    plan: &'a Plan,
+    plan: &'a Allocation,
     results: usize,
     helpers: fn(&str) -> Option<*const u8>,
     /// Inputs, constants, tables, results, further outputs.

@@ -1,8 +1,8 @@
 //! Programs as steps on registers and memory, from which machine code is generated.
 //!
-//! There are few registers and many values. Instructions come in an order with few live values. If there is no
-//! register for a value, the one whose next use is last goes to memory (Belady 1966), from where instructions
-//! read it. Inputs, constants, sines and cosines are always in memory.
+//! There are few registers and many values. Instructions come in an order with few live values. If there is
+//! no register for a value, the one whose next use is last goes to memory (Belady 1966), from where
+//! instructions read it. Inputs, constants, sines and cosines are always in memory.
 
 use crate::layout::Layout;
 use linkwork_compiler::expr::{Function, Symbol};
@@ -75,7 +75,7 @@ pub fn padded(count: usize) -> usize {
 }
 
 /// Steps of a program, and the memory that they use.
-pub struct Plan {
+pub struct Allocation {
     pub steps: Vec<Step>,
     pub constants: Vec<f64>,
     /// Minimum length of each input.
@@ -90,17 +90,22 @@ pub struct Plan {
     pub work: usize,
 }
 
-impl Plan {
+impl Allocation {
     /// Plans a program whose first `results` outputs are its results, for a number of registers.
-    pub fn new(program: &Program, layout: &Layout, results: usize, registers: u8) -> Result<Plan, String> {
-        // The results of derivatives are two matrices, whose corresponding entries have most values in common.
+    pub fn new(
+        program: &Program,
+        layout: &Layout,
+        results: usize,
+        registers: u8,
+    ) -> Result<Allocation, String> {
+        // The results of derivatives are two matrices, whose corresponding entries share most values.
         let halves = [results / 2, results - results / 2];
         let program = &program.clone().with_few_live_values(&halves);
         let n = program.instructions.len();
         let mut planner = Planner {
             program,
             layout,
-            plan: Plan {
+            plan: Allocation {
                 steps: Vec::new(),
                 constants: Vec::new(),
                 lengths: vec![0; layout.len()],
@@ -126,7 +131,7 @@ impl Plan {
 struct Planner<'a> {
     program: &'a Program,
     layout: &'a Layout,
-    plan: Plan,
+    plan: Allocation,
     /// Indices of the constants.
     known: HashMap<u64, usize>,
     /// Positions of sines and cosines that are computed together.
@@ -354,7 +359,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns a register without a value. If there is none, the value whose next use is last goes to memory.
+    /// Returns a register without a value. If all have values, the one whose next use is last goes to memory.
     fn take(&mut self) -> u8 {
         let next = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
         let free = self.values.iter().position(Option::is_none);

@@ -22,7 +22,7 @@ const VALUES: [f64; 6] = [0.0, -0.0, 1e5, f64::NAN, f64::INFINITY, 5e-324];
 struct Random(u64);
 
 impl Random {
-    fn below(&mut self, n: usize) -> usize {
+    fn index_below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -31,26 +31,26 @@ impl Random {
     }
 
     fn value(&mut self) -> f64 {
-        match self.below(40) {
-            0 => VALUES[self.below(VALUES.len())],
-            _ => self.below(8001) as f64 / 2000.0 - 2.0,
+        match self.index_below(40) {
+            0 => VALUES[self.index_below(VALUES.len())],
+            _ => self.index_below(8001) as f64 / 2000.0 - 2.0,
         }
     }
 
     fn operand(&mut self, before: usize, reach: usize) -> Operand {
         let symbol = |quantity: Quantity| Operand::Symbol(quantity.symbol());
-        match self.below(if before == 0 { 5 } else { 16 }) {
-            0 => Operand::Const(CONSTANTS[self.below(CONSTANTS.len())]),
-            1 => symbol(Quantity::Parameter(self.below(INPUTS[0]))),
-            2 | 3 => symbol(Quantity::Configuration(self.below(INPUTS[1]))),
-            4 => symbol(Quantity::Velocity(self.below(INPUTS[2]))),
-            _ => Operand::Value(before - 1 - self.below(before.min(reach))),
+        match self.index_below(if before == 0 { 5 } else { 16 }) {
+            0 => Operand::Const(CONSTANTS[self.index_below(CONSTANTS.len())]),
+            1 => symbol(Quantity::Parameter(self.index_below(INPUTS[0]))),
+            2 | 3 => symbol(Quantity::Configuration(self.index_below(INPUTS[1]))),
+            4 => symbol(Quantity::Velocity(self.index_below(INPUTS[2]))),
+            _ => Operand::Value(before - 1 - self.index_below(before.min(reach))),
         }
     }
 
     fn operation(&mut self, before: usize, reach: usize, calls: usize) -> Op {
         let [a, b, c] = std::array::from_fn(|_| self.operand(before, reach));
-        match self.below(28 + calls) {
+        match self.index_below(28 + calls) {
             0..=4 => Op::Add(a, b),
             5..=8 => Op::Sub(a, b),
             9..=13 => Op::Mul(a, b),
@@ -59,26 +59,26 @@ impl Random {
             22..=24 => Op::NegMulAdd(a, b, c),
             25 => Op::Neg(a),
             26 => Op::Div(a, b),
-            27 => Op::Call([Function::Sin, Function::Cos][self.below(2)], a),
-            28 => Op::Call(Function::ALL[self.below(Function::ALL.len())].1, a),
+            27 => Op::Call([Function::Sin, Function::Cos][self.index_below(2)], a),
+            28 => Op::Call(Function::ALL[self.index_below(Function::ALL.len())].1, a),
             29 => Op::Atan2(a, b),
             30 => Op::Pow(a, b),
-            31 => Op::Extreme([Extreme::Min, Extreme::Max][self.below(2)], a, b),
+            31 => Op::Extreme([Extreme::Min, Extreme::Max][self.index_below(2)], a, b),
             _ => Op::Table(Lookup::new(0, 1).slope(0).unwrap_or(Lookup::new(0, 1)), a, a, a),
         }
     }
 
     fn program(&mut self) -> Program {
-        let most = [8, 40, 40, 300][self.below(4)];
-        let length = 1 + self.below(most);
-        let reach = [4, 20, 1000][self.below(3)];
-        let calls = [0, 0, 5][self.below(3)];
+        let most = [8, 40, 40, 300][self.index_below(4)];
+        let length = 1 + self.index_below(most);
+        let reach = [4, 20, 1000][self.index_below(3)];
+        let calls = [0, 0, 5][self.index_below(3)];
         let mut program = Program::default();
         for k in 0..length {
             let op = self.operation(k, reach, calls);
             program.instructions.push(op);
         }
-        let outputs = 1 + self.below(40);
+        let outputs = 1 + self.index_below(40);
         program.outputs = (0..outputs).map(|_| self.operand(length, length)).collect();
         program.sweep();
         program
@@ -155,7 +155,7 @@ fn agree(compile: fn(&Program, &Layout, usize) -> Result<Code, String>) {
     for seed in 0..count.unwrap_or(PROGRAMS) {
         let mut random = Random(seed);
         let program = random.program();
-        let results = random.below(program.outputs.len() + 1);
+        let results = random.index_below(program.outputs.len() + 1);
         let code = compile(&program, &layout, results).expect("machine code");
         for _ in 0..3 {
             let inputs = INPUTS.map(|n| (0..n).map(|_| random.value()).collect::<Vec<f64>>());

@@ -1,6 +1,6 @@
 //! Machine code for x86-64 with AVX2 and FMA, in the calling convention of System V.
 
-use super::plan::{Memory, Place, Plan, Step, is_call};
+use super::plan::{Allocation, Memory, Place, Step, is_call};
 use linkwork_compiler::expr::{Extreme, Function as Elementary};
 use linkwork_compiler::lower::Op;
 
@@ -31,7 +31,7 @@ const MORE: u8 = 12;
 const RESULTS: u8 = 13;
 const INPUTS: u8 = 14;
 const TABLES: u8 = 15;
-/// Registers that calls preserve, as they are pushed.
+/// Registers that calls preserve, in the order in which they are pushed.
 const SAVED: [u8; 6] = [CONSTANTS, FRAME, MORE, RESULTS, INPUTS, TABLES];
 /// Registers with the addresses of inputs.
 const POINTERS: [u8; 9] = [0, 1, 2, 6, 7, 8, 9, 10, 11];
@@ -50,7 +50,7 @@ enum Rm {
 
 /// Encoding of an instruction: opcode, map of opcodes, prefix, and the bits W and L.
 #[derive(Clone, Copy)]
-struct Code {
+struct Encoding {
     opcode: u8,
     map: u8,
     prefix: u8,
@@ -59,35 +59,35 @@ struct Code {
 }
 
 /// An instruction on one number.
-const fn scalar(opcode: u8) -> Code {
-    Code { opcode, map: 1, prefix: 3, wide: false, long: false }
+const fn scalar(opcode: u8) -> Encoding {
+    Encoding { opcode, map: 1, prefix: 3, wide: false, long: false }
 }
 
 /// An instruction on the bits of a register.
-const fn packed(opcode: u8) -> Code {
-    Code { opcode, map: 1, prefix: 1, wide: false, long: false }
+const fn packed(opcode: u8) -> Encoding {
+    Encoding { opcode, map: 1, prefix: 1, wide: false, long: false }
 }
 
 /// A fused product and sum.
-const fn fused(opcode: u8) -> Code {
-    Code { opcode, map: 2, prefix: 1, wide: true, long: false }
+const fn fused(opcode: u8) -> Encoding {
+    Encoding { opcode, map: 2, prefix: 1, wide: true, long: false }
 }
 
-const LOAD: Code = scalar(0x10);
-const STORE: Code = scalar(0x11);
-const ADD: Code = scalar(0x58);
-const MULTIPLY: Code = scalar(0x59);
-const SUBTRACT: Code = scalar(0x5C);
-const DIVIDE: Code = scalar(0x5E);
-const SQUARE_ROOT: Code = scalar(0x51);
-const MOVE: Code = packed(0x28);
-const AND: Code = packed(0x54);
-const XOR: Code = packed(0x57);
-const BROADCAST: Code = Code { opcode: 0x19, map: 2, prefix: 1, wide: false, long: true };
-const STORE_FOUR: Code = Code { opcode: 0x11, map: 1, prefix: 1, wide: false, long: true };
+const LOAD: Encoding = scalar(0x10);
+const STORE: Encoding = scalar(0x11);
+const ADD: Encoding = scalar(0x58);
+const MULTIPLY: Encoding = scalar(0x59);
+const SUBTRACT: Encoding = scalar(0x5C);
+const DIVIDE: Encoding = scalar(0x5E);
+const SQUARE_ROOT: Encoding = scalar(0x51);
+const MOVE: Encoding = packed(0x28);
+const AND: Encoding = packed(0x54);
+const XOR: Encoding = packed(0x57);
+const BROADCAST: Encoding = Encoding { opcode: 0x19, map: 2, prefix: 1, wide: false, long: true };
+const STORE_FOUR: Encoding = Encoding { opcode: 0x11, map: 1, prefix: 1, wide: false, long: true };
 
 /// Writes the code of a plan. Further constants are appended to those of the plan.
-pub fn write(plan: &mut Plan, results: usize, helpers: Helpers) -> Result<Vec<u8>, String> {
+pub fn write(plan: &mut Allocation, results: usize, helpers: Helpers) -> Result<Vec<u8>, String> {
     // Masks of the sign and of everything else, for whole registers.
     let masks = plan.constants.len();
     plan.constants.extend([1 << 63, 1 << 63, !(1 << 63), !(1 << 63)].map(f64::from_bits));
@@ -110,7 +110,7 @@ pub fn write(plan: &mut Plan, results: usize, helpers: Helpers) -> Result<Vec<u8
 
 struct Writer<'a> {
     bytes: Vec<u8>,
-    plan: &'a Plan,
+    plan: &'a Allocation,
     results: usize,
     /// Index of the masks among the constants.
     masks: usize,
@@ -204,7 +204,7 @@ impl Writer<'_> {
     }
 
     /// Writes an instruction whose operands can be exchanged.
-    fn commutative(&mut self, code: Code, to: u8, a: Rm, b: Rm) {
+    fn commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm) {
         match (a, b) {
             (Rm::Register(a), b) => self.instruction(code, to, a, b),
             (a, Rm::Register(b)) => self.instruction(code, to, b, a),
@@ -215,7 +215,7 @@ impl Writer<'_> {
         }
     }
 
-    fn ordered(&mut self, code: Code, to: u8, a: Rm, b: Rm) {
+    fn ordered(&mut self, code: Encoding, to: u8, a: Rm, b: Rm) {
         let first = match a {
             Rm::Register(a) => a,
             Rm::Memory(..) => {
@@ -227,8 +227,8 @@ impl Writer<'_> {
     }
 
     /// Writes a fused product and sum. `first` is the opcode of the form with the factor and the sum in
-    /// exchanged places (132); 16 more is that of a product with the result's register (213), 32 more of a sum
-    /// in the result's register (231).
+    /// exchanged places (132); 16 more is that of a product with the result's register (213), 32 more of a
+    /// sum in the result's register (231).
     fn product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3]) {
         use Rm::{Memory, Register};
         let [exchanged, product, sum] = [0, 16, 32].map(|more| fused(first + more));
@@ -362,8 +362,8 @@ impl Writer<'_> {
     }
 
     /// Writes an instruction with a prefix VEX: result, first and second operand.
-    fn instruction(&mut self, code: Code, register: u8, first: u8, second: Rm) {
-        let Code { opcode, map, prefix, wide, long } = code;
+    fn instruction(&mut self, code: Encoding, register: u8, first: u8, second: Rm) {
+        let Encoding { opcode, map, prefix, wide, long } = code;
         let base = match second {
             Rm::Register(base) | Rm::Memory(base, _) => base,
         };

@@ -80,7 +80,7 @@ impl Visitor for Moving<'_, '_, '_, '_> {
             Method::Rosenbrock(h) => driver.go(robot, start, Rosenbrock::step(h)),
             Method::SemiImplicitEuler(h) => driver.go(robot, start, SemiImplicitEuler::step(h)),
             // Without contacts these methods are those between contacts.
-            Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) => {
+            Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) | Method::TimeSteppingLeapfrog(h) => {
                 driver.go(robot, start, Rk4::step(h))
             }
             Method::EventDriven(e) => driver.go(robot, start, DormandPrince8::new().tolerance(e, e)),
@@ -97,6 +97,7 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
         match driver.settings.method {
             Method::TimeStepping(h) => driver.go(robot, start, TimeStepping::step(h)),
             Method::TimeSteppingMidpoint(h) => driver.go(robot, start, TimeStepping::step(h).midpoint()),
+            Method::TimeSteppingLeapfrog(h) => driver.go(robot, start, TimeStepping::step(h).leapfrog()),
             Method::EventDriven(e) => driver.go(robot, start, EventDriven::new().tolerance(e, e)),
             _ => Err(Error::Internal("a method without contacts".to_string())),
         }

@@ -28,6 +28,8 @@ pub enum Method {
     TimeStepping(f64),
     /// [`TimeStepping::midpoint`](linkwork::integrate::TimeStepping::midpoint) with a step.
     TimeSteppingMidpoint(f64),
+    /// [`TimeStepping::leapfrog`](linkwork::integrate::TimeStepping::leapfrog) with a step.
+    TimeSteppingLeapfrog(f64),
     /// [`EventDriven`](linkwork::integrate::EventDriven) with a tolerance.
     EventDriven(f64),
 }
@@ -39,7 +41,7 @@ pub(super) const STEP: f64 = 1e-3;
 
 impl Method {
     /// Names of the methods, whether their setting is a step, and whether they treat contacts.
-    pub const NAMES: [(&'static str, bool, bool); 11] = [
+    pub const NAMES: [(&'static str, bool, bool); 12] = [
         ("automatic", false, true),
         ("dormand_prince", false, false),
         ("dormand_prince8", false, false),
@@ -50,6 +52,7 @@ impl Method {
         ("semi_implicit_euler", true, false),
         ("time_stepping", true, true),
         ("time_stepping_midpoint", true, true),
+        ("time_stepping_leapfrog", true, true),
         ("event_driven", false, true),
     ];
 
@@ -75,6 +78,7 @@ impl Method {
             "semi_implicit_euler" => Method::SemiImplicitEuler(setting),
             "time_stepping" => Method::TimeStepping(setting),
             "time_stepping_midpoint" => Method::TimeSteppingMidpoint(setting),
+            "time_stepping_leapfrog" => Method::TimeSteppingLeapfrog(setting),
             "event_driven" => Method::EventDriven(setting),
             _ => Method::Automatic(setting),
         })
