@@ -62,7 +62,7 @@ enum Executable {
     #[cfg(target_arch = "x86_64")]
     Pages(#[allow(dead_code, reason = "holds the memory")] memmap2::Mmap),
     #[cfg(any(test, target_arch = "aarch64"))]
-    Module(#[allow(dead_code, reason = "holds the memory")] cranelift::Module),
+    Module(#[allow(dead_code, reason = "holds the memory")] Box<cranelift::Module>),
 }
 
 impl Code {
@@ -97,7 +97,7 @@ impl Code {
         let plan = Allocation::new(program, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper)?;
         let outputs = [results, program.outputs.len() - results];
-        Ok(Code::new(plan, outputs, address, Executable::Module(module)))
+        Ok(Code::new(plan, outputs, address, Executable::Module(Box::new(module))))
     }
 
     fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: Executable) -> Code {

@@ -186,7 +186,10 @@ fn change(text: &mut String, other: &str, random: &mut Random) {
         0 => text.insert_str(a, random.choose(&WORDS)),
         1 => drop(text.drain(first..near)),
         2 => text.replace_range(first..near, random.choose(&WORDS)),
-        3 => text.insert_str(last, &text[first..near].to_string()),
+        3 => {
+            let part = text[first..near].to_string();
+            text.insert_str(last, &part);
+        }
         4 => text.truncate(last),
         5 => {
             let from = place(other, random);
