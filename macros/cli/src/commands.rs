@@ -99,6 +99,7 @@ fn export() -> Command {
             "CUDA: kernels of all functions for many states, and their launchers",
         ))
         .subcommand(export_kernels("wgsl", "WGSL: compute shaders of the functions for many states"))
+        .subcommand(export_fmu())
         .subcommand(export_library())
         .subcommand(
             with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
@@ -130,6 +131,21 @@ fn with_source_options(command: Command, folder: &'static str) -> Command {
                 .value_parser(["double", "float"]),
         )
         .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
+}
+
+fn export_fmu() -> Command {
+    let command =
+        Command::new("fmu").about("FMI 3.0: a model for simulation tools, with sources and a binary");
+    with_start(with_tables(with_input(command)))
+        .arg(
+            text("out", "FILE", "Output file [default: the mechanism's name with .fmu]")
+                .short('o')
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(text("prefix", "NAME", "Identifier of the model [default: the mechanism's name]"))
+        .arg(switch("no-derivatives", "Leaves out directional and adjoint derivatives"))
+        .arg(switch("no-binary", "Writes sources only"))
+        .arg(text("compiler", "NAME", "C compiler of the binary [default: cc]").conflicts_with("no-binary"))
 }
 
 fn export_library() -> Command {
@@ -184,11 +200,8 @@ fn with_tables(command: Command) -> Command {
     )
 }
 
-fn with_motion(command: Command) -> Command {
-    let command = with_tables(command);
-    let number = |name, value, help| {
-        text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
-    };
+/// Adds the options for parameters and the initial state.
+fn with_start(command: Command) -> Command {
     command
         .arg(
             text(
@@ -206,6 +219,14 @@ fn with_motion(command: Command) -> Command {
             )
             .action(ArgAction::Append),
         )
+}
+
+fn with_motion(command: Command) -> Command {
+    let command = with_start(with_tables(command));
+    let number = |name, value, help| {
+        text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
+    };
+    command
         .arg(
             text("inputs", "FILE", "Inputs over time: comma-separated values with the columns t and u.…")
                 .value_parser(value_parser!(PathBuf)),

@@ -87,7 +87,7 @@ fn prepare(source: &mut Source, matches: &ArgMatches) -> bool {
 }
 
 /// Returns the prefix of names. Rejects a prefix that is not an identifier of the target.
-fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
+pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
     let prefix = given(matches, "prefix").unwrap_or_default().to_string();
     let usable = c::prefix_identifier(&prefix);
     if prefix.is_empty() || usable == prefix {

@@ -5,6 +5,7 @@ mod check;
 mod commands;
 mod convert;
 mod export;
+mod fmu;
 mod grid;
 mod input;
 mod library;
@@ -18,6 +19,7 @@ mod syntax;
 mod table;
 mod view;
 mod written;
+mod zip;
 
 use std::process::ExitCode;
 
@@ -79,9 +81,10 @@ fn main() -> ExitCode {
             Some(("c", given)) => export::c99(given),
             Some(("cuda", given)) => export::cuda(given),
             Some(("wgsl", given)) => export::wgsl(given),
+            Some(("fmu", given)) => fmu::run(given),
             Some(("library", given)) => export::library(given),
             Some(("rust", given)) => export::rust(given),
-            _ => Err(Stop::Failure("expected `c`, `cuda`, `wgsl`, `library` or `rust`".to_string())),
+            _ => Err(Stop::Failure("expected `c`, `cuda`, `wgsl`, `fmu`, `library` or `rust`".to_string())),
         },
         _ => Err(Stop::Failure("expected a command".to_string())),
     };

@@ -235,10 +235,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let without_contacts = matches.get_flag("without-contacts");
         let method = self.method(matches, without_contacts)?;
         let (times, values) = self.inputs(matches)?;
-        let (q, v) = match self.robot.is_constrained() {
-            true => self.begin()?,
-            false => (self.q.clone(), self.v.clone()),
-        };
+        let (q, v) = self.consistent()?;
         let state = [&v[..], &self.x].concat();
         let inputs = || Inputs::Samples { times: &times, values: &values };
         let begun = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
@@ -296,6 +293,19 @@ impl<'a, 'g> Start<'a, 'g> {
             false => "it is singular there, or too stiff",
         };
         Stop::Failure(format!("the motion cannot be continued beyond {t} s: {why}"))
+    }
+
+    /// Returns the initial state; with constraints one that satisfies them.
+    pub fn consistent(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+        match self.robot.is_constrained() {
+            true => self.begin(),
+            false => Ok((self.q.clone(), self.v.clone())),
+        }
+    }
+
+    /// Returns the inputs at the start.
+    pub fn inputs_at_start(&self) -> &[f64] {
+        &self.u
     }
 
     /// Returns an initial state that satisfies the constraints: with the specified entries unchanged if

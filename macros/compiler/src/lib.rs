@@ -132,6 +132,28 @@ pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Optio
         .ok()
 }
 
+/// Compiles a mechanism to the sources and the description of an FMU. Returns `None` with the errors in `cx` if
+/// the mechanism or the options are not supported.
+pub fn export_fmu(
+    source: &Source,
+    prefix: &str,
+    start: &export::fmu::StartValues,
+    cx: &mut Diagnostics,
+) -> Option<export::fmu::FmuFiles> {
+    let graph = Graph::new();
+    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    if let Some((what, help)) = export::fmu::obstacle(&model, &output) {
+        cx.error(model.place.clone(), what).help(help);
+        return None;
+    }
+    let tables = source.mechanism.shell.table_names();
+    let options = export::c::Options { prefix: prefix.to_string(), ..Default::default() };
+    export::fmu::write(&model, &output, &tables, &options, start)
+        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .ok()
+}
+
 /// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all values
 /// in registers.
 fn compile_for_registers<'g>(

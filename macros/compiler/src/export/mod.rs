@@ -3,6 +3,7 @@
 
 pub mod c;
 pub mod cuda;
+pub mod fmu;
 pub mod wgsl;
 
 pub use c::capitals;

@@ -1,8 +1,8 @@
 //! Signatures of the functions, from which kernels for many states are made.
 
 use super::docs::{self, without_links};
-use super::function::{INPUT_DERIVATIVES, Outline, is_passed, public_name};
-use crate::catalogue::{Argument, Id, Shape};
+use super::function::{Outline, about, is_passed, public_name};
+use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
 
 /// Array that a function reads or writes for one state.
@@ -38,9 +38,7 @@ pub struct Batch {
 impl Batch {
     /// Returns the signature of a derived function.
     pub fn from_function(f: &Function, o: &Outline<'_>) -> Batch {
-        let own = [INPUT_DERIVATIVES.to_string()];
-        let docs = if f.id == Id::InputDerivatives { &own } else { f.docs.as_slice() };
-        Batch::new(&public_name(f), &f.arguments, f.shape, docs, o)
+        Batch::new(&public_name(f), &f.arguments, f.shape, &about(f), o)
     }
 
     /// Returns the signature of a function with these arguments and this result.

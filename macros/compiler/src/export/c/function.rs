@@ -132,7 +132,20 @@ pub fn plain(name: &str) -> String {
 }
 
 /// Documentation of the function of [`Id::InputDerivatives`].
-pub const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
+const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
+
+/// Documentation of the function of [`Id::ContactLaws`].
+const CONTACT_LAWS: &str =
+    "Coefficients of friction, restitution and static friction of each contact, in the order of the gaps.";
+
+/// Returns the documentation of a function.
+pub fn about(f: &Function) -> Vec<String> {
+    match f.id {
+        Id::InputDerivatives => vec![INPUT_DERIVATIVES.to_string()],
+        Id::ContactLaws => vec![CONTACT_LAWS.to_string()],
+        _ => f.docs.clone(),
+    }
+}
 
 /// Returns the public name of a function.
 pub fn public_name(f: &Function) -> String {
@@ -176,7 +189,8 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     }
     let given: Vec<&str> = results(f.shape).iter().map(|(name, ..)| *name).collect();
     let unused = o.unused(&body, &f.arguments, &given);
-    let hidden = if f.is_hidden() && f.id != Id::InputDerivatives { "static " } else { "" };
+    let is_public = matches!(f.id, Id::InputDerivatives | Id::ContactLaws);
+    let hidden = if f.is_hidden() && !is_public { "static " } else { "" };
     let signature = o.signature(&public_name(f), &f.arguments, f.shape);
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
@@ -184,9 +198,7 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
 /// Returns a declaration with its documentation.
 pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     let results = results(f.shape);
-    let own = [INPUT_DERIVATIVES.to_string()];
-    let about = if f.id == Id::InputDerivatives { &own } else { f.docs.as_slice() };
-    let docs = docs::function(about, &f.arguments, &results, o);
+    let docs = docs::function(&about(f), &f.arguments, &results, o);
     format!("{docs}{};\n", o.signature(&public_name(f), &f.arguments, f.shape))
 }
 

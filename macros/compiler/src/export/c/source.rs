@@ -119,14 +119,15 @@ pub fn write(
 }
 
 /// Names of a mechanism in C.
-struct Named {
-    prefix: String,
-    parameters: Vec<String>,
-    tables: Vec<String>,
+pub struct Named {
+    pub prefix: String,
+    pub parameters: Vec<String>,
+    pub tables: Vec<String>,
 }
 
 impl Named {
-    fn from_model(model: &Model<'_>, tables: &[String], prefix: &str) -> Named {
+    /// Converts the names of a mechanism.
+    pub fn from_model(model: &Model<'_>, tables: &[String], prefix: &str) -> Named {
         let prefix = match prefix {
             "" => names::prefix_identifier(&names::prefix(&model.name)),
             given => names::prefix_identifier(given),
@@ -137,7 +138,8 @@ impl Named {
         Named { prefix, parameters, tables }
     }
 
-    fn outline(&self, model: &Model<'_>, output: &Output) -> Outline<'_> {
+    /// Returns the sizes and names that all functions share.
+    pub fn outline(&self, model: &Model<'_>, output: &Output) -> Outline<'_> {
         let length =
             |id: Id| output.functions.iter().find(|f| f.id == id).map_or(0, |f| f.program.outputs.len());
         Outline {
@@ -156,7 +158,7 @@ impl Named {
 }
 
 /// Returns the definitions of all functions.
-fn bodies(
+pub fn bodies(
     model: &Model<'_>,
     output: &Output,
     chosen: &Selection<'_>,
@@ -176,69 +178,6 @@ fn bodies(
     steps.define(&mut bodies, o, support);
     bodies.push_str(&frames::define(output, o, support));
     if support.missing { Err(Unfit::Missing) } else { Ok(bodies) }
-}
-
-/// Code in C that kernels for other processors are made from.
-pub struct CodeParts {
-    /// Prefix of all names.
-    pub prefix: String,
-    /// Description of the mechanism: lines of a comment.
-    pub about: String,
-    /// Sizes, types of parameters and tables, indices of frames.
-    pub types: String,
-    /// Helper functions, then all functions.
-    pub definitions: String,
-    /// Functions that a program can call.
-    pub functions: Vec<Batch>,
-    /// Members of the parameter struct.
-    pub parameters: Vec<String>,
-    /// Members of the parameter struct that are tables.
-    pub tables: Vec<String>,
-    /// Functions that exist in Rust only, with reasons.
-    pub left_out: Vec<String>,
-}
-
-/// Returns the code of a mechanism in double precision, without definitions of fused products, sines and cosines.
-///
-/// # Errors
-/// The mechanism is not supported, for the reason in [`Unfit`].
-pub fn parts(
-    model: &Model<'_>,
-    output: &Output,
-    tables: &[String],
-    options: &Options,
-) -> Result<CodeParts, Unfit> {
-    check(output)?;
-    let named = Named::from_model(model, tables, &options.prefix);
-    let o = &named.outline(model, output);
-    let chosen = Selection::new(output);
-    let mut support = Support::of_kernels();
-    let steps = steps::Steps::new(model, output);
-    let bodies = bodies(model, output, &chosen, &steps, o, &mut support)?;
-    let mut functions: Vec<Batch> = chosen.public.iter().map(|f| Batch::from_function(f, o)).collect();
-    functions.extend(chosen.reactions.iter().map(|f| {
-        let name = names::letters(f.name.strip_prefix(REACTION).unwrap_or_default());
-        Batch::new(&name, &reaction_arguments(model), f.shape, &[reaction_docs(&name)], o)
-    }));
-    functions.extend(chosen.limits.map(|_| Batch::plain("limits", &[], &LIMITS.map(|name| (name, o.nv)))));
-    functions.extend(manifold::batches(o));
-    functions.extend(steps.batches(o));
-    functions.extend(frames::batches(output, o));
-    let mut left_out = chosen.left_out.clone();
-    left_out.extend(options.left_out.iter().cloned());
-    let mut types = sizes(model, output, o);
-    types.push_str(&parameter_types(model, o));
-    types.push_str(&frames::indices(o, &frame_names(model)));
-    Ok(CodeParts {
-        prefix: o.prefix.clone(),
-        about: description(model),
-        types,
-        definitions: format!("{}\n{}", support.text(model.nv(), &o.prefix), bodies.trim_end()),
-        functions,
-        parameters: named.parameters.clone(),
-        tables: named.tables.clone(),
-        left_out,
-    })
 }
 
 /// Returns the text of the source file with CasADi's interface.
@@ -269,7 +208,7 @@ fn write_casadi(
 }
 
 /// Rejects programs with vector lanes.
-fn check(output: &Output) -> Result<(), Unfit> {
+pub fn check(output: &Output) -> Result<(), Unfit> {
     let has = |program: &Program, wanted: fn(&Op) -> bool| program.instructions.iter().any(wanted);
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
     let steps = steps.chain(output.frames.iter().flat_map(|f| [&f.placement, &f.twist, &f.acceleration]));
@@ -284,17 +223,22 @@ fn check(output: &Output) -> Result<(), Unfit> {
 }
 
 /// Functions of the mechanism by their use in C.
-struct Selection<'a> {
-    public: Vec<&'a Function>,
+pub struct Selection<'a> {
+    /// Functions that a program can call.
+    pub public: Vec<&'a Function>,
     /// Functions that others call, in the order of their definitions.
     hidden: Vec<&'a Function>,
-    reactions: Vec<&'a Function>,
-    limits: Option<&'a Function>,
-    left_out: Vec<String>,
+    /// Outputs that contain reactions.
+    pub reactions: Vec<&'a Function>,
+    /// Function for the limits of joints.
+    pub limits: Option<&'a Function>,
+    /// Functions that C does not have, with reasons.
+    pub left_out: Vec<String>,
 }
 
 impl<'a> Selection<'a> {
-    fn new(output: &'a Output) -> Selection<'a> {
+    /// Selects the functions of a mechanism.
+    pub fn new(output: &'a Output) -> Selection<'a> {
         let mut chosen = Selection {
             public: Vec::new(),
             hidden: Vec::new(),
@@ -327,8 +271,8 @@ impl<'a> Selection<'a> {
                 Id::InverseDynamicsDerivativesInto
                 | Id::ForwardDynamicsDerivativesInto
                 | Id::MassMatrixInto => {}
-                Id::ContactLaws
-                | Id::ContactDerivatives
+                Id::ContactLaws => chosen.public.push(f),
+                Id::ContactDerivatives
                 | Id::Figures
                 | Id::MotionDerivatives
                 | Id::ConstraintCurvature
@@ -367,7 +311,7 @@ impl<'a> Selection<'a> {
 }
 
 /// Returns the arguments of the outputs that reactions provide.
-fn reaction_arguments(model: &Model<'_>) -> Vec<Argument> {
+pub fn reaction_arguments(model: &Model<'_>) -> Vec<Argument> {
     let time = model.time.then_some(Argument::T);
     let inputs = (model.nu() > 0).then_some(Argument::U);
     time.into_iter().chain([Argument::Q, Argument::V]).chain(inputs).collect()
@@ -501,7 +445,8 @@ fn body_without_calls(f: &Function, o: &Outline<'_>, support: &mut Support) -> O
     Some(body)
 }
 
-const LIMITS: [&str; 4] = ["lower", "upper", "speed", "effort"];
+/// Results of the function for limits.
+pub const LIMITS: [&str; 4] = ["lower", "upper", "speed", "effort"];
 
 /// Writes the function for the bounds of coordinates, velocities and forces.
 fn write_limits(f: &Function, model: &Model<'_>, o: &Outline<'_>, support: &mut Support) -> String {
@@ -538,7 +483,7 @@ fn entries(text: &mut String, title: &str, names: &[String], units: &[String]) {
 }
 
 /// Returns the lines of a comment that list the entries of configuration, velocity and inputs.
-fn description(model: &Model<'_>) -> String {
+pub fn description(model: &Model<'_>) -> String {
     let mut text = String::new();
     entries(&mut text, "Configuration q", &model.configuration, &model.units.configuration);
     let velocities: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
@@ -554,7 +499,7 @@ fn description(model: &Model<'_>) -> String {
 }
 
 /// Returns the macros for the sizes of the mechanism.
-fn sizes(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
+pub fn sizes(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
     let upper = o.prefix.to_ascii_uppercase();
     let mut text = "/* Numbers of a configuration, of a velocity, and of the inputs. */\n".to_string();
     for (name, n) in [("NQ", model.nq()), ("NV", model.nv()), ("NU", model.nu())] {
@@ -572,7 +517,7 @@ fn sizes(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
 }
 
 /// Returns the types of tables and parameters.
-fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
+pub fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
     let mut text = tables::kind(o);
     if o.has_own() {
         text.push_str("/* The parameters, which every function takes first. */\n");
@@ -588,13 +533,13 @@ fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
 }
 
 /// Returns the names of the frames, as parts of constants and as in the mechanism.
-fn frame_names(model: &Model<'_>) -> Vec<(String, String)> {
+pub fn frame_names(model: &Model<'_>) -> Vec<(String, String)> {
     let names: Vec<String> = model.frames.iter().map(|frame| frame.name.clone()).collect();
     names::capitals(&names).into_iter().zip(names).collect()
 }
 
 /// Returns the documentation of the output that a reaction provides.
-fn reaction_docs(name: &str) -> String {
+pub fn reaction_docs(name: &str) -> String {
     format!(
         "The output `{name}` in the motion that state and inputs determine. A reaction is the force or torque that the parent of a joint exerts on its child, at the origin of the joint's frame."
     )

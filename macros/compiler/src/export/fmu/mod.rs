@@ -1,0 +1,151 @@
+//! Export to FMUs of the Functional Mock-up Interface 3.0, for model exchange and co-simulation.
+//!
+//! An FMU contains the functions in C (`export::c`), handwritten C99 sources that implement the interface, and a
+//! header that connects the two.
+
+mod description;
+mod model;
+mod units;
+mod variables;
+
+use super::c::{self, Signatures, Unfit};
+use crate::derive::Output;
+use crate::mechanism::Model;
+use variables::Variables;
+
+/// Handwritten sources, which need no other file than `model.h` and the functions in C.
+const SOURCES: [(&str, &str); 7] = [
+    ("fmi3.h", include_str!("templates/fmi3.h")),
+    ("dynamics.h", include_str!("templates/dynamics.h")),
+    ("integration.h", include_str!("templates/integration.h")),
+    ("derivatives.h", include_str!("templates/derivatives.h")),
+    ("modes.h", include_str!("templates/modes.h")),
+    ("unused.h", include_str!("templates/unused.h")),
+    (MAIN, include_str!("templates/fmi3_functions.c")),
+];
+
+/// Source file that includes all headers.
+const MAIN: &str = "fmi3_functions.c";
+
+/// Values of a table on a grid.
+#[derive(Clone, Debug, Default)]
+pub struct TableValues {
+    /// Grid points along each axis.
+    pub axes: Vec<Vec<f64>>,
+    /// Values in the order of the grid points, with the last axis varying fastest.
+    pub values: Vec<f64>,
+    /// Whether the table is interpolated by splines.
+    pub smooth: bool,
+    /// Whether the table is extrapolated beyond its grid.
+    pub extrapolated: bool,
+}
+
+/// Start values of the variables.
+#[derive(Clone, Debug, Default)]
+pub struct StartValues {
+    /// Parameters, among them the states of first order.
+    pub parameters: Vec<f64>,
+    /// Configuration.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub v: Vec<f64>,
+    /// Inputs.
+    pub u: Vec<f64>,
+    /// Tables, which are constant.
+    pub tables: Vec<TableValues>,
+    /// States of first order: their indices among the parameters.
+    pub states: Vec<usize>,
+}
+
+/// Texts of the files of an FMU, and features that it does not have.
+#[derive(Clone, Debug)]
+pub struct FmuFiles {
+    /// Identifier of the model.
+    pub identifier: String,
+    /// Paths in the FMU, with the texts.
+    pub files: Vec<(String, String)>,
+    /// Sources to be compiled.
+    pub sources: [String; 2],
+    /// Functions and features that the FMU does not have, with reasons.
+    pub left_out: Vec<String>,
+}
+
+/// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
+pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
+    use crate::catalogue::Id;
+    let has = |id: Id| output.functions.iter().any(|f| f.id == id);
+    if model.kinematic || model.nv() == 0 || !has(Id::MassMatrix) {
+        let what = "an FMU is for mechanisms that move, and this one has no equations of motion";
+        return Some((what.to_string(), "give its bodies masses and joints"));
+    }
+    if has(Id::SlippingResponse) {
+        return Some((
+            "FMUs have no constraints with friction".to_string(),
+            "leave the friction out, or simulate the mechanism by `linkwork simulate` or the library `linkwork-c`",
+        ));
+    }
+    let contact =
+        model.contacts.iter().find(|c| c.rates.len() > 1 || c.pressed_by.is_some() || c.of_impulses)?;
+    let what = if contact.of_impulses { "restitution by Poisson's law" } else { "friction" };
+    Some((
+        format!(
+            "the contact `{}` has {what}: FMUs have contacts without friction, with Newton's restitution",
+            contact.name
+        ),
+        "use a compliant contact (`stiffness = …`), whose friction is a force; or simulate the mechanism by `linkwork simulate` or the library `linkwork-c`",
+    ))
+}
+
+/// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables.
+///
+/// # Errors
+/// The mechanism is not supported, for the reason in [`Unfit`].
+pub fn write(
+    model: &Model<'_>,
+    output: &Output,
+    tables: &[String],
+    options: &c::Options,
+    start: &StartValues,
+) -> Result<FmuFiles, Unfit> {
+    let code = c::write(model, output, tables, options)?;
+    let signatures = Signatures::new(model, output, tables, &options.prefix);
+    let variables = Variables::new(model, &signatures, start);
+    let identifier = code.prefix.clone();
+    let model_text = model::text(model, output, &signatures, &variables, start);
+    let token = token(&[&code.source, &code.header, &model_text]);
+    let description = description::text(model, &identifier, &token, &variables);
+    let sources = [format!("sources/{identifier}.c"), format!("sources/{MAIN}")];
+    let mut files = vec![
+        ("modelDescription.xml".to_string(), description),
+        ("sources/buildDescription.xml".to_string(), description::build(&identifier, MAIN)),
+        (sources[0].clone(), code.source),
+        (format!("sources/{identifier}.h"), code.header),
+        ("sources/model.h".to_string(), model_text.replace("@TOKEN@", &token)),
+    ];
+    files.extend(SOURCES.map(|(name, text)| (format!("sources/{name}"), text.to_string())));
+    let mut left_out = Vec::new();
+    if !variables.is_differentiable {
+        left_out.push(
+            "directional and adjoint derivatives: they are for trees without contacts and declared speeds"
+                .to_string(),
+        );
+    }
+    Ok(FmuFiles { identifier, files, sources, left_out })
+}
+
+/// Returns a token that identifies the model: a hash of its texts, in the form of a UUID.
+fn token(texts: &[&str]) -> String {
+    let hash = |seed: u64| {
+        let bytes = texts.iter().flat_map(|text| text.bytes());
+        bytes.fold(seed, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    };
+    let (a, b) = (hash(0xcbf2_9ce4_8422_2325), hash(0x6c62_272e_07bb_0142));
+    format!(
+        "{{{:08x}-{:04x}-{:04x}-{:04x}-{:012x}}}",
+        a >> 32,
+        a >> 16 & 0xffff,
+        a & 0xffff,
+        b >> 48,
+        b & 0xffff_ffff_ffff
+    )
+}

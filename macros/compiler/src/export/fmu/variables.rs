@@ -1,0 +1,177 @@
+//! Variables of an FMU, in the order of their value references.
+
+use super::super::c::Signatures;
+use super::{StartValues, units};
+use crate::mechanism::Model;
+
+/// Role of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    Time,
+    State,
+    /// Rate of the state with this value reference.
+    Rate(usize),
+    Input,
+    Parameter,
+    Output,
+    Indicator,
+}
+
+/// A scalar variable.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    pub name: String,
+    /// Unit; `any` if it is unknown.
+    pub unit: String,
+    pub role: Role,
+    /// Start value of states, inputs and parameters.
+    pub start: f64,
+}
+
+/// An output with its functions.
+#[derive(Clone, Debug)]
+pub struct OutputFunction {
+    /// Name of the function in C.
+    pub name: String,
+    /// Number of values.
+    pub size: usize,
+    /// Whether there are functions for its derivatives.
+    pub is_differentiable: bool,
+}
+
+/// All variables of a mechanism.
+pub struct Variables {
+    /// Variables by value reference.
+    pub all: Vec<Variable>,
+    /// Functions for the rates of states of first order.
+    pub rates: Vec<OutputFunction>,
+    /// Outputs in the order of the variables: those with derivatives first.
+    pub outputs: Vec<OutputFunction>,
+    /// Parameters that are no states: their indices.
+    pub parameters: Vec<usize>,
+    /// Whether derivatives of rates and outputs are provided.
+    pub is_differentiable: bool,
+    /// Whether states may change at events and after initialization.
+    pub is_projected: bool,
+    /// Whether constraints determine some start values.
+    pub is_constrained: bool,
+}
+
+/// Energies, which follow the outputs.
+pub const ENERGIES: [&str; 2] = ["kinetic_energy", "potential_energy"];
+
+impl Variables {
+    /// Lists the variables of a mechanism.
+    pub fn new(model: &Model<'_>, signatures: &Signatures, start: &StartValues) -> Variables {
+        let find = |name: &str| signatures.functions.iter().find(|f| f.name == name);
+        let is_constrained = find("constraint_jacobian").is_some();
+        let function = |name: &String| {
+            let size = find(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
+            let has_parameters =
+                signatures.parameters.is_empty() || find(&format!("{name}_by_parameters")).is_some();
+            let is_differentiable = find(&format!("{name}_derivatives")).is_some() && has_parameters;
+            OutputFunction { name: name.clone(), size, is_differentiable }
+        };
+        let rate_of = |k: &usize| format!("{}_rate", signatures.parameters[*k]);
+        let rates: Vec<OutputFunction> = start.states.iter().map(|k| function(&rate_of(k))).collect();
+        let mut outputs: Vec<OutputFunction> = signatures.outputs.iter().map(function).collect();
+        outputs.retain(|output| rates.iter().all(|rate| rate.name != output.name));
+        outputs.sort_by_key(|output| !output.is_differentiable);
+        let needed = [
+            "forward_dynamics_derivatives",
+            "generalized_forces_derivatives",
+            "forward_dynamics_by_parameters",
+        ];
+        let is_needed = [true, model.nu() > 0, !signatures.parameters.is_empty()];
+        let has_derivatives =
+            needed.iter().zip(is_needed).all(|(name, needed)| !needed || find(name).is_some());
+        let is_differentiable = has_derivatives
+            && rates.iter().all(|rate| rate.is_differentiable)
+            && model.contacts.is_empty()
+            && model.speeds.is_none();
+        let has_quaternions = model.charts.iter().any(|chart| chart.quaternion().is_some());
+        let parameters: Vec<usize> =
+            (0..model.parameters.len()).filter(|k| !start.states.contains(k)).collect();
+        let mut variables = Variables {
+            all: Vec::new(),
+            rates,
+            outputs,
+            parameters,
+            is_differentiable,
+            is_projected: has_quaternions || is_constrained || !model.contacts.is_empty(),
+            is_constrained,
+        };
+        variables.list(model, start);
+        variables
+    }
+
+    /// Lists all variables.
+    fn list(&mut self, model: &Model<'_>, start: &StartValues) {
+        let u = &model.units;
+        self.add("time".to_string(), "s", Role::Time, 0.0);
+        for (k, name) in model.configuration.iter().enumerate() {
+            self.add(format!("q.{name}"), unit(&u.configuration, k), Role::State, start.q[k]);
+        }
+        for (k, (name, _)) in model.velocities.iter().enumerate() {
+            self.add(format!("v.{name}"), unit(&u.velocities, k), Role::State, start.v[k]);
+        }
+        for &k in &start.states {
+            self.add(
+                format!("x.{}", model.parameters[k]),
+                unit(&u.parameters, k),
+                Role::State,
+                start.parameters[k],
+            );
+        }
+        for state in 1..self.all.len() {
+            let Variable { name, unit, .. } = self.all[state].clone();
+            self.add(format!("der({name})"), &units::rate(&unit), Role::Rate(state), 0.0);
+        }
+        for (k, (name, _)) in model.inputs.iter().enumerate() {
+            self.add(format!("u.{name}"), unit(&u.inputs, k), Role::Input, start.u[k]);
+        }
+        for k in self.parameters.clone() {
+            self.add(
+                model.parameters[k].clone(),
+                unit(&u.parameters, k),
+                Role::Parameter,
+                start.parameters[k],
+            );
+        }
+        for output in self.outputs.clone() {
+            let at =
+                model.outputs.iter().position(|known| super::super::c::letters(&known.name) == output.name);
+            let unit = at.map_or("any", |at| unit(&u.outputs, at));
+            let name = at.map_or(&output.name, |at| &model.outputs[at].name);
+            for k in 0..output.size {
+                let name = if output.size == 1 { name.clone() } else { format!("{name}[{}]", k + 1) };
+                self.add(name, unit, Role::Output, 0.0);
+            }
+        }
+        ENERGIES.iter().for_each(|name| self.add((*name).to_string(), "J", Role::Output, 0.0));
+        for contact in &model.contacts {
+            self.add(format!("event.{}", contact.name), "any", Role::Indicator, 0.0);
+        }
+    }
+
+    /// Adds a variable. A name that is taken gets a number.
+    fn add(&mut self, name: String, unit: &str, role: Role, start: f64) {
+        let mut free = name.clone();
+        let mut number = 2_usize;
+        while self.all.iter().any(|known| known.name == free) {
+            free = format!("{name}_{number}");
+            number += 1;
+        }
+        self.all.push(Variable { name: free, unit: unit.to_string(), role, start });
+    }
+
+    /// Returns the number of outputs whose derivatives are differences.
+    pub fn numeric(&self) -> usize {
+        let outputs = self.outputs.iter().filter(|output| !output.is_differentiable);
+        ENERGIES.len() + outputs.map(|output| output.size).sum::<usize>()
+    }
+}
+
+fn unit(units: &[String], k: usize) -> &str {
+    units.get(k).map_or("any", String::as_str)
+}
