@@ -13,6 +13,8 @@
 //! | [`simulating`] | integrators, inputs, events |
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
 //! | [`batches`] | evaluation of many states at once |
+//! | [`gpus`] | functions for millions of states on GPUs |
+//! | [`fmi`] | FMUs for simulation tools |
 //! | [`without_std`] | microcontrollers |
 //! | [`python`] | classes of Python from robot files and declarations |
 //! | [`run_time`] | robots that are loaded at run time, without a compiler |
@@ -54,6 +56,9 @@ pub mod batches {}
 
 #[doc = include_str!("../guide/gpus.md")]
 pub mod gpus {}
+
+#[doc = include_str!("../guide/fmi.md")]
+pub mod fmi {}
 
 #[doc = include_str!("../guide/without_std.md")]
 pub mod without_std {}

@@ -42,7 +42,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         match compile(&files, given(matches, "compiler"))? {
             Some(binary) => archive.add(&binary_path(&files.identifier), &binary)?,
             None => crate::note!(
-                "linkwork: there is no C compiler `cc`: the FMU has sources only; `--compiler NAME` names another, and importers can compile the sources (`fmpy compile`)"
+                "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only, for importers to compile"
             ),
         }
     }
@@ -108,7 +108,8 @@ fn binary_path(identifier: &str) -> String {
     format!("binaries/{}-{system}/{identifier}{}", std::env::consts::ARCH, std::env::consts::DLL_SUFFIX)
 }
 
-/// Compiles the sources to a shared library. Returns `None` if no compiler is named and there is none.
+/// Compiles the sources to a shared library. Returns `None` if no compiler is named, and the
+/// usual one is not installed.
 fn compile(files: &FmuFiles, compiler: Option<&str>) -> Result<Option<Vec<u8>>, Stop> {
     let folder = std::env::temp_dir().join(format!("linkwork-fmu-{}", std::process::id()));
     let done = compile_in(&folder, files, compiler);

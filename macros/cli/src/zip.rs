@@ -29,7 +29,7 @@ impl Archive {
         let size = u32::try_from(bytes.len()).map_err(too_large)?;
         let offset = u32::try_from(self.contents.len()).map_err(too_large)?;
         let length = u16::try_from(path.len()).map_err(too_large)?;
-        // Version, flags, method, time, date, checksum and sizes stand in both headers.
+        // Both headers have version, flags, method, time, date, checksum and sizes.
         let mut shared = Vec::new();
         [VERSION, UTF_8, 0, 0, DATE].iter().for_each(|x| shared.extend(x.to_le_bytes()));
         [checksum(bytes), size, size].iter().for_each(|x| shared.extend(x.to_le_bytes()));

@@ -32,7 +32,8 @@ pub struct CodeParts {
     pub left_out: Vec<String>,
 }
 
-/// Returns the code of a mechanism in double precision, without definitions of fused products, sines and cosines.
+/// Returns the code of a mechanism in double precision, without definitions of fused products, sines and
+/// cosines.
 ///
 /// # Errors
 /// The mechanism is not supported, for the reason in [`Unfit`].

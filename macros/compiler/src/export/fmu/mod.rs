@@ -1,7 +1,7 @@
 //! Export to FMUs of the Functional Mock-up Interface 3.0, for model exchange and co-simulation.
 //!
-//! An FMU contains the functions in C (`export::c`), handwritten C99 sources that implement the interface, and a
-//! header that connects the two.
+//! An FMU contains the functions in C (`export::c`), handwritten C99 sources that implement the interface, and
+//! a header that connects the two.
 
 mod description;
 mod model;
@@ -13,19 +13,20 @@ use crate::derive::Output;
 use crate::mechanism::Model;
 use variables::Variables;
 
-/// Handwritten sources, which need no other file than `model.h` and the functions in C.
+/// Handwritten sources, which need no other file than `lw_model.h` and the functions in C. No identifier of a
+/// model begins with `lw_`.
 const SOURCES: [(&str, &str); 7] = [
-    ("fmi3.h", include_str!("templates/fmi3.h")),
-    ("dynamics.h", include_str!("templates/dynamics.h")),
-    ("integration.h", include_str!("templates/integration.h")),
-    ("derivatives.h", include_str!("templates/derivatives.h")),
-    ("modes.h", include_str!("templates/modes.h")),
-    ("unused.h", include_str!("templates/unused.h")),
-    (MAIN, include_str!("templates/fmi3_functions.c")),
+    ("lw_fmi3.h", include_str!("templates/lw_fmi3.h")),
+    ("lw_dynamics.h", include_str!("templates/lw_dynamics.h")),
+    ("lw_integration.h", include_str!("templates/lw_integration.h")),
+    ("lw_derivatives.h", include_str!("templates/lw_derivatives.h")),
+    ("lw_modes.h", include_str!("templates/lw_modes.h")),
+    ("lw_unused.h", include_str!("templates/lw_unused.h")),
+    (MAIN, include_str!("templates/lw_fmi3.c")),
 ];
 
 /// Source file that includes all headers.
-const MAIN: &str = "fmi3_functions.c";
+const MAIN: &str = "lw_fmi3.c";
 
 /// Values of a table on a grid.
 #[derive(Clone, Debug, Default)]
@@ -70,6 +71,9 @@ pub struct FmuFiles {
     pub left_out: Vec<String>,
 }
 
+/// Advice for contacts and constraints that an FMU cannot have.
+const SIMULATE: &str = "a compliant contact (`stiffness = …`) may have friction; `linkwork simulate` and `linkwork-c` simulate all";
+
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
 pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
     use crate::catalogue::Id;
@@ -79,10 +83,7 @@ pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static 
         return Some((what.to_string(), "give its bodies masses and joints"));
     }
     if has(Id::SlippingResponse) {
-        return Some((
-            "FMUs have no constraints with friction".to_string(),
-            "leave the friction out, or simulate the mechanism by `linkwork simulate` or the library `linkwork-c`",
-        ));
+        return Some(("FMUs have no constraints with friction".to_string(), SIMULATE));
     }
     let contact =
         model.contacts.iter().find(|c| c.rates.len() > 1 || c.pressed_by.is_some() || c.of_impulses)?;
@@ -92,7 +93,7 @@ pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static 
             "the contact `{}` has {what}: FMUs have contacts without friction, with Newton's restitution",
             contact.name
         ),
-        "use a compliant contact (`stiffness = …`), whose friction is a force; or simulate the mechanism by `linkwork simulate` or the library `linkwork-c`",
+        SIMULATE,
     ))
 }
 
@@ -120,7 +121,7 @@ pub fn write(
         ("sources/buildDescription.xml".to_string(), description::build(&identifier, MAIN)),
         (sources[0].clone(), code.source),
         (format!("sources/{identifier}.h"), code.header),
-        ("sources/model.h".to_string(), model_text.replace("@TOKEN@", &token)),
+        ("sources/lw_model.h".to_string(), model_text.replace("@TOKEN@", &token)),
     ];
     files.extend(SOURCES.map(|(name, text)| (format!("sources/{name}"), text.to_string())));
     let mut left_out = Vec::new();

@@ -4,9 +4,9 @@ use super::super::c::Signatures;
 use super::{StartValues, units};
 use crate::mechanism::Model;
 
-/// Role of a variable.
+/// VariableRole of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum VariableRole {
     Time,
     State,
     /// Rate of the state with this value reference.
@@ -19,11 +19,11 @@ pub enum Role {
 
 /// A scalar variable.
 #[derive(Clone, Debug)]
-pub struct Variable {
+pub struct ScalarVariable {
     pub name: String,
     /// Unit; `any` if it is unknown.
     pub unit: String,
-    pub role: Role,
+    pub role: VariableRole,
     /// Start value of states, inputs and parameters.
     pub start: f64,
 }
@@ -42,7 +42,7 @@ pub struct OutputFunction {
 /// All variables of a mechanism.
 pub struct Variables {
     /// Variables by value reference.
-    pub all: Vec<Variable>,
+    pub all: Vec<ScalarVariable>,
     /// Functions for the rates of states of first order.
     pub rates: Vec<OutputFunction>,
     /// Outputs in the order of the variables: those with derivatives first.
@@ -108,33 +108,33 @@ impl Variables {
     /// Lists all variables.
     fn list(&mut self, model: &Model<'_>, start: &StartValues) {
         let u = &model.units;
-        self.add("time".to_string(), "s", Role::Time, 0.0);
+        self.add("time".to_string(), "s", VariableRole::Time, 0.0);
         for (k, name) in model.configuration.iter().enumerate() {
-            self.add(format!("q.{name}"), unit(&u.configuration, k), Role::State, start.q[k]);
+            self.add(format!("q.{name}"), unit(&u.configuration, k), VariableRole::State, start.q[k]);
         }
         for (k, (name, _)) in model.velocities.iter().enumerate() {
-            self.add(format!("v.{name}"), unit(&u.velocities, k), Role::State, start.v[k]);
+            self.add(format!("v.{name}"), unit(&u.velocities, k), VariableRole::State, start.v[k]);
         }
         for &k in &start.states {
             self.add(
                 format!("x.{}", model.parameters[k]),
                 unit(&u.parameters, k),
-                Role::State,
+                VariableRole::State,
                 start.parameters[k],
             );
         }
         for state in 1..self.all.len() {
-            let Variable { name, unit, .. } = self.all[state].clone();
-            self.add(format!("der({name})"), &units::rate(&unit), Role::Rate(state), 0.0);
+            let ScalarVariable { name, unit, .. } = self.all[state].clone();
+            self.add(format!("der({name})"), &units::rate(&unit), VariableRole::Rate(state), 0.0);
         }
         for (k, (name, _)) in model.inputs.iter().enumerate() {
-            self.add(format!("u.{name}"), unit(&u.inputs, k), Role::Input, start.u[k]);
+            self.add(format!("u.{name}"), unit(&u.inputs, k), VariableRole::Input, start.u[k]);
         }
         for k in self.parameters.clone() {
             self.add(
                 model.parameters[k].clone(),
                 unit(&u.parameters, k),
-                Role::Parameter,
+                VariableRole::Parameter,
                 start.parameters[k],
             );
         }
@@ -145,24 +145,24 @@ impl Variables {
             let name = at.map_or(&output.name, |at| &model.outputs[at].name);
             for k in 0..output.size {
                 let name = if output.size == 1 { name.clone() } else { format!("{name}[{}]", k + 1) };
-                self.add(name, unit, Role::Output, 0.0);
+                self.add(name, unit, VariableRole::Output, 0.0);
             }
         }
-        ENERGIES.iter().for_each(|name| self.add((*name).to_string(), "J", Role::Output, 0.0));
+        ENERGIES.iter().for_each(|name| self.add((*name).to_string(), "J", VariableRole::Output, 0.0));
         for contact in &model.contacts {
-            self.add(format!("event.{}", contact.name), "any", Role::Indicator, 0.0);
+            self.add(format!("event.{}", contact.name), "any", VariableRole::Indicator, 0.0);
         }
     }
 
     /// Adds a variable. A name that is taken gets a number.
-    fn add(&mut self, name: String, unit: &str, role: Role, start: f64) {
+    fn add(&mut self, name: String, unit: &str, role: VariableRole, start: f64) {
         let mut free = name.clone();
         let mut number = 2_usize;
         while self.all.iter().any(|known| known.name == free) {
             free = format!("{name}_{number}");
             number += 1;
         }
-        self.all.push(Variable { name: free, unit: unit.to_string(), role, start });
+        self.all.push(ScalarVariable { name: free, unit: unit.to_string(), role, start });
     }
 
     /// Returns the number of outputs whose derivatives are differences.

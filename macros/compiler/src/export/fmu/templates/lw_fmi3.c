@@ -1,16 +1,16 @@
-/* An FMU of the Functional Mock-up Interface 3.0 for model exchange and co-simulation: the mechanism of model.h.
+/* An FMU of the Functional Mock-up Interface 3.0 for model exchange and co-simulation: the mechanism of lw_model.h.
  *
  * Value references: 0 is time; then follow the states, their rates, inputs, parameters, outputs and event
  * indicators. */
 
-#include "fmi3.h"
+#include "lw_fmi3.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Copies the rows of an output's derivatives to a matrix of `total` rows; model.h calls it. */
+/* Copies the rows of an output's derivatives to a matrix of `total` rows; lw_model.h calls it. */
 static inline void lw_put_rows(int total, int first, int rows, int columns, const double *from, double *to) {
     for (int j = 0; j < columns; ++j) {
         for (int i = 0; i < rows; ++i) {
@@ -19,13 +19,13 @@ static inline void lw_put_rows(int total, int first, int rows, int columns, cons
     }
 }
 
-#include "model.h"
+#include "lw_model.h"
 
-#include "dynamics.h"
+#include "lw_dynamics.h"
 
-#include "integration.h"
+#include "lw_integration.h"
 
-#include "derivatives.h"
+#include "lw_derivatives.h"
 
 enum {
     LW_FIRST_STATE = 1,
@@ -50,7 +50,6 @@ enum {
 
 typedef struct {
     bool is_co_simulation;
-    bool logs;
     bool is_current; /* whether `values` are those of the state */
     bool has_stop;
     double stop;
@@ -64,7 +63,7 @@ typedef struct {
 /* Reports an error with the logger of the importer. */
 static fmi3Status lw_fail(const lw_instance *s, fmi3Status status, const char *function, const char *message) {
     char text[512];
-    if (s->log && s->logs) {
+    if (s->log) {
         snprintf(text, sizeof text, "%s: %s", function, message);
         s->log(s->environment, status, "logStatusError", text);
     }
@@ -141,8 +140,8 @@ static void lw_reset(lw_instance *s) {
     s->tolerance = 1e-8;
 }
 
-static fmi3Instance lw_instantiate(const char *token, bool is_co_simulation, bool logs,
-    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
+static fmi3Instance lw_instantiate(const char *token, bool is_co_simulation, fmi3InstanceEnvironment environment,
+    fmi3LogMessageCallback log) {
     lw_instance *s = (lw_instance *)calloc(1, sizeof *s);
     if (!s) {
         return NULL;
@@ -150,13 +149,11 @@ static fmi3Instance lw_instantiate(const char *token, bool is_co_simulation, boo
     s->is_co_simulation = is_co_simulation;
     s->environment = environment;
     s->log = log;
-    s->logs = true;
     if (!token || strcmp(token, LW_TOKEN) != 0) {
         lw_fail(s, fmi3Error, "fmi3Instantiate", "the instantiation token is not that of modelDescription.xml");
         free(s);
         return NULL;
     }
-    s->logs = logs;
     lw_reset(s);
     return s;
 }
@@ -165,34 +162,32 @@ LW_EXPORT const char *LW_FMI(fmi3GetVersion)(void) {
     return "3.0";
 }
 
+/* Checks the categories. There are no messages for debugging, and errors are always reported. */
 LW_EXPORT fmi3Status LW_FMI(fmi3SetDebugLogging)(fmi3Instance instance, fmi3Boolean on, size_t count,
     const fmi3String categories[]) {
     LW_BEGIN(LW_ANY, "fmi3SetDebugLogging")
-    bool is_named = count == 0;
+    (void)on;
     LW_REQUIRE(count == 0 || categories, "fmi3SetDebugLogging", "`categories` is NULL")
     for (size_t k = 0; k < count; ++k) {
         const bool is_known = categories[k] && strcmp(categories[k], "logStatusError") == 0;
         LW_REQUIRE(is_known, "fmi3SetDebugLogging", "the only log category is logStatusError")
-        is_named = true;
     }
-    s->logs = is_named ? on : s->logs;
     return fmi3OK;
 }
 
 LW_EXPORT fmi3Instance LW_FMI(fmi3InstantiateModelExchange)(fmi3String name, fmi3String token, fmi3String resources,
     fmi3Boolean visible, fmi3Boolean logs, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
-    (void)name, (void)resources, (void)visible;
-    return lw_instantiate(token, false, logs, environment, log);
+    (void)name, (void)resources, (void)visible, (void)logs;
+    return lw_instantiate(token, false, environment, log);
 }
 
 LW_EXPORT fmi3Instance LW_FMI(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token, fmi3String resources,
     fmi3Boolean visible, fmi3Boolean logs, fmi3Boolean uses_events, fmi3Boolean may_return_early,
     const fmi3ValueReference intermediate[], size_t count, fmi3InstanceEnvironment environment,
     fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update) {
-    (void)name, (void)resources, (void)visible, (void)may_return_early, (void)intermediate, (void)update;
-    lw_instance *s = (lw_instance *)lw_instantiate(token, true, logs, environment, log);
+    (void)name, (void)resources, (void)visible, (void)logs, (void)may_return_early, (void)intermediate, (void)update;
+    lw_instance *s = (lw_instance *)lw_instantiate(token, true, environment, log);
     if (s && (uses_events || count > 0)) {
-        s->logs = true;
         lw_fail(s, fmi3Error, "fmi3InstantiateCoSimulation", "there is no Event Mode and no intermediate update");
         free(s);
         return NULL;
@@ -498,6 +493,6 @@ LW_EXPORT fmi3Status LW_FMI(fmi3GetAdjointDerivative)(fmi3Instance instance, con
 #endif
 }
 
-#include "modes.h"
+#include "lw_modes.h"
 
-#include "unused.h"
+#include "lw_unused.h"

@@ -20,7 +20,7 @@ static inline bool lw_has_event(const lw_state *s, const lw_values *values) {
         const int row = LW_CONSTRAINTS + i;
         const bool is_event = s->closed[i]
             ? values->indicators[i] < 0.0
-            : r.residuals[row] < 0.0 && r.velocities[row] < -LW_SLOW;
+            : r.residuals[row] < -LW_OVERLAP && r.velocities[row] < -LW_SLOW;
         if (is_event) {
             return true;
         }
@@ -28,13 +28,26 @@ static inline bool lw_has_event(const lw_state *s, const lw_values *values) {
     return false;
 }
 
-/* Applies the impulses of impacts by Newton's coefficients of restitution, and determines the closed contacts. */
+/* Removes overlaps, applies the impulses of impacts by Newton's coefficients of restitution, and determines the closed
+ * contacts. */
 static inline const char *lw_treat_contacts(lw_state *s) {
     lw_point p;
     lw_rows r;
     int kinds[LW_ROWS];
     double laws[3 * LW_CONTACTS], c[LW_ROWS], x[LW_ROWS], a[LW_NV];
-    bool is_near[LW_CONTACTS];
+    bool is_near[LW_CONTACTS], overlaps[LW_ROWS];
+    lw_point_at(s, &p);
+    if (!lw_rows_at(&p, &r)) {
+        return "the mass matrix is not positive definite";
+    }
+    lw_select(s, overlaps);
+    for (int i = LW_CONSTRAINTS; i < LW_ROWS; ++i) {
+        overlaps[i] = overlaps[i] || r.residuals[i] < 0.0;
+    }
+    const char *problem = lw_project(s, overlaps, false);
+    if (problem) {
+        return problem;
+    }
     lw_point_at(s, &p);
     if (!lw_rows_at(&p, &r)) {
         return "the mass matrix is not positive definite";
@@ -88,7 +101,9 @@ static inline const char *lw_make_consistent(lw_state *s, double tolerance) {
     if (!lw_rows_at(&p, &r)) {
         return "the mass matrix is not positive definite";
     }
-    const char *problem = lw_violation(s, &r) > tolerance ? lw_project(s) : NULL;
+    bool selected[LW_ROWS];
+    lw_select(s, selected);
+    const char *problem = lw_violation(s, &r) > tolerance ? lw_project(s, selected, true) : NULL;
 #if LW_CONTACTS > 0
     problem = problem ? problem : lw_treat_contacts(s);
 #endif
@@ -144,8 +159,10 @@ static inline const char *lw_try_step(const lw_state *s, const lw_values *first,
     lw_point p;
     lw_rows r;
     lw_point_at(next, &p);
+    bool selected[LW_ROWS];
+    lw_select(next, selected);
     if (lw_rows_at(&p, &r) && lw_violation(next, &r) > 1e-13) {
-        return lw_project(next);
+        return lw_project(next, selected, true);
     }
 #endif
     return NULL;

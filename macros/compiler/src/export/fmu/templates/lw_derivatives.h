@@ -4,7 +4,6 @@
 
 #define LW_KNOWNS (LW_STATES + LW_NU + LW_NP)
 #define LW_UNKNOWNS (LW_STATES + LW_NY)
-#define LW_RESULTS (LW_NX + LW_NY - LW_NUMERIC)
 #define LW_CONSTANTS (LW_NX + LW_NP)
 
 /* Matrices by columns; derivatives by `q` are along displacements, and `constants` are all members of the

@@ -1,4 +1,4 @@
-/* Equations of motion of the mechanism that model.h describes: the rates of its states, with constraint forces and
+/* Equations of motion of the mechanism that lw_model.h describes: the rates of its states, with constraint forces and
  * with the forces of closed contacts.
  *
  * Constraints and contacts have rows: first those of the constraints, then one for each contact, its gap. The matrix
@@ -15,6 +15,8 @@
 #define LW_VIOLATION 1e-6
 /* Gap below which a contact can close, m or rad. */
 #define LW_NEAR 1e-7
+/* Overlap at which an impact is located, m or rad: separated contacts have a clear sign of their event indicator. */
+#define LW_OVERLAP 1e-12
 /* Velocity above which contacts separate, and below which impacts have no restitution, m/s or rad/s. */
 #define LW_SLOW 1e-7
 #define LW_REBOUND 1e-4
@@ -332,14 +334,12 @@ static inline double lw_violation(const lw_state *s, const lw_rows *r) {
     return largest;
 }
 
-/* Projects a state onto the constraints and the closed contacts, in the metric of the mass matrix. Returns NULL, or
- * why it cannot be done. */
-static inline const char *lw_project(lw_state *s) {
+/* Projects the configuration onto the selected rows, and on request the velocity too, in the metric of the mass
+ * matrix. Returns NULL, or why it cannot be done. */
+static inline const char *lw_project(lw_state *s, const bool *selected, bool projects_velocity) {
     lw_point p;
     lw_rows r;
-    bool selected[LW_ROWS];
     double x[LW_ROWS], error = 0.0;
-    lw_select(s, selected);
     for (int attempt = 0; attempt < 50; ++attempt) {
         double before = error, step[LW_NV] = {0.0};
         lw_point_at(s, &p);
@@ -360,10 +360,11 @@ static inline const char *lw_project(lw_state *s) {
     if (!(error < 1e-9)) {
         return "no configuration near the present one satisfies the constraints";
     }
-    lw_solve_selected(r.matrix, r.velocities, selected, x);
-    lw_add_responses(&r, x, p.v);
     memcpy(s->states, p.q, LW_NQ * sizeof(double));
-    memcpy(s->states + LW_NQ, p.v, LW_NV * sizeof(double));
+    if (projects_velocity) {
+        lw_solve_selected(r.matrix, r.velocities, selected, x);
+        lw_add_responses(&r, x, s->states + LW_NQ);
+    }
     return NULL;
 }
 
@@ -389,7 +390,7 @@ static inline const char *lw_evaluate(const lw_state *s, double decay, lw_values
     lw_add_responses(&r, x, a);
     for (int i = 0; i < LW_CONTACTS; ++i) {
         const int row = LW_CONSTRAINTS + i;
-        values->indicators[i] = s->closed[i] ? x[row] : r.residuals[row];
+        values->indicators[i] = s->closed[i] ? x[row] : r.residuals[row] + LW_OVERLAP;
     }
 #else
     double tau[LW_AT_LEAST_ONE(LW_NV)];

@@ -1,0 +1,384 @@
+//! FMUs of `linkwork export fmu`: their sources are compiled with a small importer, which simulates in both modes. The
+//! motions are compared with those of `linkwork simulate` and with closed forms.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Returns the C compiler of the system, if there is one.
+fn compiler() -> Option<&'static str> {
+    let found = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped: there is no C compiler");
+    }
+    found.then_some("cc")
+}
+
+/// Runs the command, and returns its standard output or its standard error.
+fn linkwork(arguments: &[&str]) -> Result<String, String> {
+    let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .output()
+        .expect("the command starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if output.status.success() { Ok(text(&output.stdout)) } else { Err(text(&output.stderr)) }
+}
+
+/// Returns the paths and contents of an archive whose files are stored without compression.
+fn unpacked(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let number = |at: usize, length: usize| {
+        archive[at..at + length].iter().rev().fold(0, |sum, byte| sum << 8 | usize::from(*byte))
+    };
+    let (mut files, mut at) = (Vec::new(), 0);
+    while archive[at..].starts_with(b"PK\x03\x04") {
+        let (size, name) = (number(at + 18, 4), number(at + 26, 2));
+        let start = at + 30 + name;
+        let path = String::from_utf8_lossy(&archive[at + 30..start]).into_owned();
+        files.push((path, archive[start..start + size].to_vec()));
+        at = start + size;
+    }
+    files
+}
+
+/// An FMU whose sources are linked with the importer.
+struct Fmu {
+    /// Text of `modelDescription.xml`.
+    description: String,
+    program: PathBuf,
+}
+
+impl Fmu {
+    /// Exports a mechanism, and compiles it without warnings. Returns `None` without a C compiler.
+    fn new(name: &str, arguments: &[&str]) -> Option<Fmu> {
+        let compiler = compiler()?;
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
+        fs::create_dir_all(folder.join("sources")).expect("a folder of the tests");
+        let archive = folder.join("model.fmu");
+        let out = ["--out", archive.to_str().expect("a path in UTF-8"), "--no-binary", "--prefix", name];
+        linkwork(&[&["export", "fmu"], arguments, &out].concat()).unwrap_or_else(|error| panic!("{error}"));
+        let files = unpacked(&fs::read(&archive).expect("the archive is written"));
+        for (path, bytes) in &files {
+            fs::write(folder.join(path), bytes).expect("a file of the tests");
+        }
+        let (_, description) = files.iter().find(|(path, _)| path == "modelDescription.xml")?;
+        let program = folder.join("importer");
+        let importer = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmu/importer.c");
+        let output = Command::new(compiler)
+            .current_dir(folder.join("sources"))
+            .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-I.", "-o"])
+            .arg(&program)
+            .arg(importer)
+            .args([&format!("{name}.c"), "lw_fmi3.c", "-lm"])
+            .output()
+            .expect("the compiler starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Some(Fmu { description: String::from_utf8_lossy(description).into_owned(), program })
+    }
+
+    /// Runs the importer, and returns the lines that it prints.
+    fn lines(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
+        let (_, rest) = self.description.split_once("instantiationToken=\"").expect("a token");
+        let token = rest.split('"').next().unwrap_or_default();
+        let output = Command::new(&self.program)
+            .args([kind, token])
+            .args(numbers.map(|x| x.to_string()))
+            .output()
+            .expect("the program starts");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+        text.lines().map(ToString::to_string).collect()
+    }
+
+    /// Returns rows of numbers that the importer prints.
+    fn rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
+        let number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
+        let row = |line: &String| line.split_whitespace().map(number).collect();
+        self.lines(kind, numbers).iter().map(row).collect()
+    }
+}
+
+/// Returns the states of a motion of `linkwork simulate`, without the columns of inputs.
+fn simulated(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
+    let (duration, every) = (stop.to_string(), (stop / samples as f64).to_string());
+    let options =
+        ["--duration", &duration, "--every", &every, "--tolerance", "1e-11", "--method", "dormand-prince"];
+    let text =
+        linkwork(&[&["simulate"], arguments, &options].concat()).unwrap_or_else(|error| panic!("{error}"));
+    let mut lines = text.lines();
+    let head = lines.next().expect("a line of names");
+    let count = head.split(',').filter(|name| !name.starts_with("u.")).count();
+    lines.map(|line| line.split(',').take(count).map(|x| x.parse().expect("a number")).collect()).collect()
+}
+
+/// Compares rows of states.
+fn compare(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{name}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (x, y) in found.iter().zip(expected) {
+            assert!((x - y).abs() <= tolerance * (1.0 + y.abs()), "{name}: {x} and {y} at {}", expected[0]);
+        }
+    }
+}
+
+/// Simulates a mechanism in both modes, and compares the motions with that of the library.
+fn agrees(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
+    let fmu = Fmu::new(name, arguments)?;
+    let expected = simulated(arguments, stop, 10);
+    compare(name, &fmu.rows("co-simulation", [stop, 10.0, 0.0]), &expected, 1e-8);
+    compare(name, &fmu.rows("exchange", [stop, 10.0, steps]), &expected, 1e-6);
+    Some(fmu)
+}
+
+/// Checks that directional and adjoint derivatives are equal, and equal to central differences.
+fn differentiates(fmu: &Fmu, numbers: [f64; 3], count: usize) {
+    let rows = fmu.rows("derivatives", numbers);
+    assert_eq!(rows.len(), count);
+    for row in rows {
+        assert_eq!(row[0], row[1], "directional and adjoint");
+        assert!((row[0] - row[2]).abs() < 2e-6 * (1.0 + row[0].abs()), "{row:?}");
+    }
+}
+
+/// Joins names and values to options of the command.
+fn set(values: &'static [&'static str]) -> Vec<&'static str> {
+    values.iter().flat_map(|value| ["--set", value]).collect()
+}
+
+#[test]
+fn cart_pole_moves_as_in_rust_with_derivatives() {
+    let values = [
+        "cart_mass=1",
+        "pole_mass=0.1",
+        "pole_length=1",
+        "rail_damping=0.1",
+        "q.hinge=0.3",
+        "v.rail=0.2",
+        "u.push=0.5",
+    ];
+    let values: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
+    let arguments = [&["../../models/src/cart_pole.rs"], &values[..]].concat();
+    let Some(fmu) = agrees("cart_pole", &arguments, 2.0, 100.0) else { return };
+    // Rates of four states and two energies, by four states, one input and four parameters.
+    differentiates(&fmu, [1.0, 4.0, 2.0], 6 * 9);
+    let name = "name=\"v.hinge\" valueReference=\"4\" causality=\"output\" variability=\"continuous\" initial=\"exact\" start=\"0.0\" unit=\"rad/s\"";
+    assert!(fmu.description.contains(name), "{}", fmu.description);
+    assert!(fmu.description.contains("<Unit name=\"rad/s\"><BaseUnit s=\"-1\" rad=\"1\"/></Unit>"));
+    let restored = fmu.lines("states", [0.0; 3]);
+    assert_eq!((&restored[0], &restored[0]), (&restored[1], &restored[2]), "after restoring the state");
+    assert_eq!(restored[3..], ["3 fmi3DeserializeFMUState: the bytes are no state of this model", "3"]);
+}
+
+#[test]
+fn arm_and_top_move_as_in_rust() {
+    agrees("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
+    let values = set(&[
+        "g=9.81",
+        "mass=1",
+        "height=0.2",
+        "axial=0.02",
+        "transverse=0.03",
+        "q.tip.qx=0.2",
+        "v.tip.wz=20",
+    ]);
+    let top = agrees("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
+    // A ball joint: four entries of a quaternion, three velocities, five parameters, two energies.
+    top.iter().for_each(|fmu| differentiates(fmu, [0.0, 5.0, 2.0], 9 * 12));
+}
+
+/// The boat of the guide has a state of first order; a table has its values in the sources.
+#[test]
+fn states_of_first_order_and_tables_are_in_the_sources() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join("drag.csv");
+    fs::create_dir_all(folder.parent().expect("a folder")).expect("a folder of the tests");
+    // Linear: 2 N s/m.
+    fs::write(&folder, "-5,-10\n0,0\n5,10\n").expect("a file of the tests");
+    let table = format!("drag={},extrapolated", folder.display());
+    let values = set(&["mass=4", "lag=0.5", "x.thrust=1", "u.throttle=3"]);
+    let arguments =
+        [&["tests/fmu/mechanisms.rs", "--struct", "Boat", "--table", &table], &values[..]].concat();
+    let Some(fmu) = agrees("boat", &arguments, 1.0, 50.0) else { return };
+    differentiates(&fmu, [1.0, 2.0, 3.0], 6 * 6);
+    // m v' = f - 2 v and f' = (3 - f) / lag, whose rates -1/2 and -2 differ.
+    let last = fmu.rows("co-simulation", [1.0, 10.0, 0.0]).pop().expect("rows");
+    let speed = 1.5 + (1.0 / 3.0) * (-2.0_f64).exp() - (1.5 + 1.0 / 3.0) * (-0.5_f64).exp();
+    assert!(
+        (last[2] - speed).abs() < 1e-8 && (last[3] - (3.0 - 2.0 * (-2.0_f64).exp())).abs() < 1e-8,
+        "{last:?}"
+    );
+}
+
+#[test]
+fn four_bar_keeps_its_loop_closed() {
+    let values = set(&[
+        "g=9.81",
+        "density=1",
+        "a=0.3",
+        "b=1",
+        "c=0.8",
+        "d=0.9",
+        "q.input=1",
+        "v.input=2",
+        "u.motor=0.3",
+    ]);
+    agrees("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
+}
+
+/// A ball that falls from 1 m bounces with 0.7 of its speed, and comes to rest.
+#[test]
+fn ball_bounces_by_its_closed_form() {
+    let values = set(&["bounce=0.7", "q.height=1.1"]);
+    let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
+    let Some(fmu) = Fmu::new("ball", &arguments) else { return };
+    let height = |t: f64| {
+        let g = 9.81;
+        let mut speed = (2.0 * g * 1.0_f64).sqrt();
+        let mut at = speed / g;
+        if t < at {
+            return 1.1 - g * t * t / 2.0;
+        }
+        while speed > 1e-6 {
+            speed *= 0.7;
+            if t < at + 2.0 * speed / g {
+                return 0.1 + speed * (t - at) - g * (t - at) * (t - at) / 2.0;
+            }
+            at += 2.0 * speed / g;
+        }
+        0.1
+    };
+    for (kind, steps) in [("co-simulation", 0.0), ("exchange", 10.0)] {
+        let rows = fmu.rows(kind, [4.0, 40.0, steps]);
+        assert_eq!(rows.len(), 41);
+        for row in &rows {
+            assert!((row[1] - height(row[0])).abs() < 1e-8, "{kind}: {row:?}, not {}", height(row[0]));
+        }
+        assert!(rows[40][2].abs() < 1e-12, "{kind}: at rest");
+    }
+}
+
+/// A door rests against its stop until the force `-cos(2 t)` opens it at π/4; equal balls exchange their velocities.
+#[test]
+fn stops_open_and_balls_collide_by_closed_forms() {
+    let values = set(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
+    let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Door"], &values[..]].concat();
+    let Some(fmu) = Fmu::new("door", &arguments) else { return };
+    let start = std::f64::consts::FRAC_PI_4;
+    for (kind, steps) in [("co-simulation", 0.0), ("exchange", 50.0)] {
+        for row in fmu.rows(kind, [2.0, 10.0, steps]) {
+            let t = row[0];
+            let opened = if t > start { (t - start) / 2.0 + (2.0 * t).cos() / 4.0 } else { 0.0 };
+            // The surfaces meet after 0.8 m.
+            let [left, right] = [0.0_f64.min(0.7 * t - 0.8) - 0.2, 0.0_f64.max(0.7 * t - 0.8)];
+            let expected = [t, opened, left, right];
+            for (x, y) in row.iter().zip(expected) {
+                assert!((x - y).abs() < 1e-8, "{kind}: {row:?}, not {expected:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_calls_and_values_are_errors_with_messages() {
+    let values = set(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
+    let Some(fmu) = Fmu::new("wrong", &[&["../../models/src/cart_pole.rs"], &values[..]].concat()) else {
+        return;
+    };
+    // The value reference of the pole's mass follows those of time, states, rates, the input and the cart's mass.
+    let found = fmu.lines("errors", [0.0, 11.0, 0.0]);
+    let expected = [
+        "3 fmi3Instantiate: the instantiation token is not that of modelDescription.xml",
+        "3 fmi3InstantiateCoSimulation: there is no Event Mode and no intermediate update",
+        "3 fmi3ExitInitializationMode: wrong order of calls: the function cannot be called after instantiation",
+        "3 fmi3EnterInitializationMode: the tolerance is not positive",
+        "3 fmi3EnterInitializationMode: the stop time is before the start time",
+        "3 fmi3SetFloat64: `pole_mass` is set to a value that is not finite",
+        "3 fmi3SetFloat64: there is no variable with the value reference 1000000",
+        "3 fmi3SetFloat64: the number of values differs from that of the variables, all scalars",
+        "3 fmi3SetFloat64: an argument is NULL",
+        "3 fmi3GetInt32: all variables have the type Float64",
+        "3 fmi3GetClock: there are no clocks",
+        "3 fmi3SetContinuousStates: wrong order of calls: the function cannot be called in Initialization Mode",
+        "3 fmi3ExitInitializationMode: the mass matrix is not positive definite: check masses and inertias",
+        "3 fmi3DoStep: wrong order of calls: the function cannot be called in Event Mode",
+        "3 fmi3SetFloat64: `q.rail` is a state: it can be set until initialization ends",
+        "3 fmi3SetFloat64: the mass matrix is not positive definite: check masses and inertias",
+        "3 fmi3SetFloat64: `pole_mass` is a parameter: it can be set before or between steps, or in Event Mode",
+        "3 fmi3SetContinuousStates: NULL, or another number of states",
+        "3 fmi3SetTime: the time is not finite",
+        "3 fmi3EnterEventMode: wrong order of calls: the function cannot be called after termination",
+        "3 fmi3DoStep: the communication point is not the time at which the last step ended",
+        "3 fmi3DoStep: the communication step is not positive",
+        "3 fmi3EnterContinuousTimeMode: wrong order of calls: the function cannot be called in Step Mode",
+        "3",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn command_rejects_what_an_fmu_cannot_have() {
+    let file = "tests/fmu/mechanisms.rs";
+    for (arguments, message) in [
+        (
+            vec![file, "--struct", "Crate"],
+            "the contact `floor.0` has friction: FMUs have contacts without friction",
+        ),
+        (vec![file, "--struct", "Stack", "--set", "bounce=0.5"], "has restitution by Poisson's law"),
+        (vec![file, "--struct", "Skeleton"], "`Skeleton` cannot be an FMU: it has no masses"),
+        (vec![file, "--struct", "BouncingBall"], "parameters without a value: --set bounce=…"),
+        (
+            vec![file, "--struct", "BouncingBall", "--set", "bounce=1", "--prefix", "2 balls"],
+            "`--prefix 2 balls` is no identifier of FMI that is free; `--prefix x2_balls` is one",
+        ),
+        (
+            vec![file, "--struct", "BouncingBall", "--set", "bounce=1", "--compiler", "no-such-compiler"],
+            "cannot run the compiler `no-such-compiler`",
+        ),
+    ] {
+        let error = linkwork(&[&["export", "fmu"], &arguments[..]].concat()).expect_err("it is rejected");
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+/// FMPy validates FMUs with binaries, and simulates them in both modes. `LINKWORK_PYTHON` names a Python that has it.
+#[test]
+fn fmpy_validates_and_simulates() {
+    let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let has = Command::new(&python).args(["-c", "import fmpy"]).output().is_ok_and(|o| o.status.success());
+    if !has || compiler().is_none() {
+        println!("skipped: there is no FMPy (LINKWORK_PYTHON names a Python that has it)");
+        return;
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu");
+    fs::create_dir_all(&folder).expect("a folder of the tests");
+    let four_bar = set(&["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"]);
+    let top = set(&[
+        "g=9.81",
+        "mass=1",
+        "height=0.2",
+        "axial=0.02",
+        "transverse=0.03",
+        "q.tip.qx=0.2",
+        "v.tip.wz=20",
+    ]);
+    let cart = set(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1", "q.hinge=0.3"]);
+    let ball = set(&["bounce=0.7", "q.height=1.1"]);
+    let all: [(&str, &[&str], &[&str]); 5] = [
+        ("cart_pole", &["../../models/src/cart_pole.rs"], &cart),
+        ("four_bar", &["../../models/src/four_bar.rs"], &four_bar),
+        ("ball", &["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &ball),
+        ("ur5", &["../../models/urdf/ur5.urdf"], &[]),
+        ("top", &["../../models/src/heavy_top.rs"], &top),
+    ];
+    let mut paths = Vec::new();
+    for (name, file, values) in all {
+        let path = folder.join(format!("{name}.fmu")).to_str().expect("a path in UTF-8").to_string();
+        let arguments = [&["export", "fmu", "--out", &path], file, values].concat();
+        linkwork(&arguments).unwrap_or_else(|error| panic!("{error}"));
+        paths.push(path);
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmu/fmpy_check.py");
+    let output = Command::new(&python).arg(script).args(&paths).output().expect("Python starts");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}{error}", String::from_utf8_lossy(&output.stdout));
+}
