@@ -42,7 +42,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         match compile(&files, given(matches, "compiler"))? {
             Some(binary) => archive.add(&binary_path(&files.identifier), &binary)?,
             None => crate::note!(
-                "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only, for importers to compile"
+                "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only"
             ),
         }
     }

@@ -65,7 +65,7 @@ pub struct Skeleton {
     elbow: Pin,
 }
 
-/// Door that a force over time presses against its stop, and opens later; a ball on the same rail is hit by another one.
+/// Door that a force over time presses against its stop and opens later, and two balls that collide.
 #[mechanism]
 pub struct Door {
     pub strength: f64,

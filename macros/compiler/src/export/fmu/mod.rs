@@ -1,7 +1,7 @@
 //! Export to FMUs of the Functional Mock-up Interface 3.0, for model exchange and co-simulation.
 //!
-//! An FMU contains the functions in C (`export::c`), handwritten C99 sources that implement the interface, and
-//! a header that connects the two.
+//! An FMU contains the functions in C (`export::c`), handwritten C99 sources that implement the interface,
+//! and a header that connects the two.
 
 mod description;
 mod model;
@@ -72,7 +72,7 @@ pub struct FmuFiles {
 }
 
 /// Advice for contacts and constraints that an FMU cannot have.
-const SIMULATE: &str = "a compliant contact (`stiffness = …`) may have friction; `linkwork simulate` and `linkwork-c` simulate all";
+const SIMULATE: &str = "compliant contacts (`stiffness = …`) may have friction; `linkwork simulate` has all";
 
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
 pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {

@@ -1,5 +1,5 @@
-//! The header `lw_model.h`: sizes, names and start values of a mechanism, and the functions in C under the names
-//! that the handwritten sources call.
+//! The header `lw_model.h`: sizes, names and start values of a mechanism, and the functions in C under the
+//! names that the handwritten sources call.
 
 use super::super::c::{Signatures, mentions, safe};
 use super::variables::{OutputFunction, VariableRole, Variables};
@@ -260,8 +260,8 @@ impl HeaderWriter<'_> {
         text + "    }\n"
     }
 
-    /// Returns the call of a function in C, with its own arguments; empty if it does not exist. A function that
-    /// returns a number is assigned to the result.
+    /// Returns the call of a function in C, with its own arguments; empty if it does not exist. A number that it
+    /// returns is assigned to the result.
     fn call(&self, name: &str, results: &[&str]) -> String {
         let Signatures { prefix, functions, parameters, tables, .. } = self.signatures;
         let Some(f) = functions.iter().find(|f| f.name == name) else { return String::new() };

@@ -97,7 +97,7 @@ static bool lw_may(const lw_instance *s, int modes, const char *function) {
     while (mode < 5 && !(s->state.mode >> mode & 1)) {
         ++mode;
     }
-    snprintf(text, sizeof text, "wrong order of calls: the function cannot be called %s", names[mode]);
+    snprintf(text, sizeof text, "wrong order of calls: not allowed %s", names[mode]);
     lw_fail(s, fmi3Error, function, text);
     return false;
 }
@@ -303,7 +303,7 @@ LW_EXPORT fmi3Status LW_FMI(fmi3SetFloat64)(fmi3Instance instance, const fmi3Val
         const char *problem = !(is_state || is_input || is_parameter) ? "cannot be set"
             : !isfinite(values[k]) ? "is set to a value that is not finite"
             : is_state && !starts ? "is a state: it can be set until initialization ends"
-            : is_parameter && !tunes ? "is a parameter: it can be set before or between steps, or in Event Mode"
+            : is_parameter && !tunes ? "is a parameter: set it between steps or in Event Mode"
             : NULL;
         if (problem) {
             s->state = before;
