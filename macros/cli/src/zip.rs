@@ -17,7 +17,7 @@ const VERSION: u16 = 20;
 /// Flag of names in UTF-8.
 const UTF_8: u16 = 1 << 11;
 /// Date of all files: the first day that the format has, so that equal contents give equal archives.
-const DATE: u16 = 1 << 5 | 1;
+const DATE: u16 = (1 << 5) | 1;
 
 impl Archive {
     /// Adds a file.
@@ -65,7 +65,7 @@ impl Archive {
 
 /// Returns the cyclic redundancy check of the format.
 fn checksum(bytes: &[u8]) -> u32 {
-    let step = |sum: u32| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
+    let step = |sum: u32| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
     !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| step(sum)))
 }
 

@@ -28,7 +28,7 @@ fn linkwork(arguments: &[&str]) -> Result<String, String> {
 /// Returns the paths and contents of an archive whose files are stored without compression.
 fn unpacked(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
     let number = |at: usize, length: usize| {
-        archive[at..at + length].iter().rev().fold(0, |sum, byte| sum << 8 | usize::from(*byte))
+        archive[at..at + length].iter().rev().fold(0, |sum, byte| (sum << 8) | usize::from(*byte))
     };
     let (mut files, mut at) = (Vec::new(), 0);
     while archive[at..].starts_with(b"PK\x03\x04") {

@@ -144,7 +144,7 @@ fn token(texts: &[&str]) -> String {
     format!(
         "{{{:08x}-{:04x}-{:04x}-{:04x}-{:012x}}}",
         a >> 32,
-        a >> 16 & 0xffff,
+        (a >> 16) & 0xffff,
         a & 0xffff,
         b >> 48,
         b & 0xffff_ffff_ffff
