@@ -82,6 +82,13 @@ fn view() -> Command {
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(
+        switch(
+            "live",
+            "Writes a page that simulates the mechanism, with sliders for parameters, state and inputs",
+        )
+        .conflicts_with_all(["motion", "duration", "every", "inputs", "method", "step", "tolerance", "table"]),
+    )
+    .arg(
         text("out", "FILE", "Output file [default: the mechanism's name with .html]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),

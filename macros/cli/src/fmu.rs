@@ -70,7 +70,7 @@ fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Va
     if let Some(why) = start.obstacle() {
         return Err(Stop::Failure(format!("`{}` cannot be an FMU: {why}", loaded.model.name)));
     }
-    let (q, v) = start.consistent()?;
+    let (q, v) = start.state()?;
     let tables = grid::given(matches, &loaded.source.tables())?.into_iter().map(|grid| TableValues {
         axes: grid.axes,
         values: grid.values,

@@ -45,6 +45,8 @@ pub struct Loaded<'g> {
     pub model: Model<'g>,
     /// Functions of the mechanism.
     pub robot: Robot,
+    /// Equations of motion as HTML with MathML; empty if they are too long to be read.
+    pub equations: String,
 }
 
 impl Input {
@@ -129,8 +131,9 @@ impl Input {
         linkwork_jit::without_rust(&mut source);
         let passes = Passes { lanes: false, ..Passes::default() };
         let (model, output) = self.checked(compile_with(&source, graph, passes, cx), cx)?;
+        let equations = output.equations.mathml.clone();
         let robot = linkwork_jit::compiled(&source, &model, output);
-        Ok(Loaded { source, model, robot })
+        Ok(Loaded { source, model, robot, equations })
     }
 
     /// Converts a diagnostic to an error message with its location.

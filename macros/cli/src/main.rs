@@ -9,6 +9,7 @@ mod fmu;
 mod grid;
 mod input;
 mod library;
+mod live;
 mod motion;
 mod names;
 mod new;

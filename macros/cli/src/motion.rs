@@ -43,7 +43,8 @@ pub struct Start<'a, 'g> {
     v: Vec<f64>,
     /// States of first order.
     pub x: Vec<f64>,
-    u: Vec<f64>,
+    /// Inputs.
+    pub u: Vec<f64>,
     /// Whether each entry of the configuration and of the velocity was specified.
     given: [Vec<bool>; 2],
     /// Whether a guess was specified for some entries of the configuration.
@@ -79,7 +80,7 @@ pub fn normalise(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
 impl<'a, 'g> Start<'a, 'g> {
     /// Reads the parameters, the initial state and the inputs from `--set`, `--guess` and `--table`.
     pub fn new(loaded: &'a Loaded<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
-        let Loaded { source, model, robot } = loaded;
+        let Loaded { source, model, robot, .. } = loaded;
         let mut robot = robot.clone();
         let names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
             list.iter().map(|(name, _)| format!("v.{name}")).collect()
@@ -129,6 +130,9 @@ impl<'a, 'g> Start<'a, 'g> {
                 return Err(Stop::Failure(format!("`{name}` is given by `--set` and by `--guess`")));
             }
             q[k] = value;
+        }
+        if matches.try_contains_id("live").unwrap_or(false) && matches.get_flag("live") {
+            fill_in(model, &mut parameters);
         }
         let missing: Vec<String> = (model.parameters.iter().zip(&parameters))
             .filter(|(_, value)| value.is_none())
@@ -235,7 +239,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let without_contacts = matches.get_flag("without-contacts");
         let method = self.method(matches, without_contacts)?;
         let (times, values) = self.inputs(matches)?;
-        let (q, v) = self.consistent()?;
+        let (q, v) = self.state()?;
         let state = [&v[..], &self.x].concat();
         let inputs = || Inputs::Samples { times: &times, values: &values };
         let begun = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
@@ -295,8 +299,12 @@ impl<'a, 'g> Start<'a, 'g> {
         Stop::Failure(format!("the motion cannot be continued beyond {t} s: {why}"))
     }
 
-    /// Returns the initial state; with constraints one that satisfies them.
-    pub fn consistent(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+    /// Returns configuration and velocity at the beginning, which satisfy the constraints.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism cannot be assembled.
+    pub fn state(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         match self.robot.is_constrained() {
             true => self.begin(),
             false => Ok((self.q.clone(), self.v.clone())),
@@ -422,6 +430,19 @@ impl<'a, 'g> Start<'a, 'g> {
         let value = |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
         let values = (0..table.times.len()).flat_map(row).map(value).collect();
         Ok((table.times.clone(), values))
+    }
+}
+
+/// Gives parameters without a value the value of a page's sliders: gravity on Earth, otherwise one.
+fn fill_in(model: &Model<'_>, parameters: &mut [Option<f64>]) {
+    let mut chosen = Vec::new();
+    for (k, value) in parameters.iter_mut().enumerate().filter(|(_, value)| value.is_none()) {
+        let is_gravity = model.units.parameters.get(k).is_some_and(|unit| unit == "m/s²");
+        *value = Some(if is_gravity { 9.81 } else { 1.0 });
+        chosen.push(format!("{} = {}", model.parameters[k], if is_gravity { 9.81 } else { 1.0 }));
+    }
+    if !chosen.is_empty() {
+        crate::note!("linkwork: parameters without a value begin at {}", chosen.join(", "));
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::Stop;
 use crate::input::{Input, Loaded};
 use crate::library::docs;
+use crate::live;
 use crate::motion::{Start, normalise};
 use crate::table::Table;
 use clap::ArgMatches;
@@ -27,6 +28,18 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let loaded = input.loaded(&graph)?;
     let Loaded { source, model, .. } = &loaded;
     let start = Start::new(&loaded, matches)?;
+    let out = matches
+        .get_one("out")
+        .cloned()
+        .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.declaration.name)));
+    let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
+    let page = Page::new(&input.declaration.name).text(&about);
+    if matches.get_flag("live") {
+        let figure = with_meshes(figure(&start, model), &input, matches)?;
+        page.equations(&loaded.equations).motion(live::motion(&start, figure)?).write(&out)?;
+        crate::say!("{}", out.display());
+        return Ok(());
+    }
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => from_log(path, &start)?,
         None => match start.obstacle() {
@@ -37,7 +50,35 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             _ => start.run(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
         },
     };
-    let mut figure = figure(&start, model);
+    let figure = with_meshes(figure(&start, model), &input, matches)?;
+    let times = states.iter().map(|(t, ..)| *t).collect();
+    let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
+    let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
+    let heights = |number: usize, place: [f64; 2]| {
+        let heights = start.robot.terrain_heights(place)?;
+        heights.get(number).copied()
+    };
+    let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
+    if states.len() > 1 && model.nq() <= PLOTTED {
+        let values = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
+        motion =
+            motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
+    }
+    if states.len() > 1 && model.nu() <= PLOTTED {
+        // Constant inputs are not plotted.
+        let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
+        let curves = curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
+        if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
+            motion = motion.plots("Inputs", curves)?;
+        }
+    }
+    page.motion(motion).write(&out)?;
+    crate::say!("{}", out.display());
+    Ok(())
+}
+
+/// Returns the drawing with the meshes that are found, and prints the paths of the others.
+fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Result<Figure, Stop> {
     let beside = input.file.parent().map(Path::to_path_buf);
     match matches.get_one::<PathBuf>("meshes") {
         Some(folder) => {
@@ -62,35 +103,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             missing.join(", ")
         );
     }
-    let times = states.iter().map(|(t, ..)| *t).collect();
-    let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
-    let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
-    let heights = |number: usize, place: [f64; 2]| {
-        let heights = start.robot.terrain_heights(place)?;
-        heights.get(number).copied()
-    };
-    let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
-    if states.len() > 1 && model.nq() <= PLOTTED {
-        let values = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
-        motion =
-            motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
-    }
-    if states.len() > 1 && model.nu() <= PLOTTED {
-        // Constant inputs are not plotted.
-        let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
-        let curves = curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
-        if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
-            motion = motion.plots("Inputs", curves)?;
-        }
-    }
-    let out = matches
-        .get_one("out")
-        .cloned()
-        .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.declaration.name)));
-    let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
-    Page::new(&input.declaration.name).text(&about).motion(motion).write(&out)?;
-    crate::say!("{}", out.display());
-    Ok(())
+    Ok(figure)
 }
 
 /// Reads the configurations of a log.

@@ -113,16 +113,32 @@ impl Frames {
         (0..self.names.len()).flat_map(each).collect()
     }
 
-    /// Returns the links between the ground and a frame, the first one first.
-    fn path(&self, frame: usize) -> Vec<&LinkSteps> {
-        let mut next = self.frames[frame].link;
-        let mut path = Vec::new();
-        while let Some(link) = next {
-            path.push(&self.links[link]);
-            next = self.links[link].parent;
-        }
+    /// Returns the indices of the links between the ground and a frame, the first one first.
+    fn path(&self, frame: usize) -> Vec<usize> {
+        let parent = |link: &usize| self.links[*link].parent;
+        let mut path: Vec<usize> = std::iter::successors(self.frames[frame].link, parent).collect();
         path.reverse();
         path
+    }
+
+    /// Returns the program of the placements of all frames: for each a rotation matrix row by row, and a
+    /// position.
+    pub fn placements(&self) -> Program {
+        let mut merged = Merged::default();
+        let mut links: Vec<Option<Vec<Operand>>> = vec![None; self.links.len()];
+        let mut outputs = Vec::new();
+        for (frame, steps) in self.frames.iter().enumerate() {
+            let mut placement = identity();
+            for link in self.path(frame) {
+                placement = links[link]
+                    .get_or_insert_with(|| {
+                        append_given(&mut merged, &[&placement], &self.links[link].placement)
+                    })
+                    .clone();
+            }
+            outputs.extend(append_given(&mut merged, &[&placement], &steps.placement));
+        }
+        merged.finish(outputs)
     }
 
     /// Returns the program of a quantity of a frame.
@@ -142,12 +158,11 @@ impl Frames {
                 merged.bind(Quantity::Acceleration(k).symbol(), acceleration);
             }
         }
-        let mut placement: Vec<Operand> =
-            (0..PLACEMENT).map(|k| Operand::Const(f64::from(u8::from(k < 9 && k % 4 == 0)))).collect();
+        let mut placement = identity();
         let mut twist = vec![Operand::Const(0.0); TWIST];
         let mut acceleration = twist.clone();
         let mut placements = Vec::new();
-        let path = self.path(frame);
+        let path: Vec<&LinkSteps> = self.path(frame).into_iter().map(|link| &self.links[link]).collect();
         for link in &path {
             placement = append_given(&mut merged, &[&placement], &link.placement);
             placements.push(placement.clone());
@@ -211,6 +226,11 @@ impl Frames {
         }
         product
     }
+}
+
+/// Returns the placement of the ground.
+fn identity() -> Vec<Operand> {
+    (0..PLACEMENT).map(|k| Operand::Const(f64::from(u8::from(k < 9 && k % 4 == 0)))).collect()
 }
 
 /// Adds a program that takes these values of the parent; returns its outputs.

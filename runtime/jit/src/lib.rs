@@ -31,6 +31,7 @@ mod simulate;
 mod space;
 mod steps;
 mod table;
+mod web;
 
 pub use adjoint::VectorJacobian;
 pub use adjoint_steps::{AdjointStepper, Sensitivity};
@@ -48,3 +49,5 @@ pub use shared::Quantity;
 pub use simulate::{Controller, Inputs, Method, Run, Sample, Simulation};
 pub use steps::{Jacobians, Stepper};
 pub use table::AnyTable;
+#[doc(hidden)]
+pub use web::WebStart;

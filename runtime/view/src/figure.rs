@@ -27,6 +27,8 @@ pub(crate) struct Shape {
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
     pub(crate) mesh: Option<Mesh>,
+    /// Index of its first number among the numbers of the declared pieces.
+    first: Option<usize>,
     /// Whether the piece is the equivalent ellipsoid of mass and moments of inertia, drawn if no shape is
     /// declared.
     fitted: bool,
@@ -57,7 +59,9 @@ impl Figure {
         for piece in pieces {
             let end = piece.first.saturating_add(piece.kind.count());
             let Some(numbers) = numbers.get(piece.first..end) else { continue };
+            let before = figure.shapes.len();
             figure.push(piece.name, piece.role, piece.kind, piece.frames, numbers);
+            figure.shapes[before..].iter_mut().for_each(|shape| shape.first = Some(piece.first));
         }
         figure.shapes.iter_mut().for_each(|shape| shape.declared = true);
         figure.fit();
@@ -197,7 +201,8 @@ impl Figure {
             kind => (kind, numbers.to_vec()),
         };
         let (name, declared) = (name.to_string(), false);
-        self.shapes.push(Shape { name, role, kind, frames, numbers, mesh: None, fitted, declared });
+        let (mesh, first) = (None, None);
+        self.shapes.push(Shape { name, role, kind, frames, numbers, mesh, first, fitted, declared });
     }
 
     /// Limits the equivalent ellipsoids to the length of the links, because many robot files have fictitious
@@ -237,6 +242,13 @@ impl Figure {
 }
 
 impl Shape {
+    /// Returns the index of its first number among those of the declared pieces, and how many of its numbers
+    /// are those of the piece: of an equivalent ellipsoid the position alone.
+    pub(crate) fn source(&self) -> Option<[usize; 2]> {
+        let count = if self.fitted { 3 } else { self.numbers.len() };
+        self.first.map(|first| [first, count])
+    }
+
     /// Returns the reference points of the shape, each with its frame and the distance that the shape extends
     /// beyond it.
     pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {

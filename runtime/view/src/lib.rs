@@ -11,6 +11,7 @@ mod mcap;
 mod mesh;
 mod motion;
 mod page;
+mod picture;
 mod scene;
 mod server;
 mod terrain;

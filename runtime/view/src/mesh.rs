@@ -56,6 +56,12 @@ impl Mesh {
         self.corners.iter().map(norm).fold(0.0, f64::max)
     }
 
+    /// Returns at most this number of corners, evenly chosen.
+    pub(crate) fn some_corners(&self, count: usize) -> Vec<[f64; 3]> {
+        let step = self.corners.len().div_ceil(count).max(1);
+        self.corners.iter().step_by(step).map(|corner| corner.map(f64::from)).collect()
+    }
+
     /// Serialises the mesh as JSON, with 16 bits per coordinate and coinciding corners merged: lowest corner,
     /// step sizes, positions, indices.
     pub(crate) fn json(&self) -> String {

@@ -1,7 +1,7 @@
 //! Motions: placements of the frames of a drawing at each instant, with plots.
 
-use crate::encode::Stream;
-use crate::figure::{Figure, plain};
+use crate::encode::{Stream, base64};
+use crate::figure::{Figure, Shape, plain};
 use crate::scene::Scene;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -40,6 +40,15 @@ pub struct Motion {
     arrows: Vec<Arrow>,
     captions: Vec<(f64, String)>,
     live: bool,
+    /// Data of a mechanism that the page simulates.
+    simulated: Option<Simulated>,
+}
+
+/// Mechanism that a page simulates: its data as JSON, and the WebAssembly module of its functions.
+#[derive(Clone, Debug)]
+struct Simulated {
+    data: String,
+    module: Vec<u8>,
 }
 
 /// Vector over time, drawn as an arrow.
@@ -124,7 +133,7 @@ impl Motion {
         }
         let inputs = vec![Vec::new(); times.len()];
         let (plots, trails, arrows, captions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let live = false;
+        let (live, simulated) = (false, None);
         Ok(Motion {
             title: motion(),
             figure,
@@ -136,6 +145,7 @@ impl Motion {
             arrows,
             captions,
             live,
+            simulated,
         })
     }
 
@@ -341,6 +351,26 @@ impl Motion {
         self
     }
 
+    /// Simulates the mechanism in the page, from the first sample on. The plots then show what the page
+    /// computes. `data` is a JSON object with the structure of the mechanism, and `module` the WebAssembly
+    /// module of its functions, both as the command `linkwork view --live` writes them.
+    #[doc(hidden)]
+    pub fn simulated(mut self, data: String, module: Vec<u8>) -> Motion {
+        self.simulated = Some(Simulated { data, module });
+        self.live()
+    }
+
+    /// Returns whether the page simulates the mechanism.
+    pub(crate) fn is_simulated(&self) -> bool {
+        self.simulated.is_some()
+    }
+
+    /// Returns a still picture of the first sample as SVG.
+    pub(crate) fn picture(&self) -> String {
+        let scene = Scene::new(&self.figure, &self.placements, &[0]);
+        crate::picture::svg(&self.figure, &self.placements[0], &scene)
+    }
+
     /// Serialises the motion as the JSON data of a page.
     pub(crate) fn json(&self) -> String {
         let used = self.used();
@@ -393,8 +423,20 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
+        let source = |shape: &Shape| match shape.source() {
+            Some([first, count]) => format!("[{first},{count}]"),
+            None => "null".to_string(),
+        };
+        let simulated = self.simulated.iter().flat_map(|Simulated { data, module }| {
+            [
+                ("simulated", data.clone()),
+                ("module", text::json(&base64(module))),
+                ("used", text::list(used.iter().map(ToString::to_string))),
+                ("sources", text::list(self.figure.shown().map(source))),
+            ]
+        });
         let fields: Vec<String> =
-            fields.into_iter().map(|(name, value)| format!("{}:{value}", text::json(name))).collect();
+            fields.into_iter().chain(simulated).map(|(name, value)| format!("{}:{value}", text::json(name))).collect();
         format!("{{{}}}", fields.join(","))
     }
 }

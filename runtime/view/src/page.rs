@@ -12,6 +12,7 @@ use std::path::Path;
 pub struct Page {
     title: String,
     text: String,
+    equations: String,
     motions: Vec<Motion>,
 }
 
@@ -29,6 +30,14 @@ impl Page {
         self
     }
 
+    /// Sets the equations that are shown below the plots: HTML with MathML, as the documentation of a
+    /// mechanism contains them.
+    #[doc(hidden)]
+    pub fn equations(mut self, html: &str) -> Page {
+        self.equations = html.to_string();
+        self
+    }
+
     /// Adds a motion, to the right of the previous ones.
     pub fn motion(mut self, motion: Motion) -> Page {
         self.motions.push(motion);
@@ -42,6 +51,7 @@ impl Page {
             let more = about.split_off(1).concat();
             about.push(format!("<details><summary>More</summary>{more}</details>"));
         }
+        let simulates = self.motions.iter().any(Motion::is_simulated);
         let mut missing: Vec<&str> = self.motions.iter().flat_map(Motion::missing_meshes).collect();
         missing.sort_unstable();
         missing.dedup();
@@ -53,16 +63,24 @@ impl Page {
                 paths.join(", ")
             ));
         }
+        let equations = match self.equations.is_empty() {
+            true => String::new(),
+            false => format!(
+                "<section class=\"equations\"><h2>Equations of motion</h2>{}</section>\n",
+                self.equations
+            ),
+        };
         let about: String = about.iter().map(|block| format!("{block}\n")).collect();
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <link rel=\"icon\" href=\"data:,\">\n\
              <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body class=\"linkwork-page\">\n\
-             <header><h1>{title}</h1>\n{about}</header>\n{}\n<script>\n{}</script>\n</body>\n</html>\n",
+             <header><h1>{title}</h1>\n{about}</header>\n{}\n{equations}<script>\n{simulation}{}</script>\n</body>\n</html>\n",
             Page::style(),
             self.fragment(),
             Page::script(),
+            simulation = if simulates { Page::simulation() } else { "" },
         )
     }
 
@@ -70,8 +88,9 @@ impl Page {
     /// head, and [`script`](Self::script) once after all fragments.
     pub fn fragment(&self) -> String {
         let motions = text::list(self.motions.iter().map(Motion::json));
+        let pictures: String = self.motions.iter().map(Motion::picture).collect();
         format!(
-            "<div class=\"linkwork-view\" role=\"group\" aria-label=\"{}\"><script type=\"application/json\">{motions}</script></div>",
+            "<div class=\"linkwork-view\" role=\"group\" aria-label=\"{}\"><script type=\"application/json\">{motions}</script><noscript><p>This page needs scripts to move; they are disabled in this browser. The drawing shows the beginning.</p>{pictures}</noscript></div>",
             text::html(&self.title)
         )
     }
@@ -84,6 +103,12 @@ impl Page {
     /// Returns the program that plays [fragments](Self::fragment): the content of a `script` element.
     pub fn script() -> &'static str {
         include_str!("view.js")
+    }
+
+    /// Returns the program that simulates mechanisms in [fragments](Self::fragment) of pages that `linkwork
+    /// view --live` writes. It precedes [`script`](Self::script).
+    pub fn simulation() -> &'static str {
+        include_str!("simulate.js")
     }
 
     /// Writes the page to a file, and creates its folder if necessary.

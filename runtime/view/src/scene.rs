@@ -65,6 +65,15 @@ impl Scene {
         }
     }
 
+    /// Returns the unit vectors to the right, upward and towards the viewer of the initial view.
+    pub(crate) fn axes(&self) -> [Vector3<f64>; 3] {
+        let (yaw, pitch): (f64, f64) = if self.plane { (0.25, 0.2) } else { (0.7, 0.38) };
+        let side = self.eye * yaw.cos() + self.up.cross(&self.eye) * yaw.sin();
+        let back = side * pitch.cos() + self.up * pitch.sin();
+        let right = self.up.cross(&side).normalize();
+        [right, back.cross(&right), back]
+    }
+
     pub(crate) fn json(&self) -> String {
         text::list([
             text::number(self.size),

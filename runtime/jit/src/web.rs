@@ -1,0 +1,221 @@
+//! Mechanisms for pages that simulate themselves: their programs as WebAssembly, and their data as JSON.
+
+mod module;
+
+use crate::error::Error;
+use crate::functions::{Entry, Plan};
+use crate::layout::Layout;
+use crate::robot::Robot;
+use crate::shared::Quantity;
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::lower::Program;
+use linkwork_compiler::mechanism::{Chart, InQ, InV};
+use module::Module;
+use std::fmt::Write;
+
+/// State and inputs at the start of a simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct WebStart<'a> {
+    /// Configuration.
+    pub q: &'a [f64],
+    /// Velocity.
+    pub v: &'a [f64],
+    /// States of first order.
+    pub x: &'a [f64],
+    /// Inputs.
+    pub u: &'a [f64],
+}
+
+/// Functions of a mechanism without constraints and contacts.
+const FREE: &[&str] = &["forward_dynamics"];
+/// Functions of a mechanism with constraints or contacts.
+const BOUND: &[&str] = &["mass_matrix", "bias_forces"];
+/// Functions of all mechanisms, if they exist.
+const ALL: &[&str] = &[
+    "generalized_forces",
+    "rates_of_speeds",
+    "kinetic_energy",
+    "potential_energy",
+    "constraint_residuals",
+    "constraint_rates",
+    "constraint_jacobian",
+    "constraint_bias",
+    "contact_gaps",
+    "contact_rates",
+    "contact_jacobian",
+    "__contact_laws",
+];
+/// Accelerations with friction of sliding contacts that never open.
+const SLIPPING: &str = "__constrained_dynamics";
+
+/// A module with the signatures of its functions as JSON.
+#[derive(Default)]
+struct Written {
+    module: Module,
+    signatures: Vec<String>,
+}
+
+impl Written {
+    fn add(
+        &mut self,
+        robot: &Robot,
+        name: &str,
+        program: &Program,
+        arguments: &[Argument],
+    ) -> Result<(), String> {
+        let layout = Layout::new(arguments).ok_or_else(|| format!("`{name}` has too many arguments"))?;
+        self.module.add(name, program, &layout)?;
+        let list = arguments
+            .iter()
+            .map(|argument| format!("[{},{}]", quoted(argument.name()), robot.shared.sizes.length(*argument)));
+        let (list, length) = (joined(list), program.outputs.len());
+        self.signatures.push(format!("{}:{{\"args\":{list},\"length\":{length}}}", quoted(name)));
+        Ok(())
+    }
+
+    fn add_entry(&mut self, robot: &Robot, entry: &Entry) -> Result<(), String> {
+        match &entry.plan {
+            Plan::Program(routine) => match routine.program() {
+                Some(program) => self.add(robot, &entry.name, program, &entry.arguments),
+                None => Ok(()),
+            },
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Robot {
+    /// Returns the mechanism for a page that simulates it, as JSON: names, units, structure, values of the
+    /// parameters and the start; and a WebAssembly module of its functions. `drawing` computes the numbers of
+    /// the drawing from the parameters.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no inertia, uses tables, or a parameter has no value.
+    #[doc(hidden)]
+    pub fn web_data(&self, drawing: &Program, start: WebStart<'_>) -> Result<(String, Vec<u8>), Error> {
+        self.validate()?;
+        let shared = &self.shared;
+        let refused =
+            |why: &str| Error::Value(format!("`{}` cannot be simulated in a page: {why}", self.name()));
+        if shared.kinematic {
+            return Err(refused("it has no masses (`inertia = none`), so it has no equations of motion"));
+        }
+        let module = self.web_module(drawing).map_err(Error::Internal)?;
+        if module.module.tables > 0 {
+            return Err(refused("it uses tables"));
+        }
+        let mut fields = self.web_structure();
+        let parameters = self.parameter_values();
+        for (name, list) in
+            [("parameterValues", parameters), ("q", start.q), ("v", start.v), ("x", start.x), ("u", start.u)]
+        {
+            fields.push((name, numbers(list)));
+        }
+        fields.push(("functions", format!("{{{}}}", module.signatures.join(","))));
+        let fields: Vec<String> =
+            fields.into_iter().map(|(name, value)| format!("{}:{value}", quoted(name))).collect();
+        Ok((format!("{{{}}}", fields.join(",")), module.module.bytes()))
+    }
+
+    fn web_module(&self, drawing: &Program) -> Result<Written, String> {
+        let shared = &self.shared;
+        let is_bound = !(shared.constraints.names.is_empty() && shared.contacts.is_empty());
+        let slips = !shared.constraints.slipping.is_empty();
+        let own = if is_bound { BOUND } else { FREE };
+        let outputs = self.outputs().iter().map(|output| output.name.as_str());
+        let names = own.iter().chain(ALL).copied().chain(slips.then_some(SLIPPING)).chain(outputs);
+        let mut indices: Vec<usize> = names.filter_map(|name| shared.index.get(name).copied()).collect();
+        indices.extend(shared.states.iter().filter_map(|state| state.rate));
+        indices.sort_unstable();
+        indices.dedup();
+        let mut written = Written::default();
+        for index in indices {
+            written.add_entry(self, &shared.entries[index])?;
+        }
+        let time = shared.time.then_some(Argument::T);
+        let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q]).collect();
+        written.add(self, "placements", &shared.frames.placements(), &arguments)?;
+        written.add(self, "drawing", drawing, &[])?;
+        Ok(written)
+    }
+
+    /// Returns the structure of the mechanism: names and values of JSON fields.
+    fn web_structure(&self) -> Vec<(&'static str, String)> {
+        let shared = &self.shared;
+        let quantities = |list: &[Quantity]| {
+            joined(list.iter().map(|one| format!("[{},{}]", quoted(&one.name), quoted(&one.unit))))
+        };
+        let indices = |list: &[usize]| joined(list.iter().map(ToString::to_string));
+        let charts = joined(shared.charts.iter().map(|chart| match chart {
+            Chart::Plain(InQ(q), InV(v)) => format!("[0,{q},{v}]"),
+            Chart::Ball(InQ(q), InV(v)) => format!("[1,{q},{v}]"),
+            Chart::Free(InQ(q), InV(v)) => format!("[2,{q},{v}]"),
+        }));
+        let contacts = joined(shared.contacts.iter().map(|contact| {
+            let [first, count] = contact.rows;
+            format!(
+                "{{\"name\":{},\"first\":{first},\"count\":{count},\"pressedBy\":{}}}",
+                quoted(&contact.name),
+                contact.pressed_by
+            )
+        }));
+        let states = joined(shared.states.iter().map(|state| {
+            let rate = state.rate.map_or("null".to_string(), |k| quoted(&shared.entries[k].name));
+            format!("[{},{rate}]", state.parameter)
+        }));
+        let constraints = &shared.constraints;
+        let states_of = shared.states.iter().map(|state| &shared.parameters[state.parameter].name);
+        vec![
+            ("name", quoted(&shared.name)),
+            ("configuration", quantities(&shared.configuration)),
+            ("velocities", quantities(&shared.velocities)),
+            ("inputs", quantities(&shared.inputs)),
+            ("parameters", quantities(&shared.parameters)),
+            ("outputs", quantities(self.outputs())),
+            ("frames", joined(shared.frames.names.iter().map(|name| quoted(name)))),
+            ("charts", charts),
+            ("states", states),
+            ("stateNames", joined(states_of.map(|name| quoted(name)))),
+            ("constraints", constraints.names.len().to_string()),
+            ("holonomic", constraints.holonomic.to_string()),
+            ("slipping", indices(&constraints.slipping)),
+            ("contacts", contacts),
+        ]
+    }
+}
+
+/// Returns a JSON list.
+fn joined(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(","))
+}
+
+/// Returns a JSON list of numbers.
+fn numbers(list: &[f64]) -> String {
+    joined(list.iter().map(|x| if x.is_finite() { format!("{x:?}") } else { "null".to_string() }))
+}
+
+/// Returns a JSON string without characters of markup.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' | '<' | '>' | '&' | '\u{7f}' | '\u{2028}' | '\u{2029}' | '\0'..='\u{1f}' => {
+                let _ = write!(out, "\\u{:04x}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strings_contain_no_markup() {
+        assert_eq!(quoted("a<\"b\n"), "\"a\\u003c\\u0022b\\u000a\"");
+    }
+}

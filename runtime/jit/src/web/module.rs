@@ -1,0 +1,344 @@
+//! WebAssembly of straight-line programs.
+//!
+//! A module imports its memory and the elementary functions that WebAssembly has no instruction for. Each
+//! exported function takes the addresses of its inputs, then the address of its result.
+
+use crate::layout::Layout;
+use linkwork_compiler::expr::{Extreme, Function as Elementary, Lookup, Symbol};
+use linkwork_compiler::lower::{Op, Operand, Program};
+
+const I32: u8 = 0x7f;
+const F64: u8 = 0x7c;
+
+const END: u8 = 0x0b;
+const CALL: u8 = 0x10;
+const GET: u8 = 0x20;
+const SET: u8 = 0x21;
+const LOAD: u8 = 0x2b;
+const STORE: u8 = 0x39;
+const INTEGER: u8 = 0x41;
+const NUMBER: u8 = 0x44;
+const ABS: u8 = 0x99;
+const NEG: u8 = 0x9a;
+const SQRT: u8 = 0x9f;
+const ADD: u8 = 0xa0;
+const SUB: u8 = 0xa1;
+const MUL: u8 = 0xa2;
+const DIV: u8 = 0xa3;
+const MIN: u8 = 0xa4;
+const MAX: u8 = 0xa5;
+
+/// Maximum depth of operations whose results stay on the stack.
+const DEPTH: usize = 32;
+
+/// A module under construction.
+#[derive(Default)]
+pub struct Module {
+    types: Vec<(Vec<u8>, Vec<u8>)>,
+    /// Name and type of each imported function.
+    imports: Vec<(String, usize)>,
+    /// Name, type and code of each exported function.
+    functions: Vec<(String, usize, Vec<u8>)>,
+    /// Number of tables that are looked up.
+    pub tables: usize,
+}
+
+impl Module {
+    /// Adds a function.
+    ///
+    /// # Errors
+    ///
+    /// The program has lanes, or reads values that are no inputs of the layout.
+    pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
+        let kind = self.kind(vec![I32; layout.len() + 1], Vec::new());
+        let mut writer = Writer {
+            module: self,
+            program,
+            layout,
+            code: Vec::new(),
+            values: vec![Value::Missing; program.instructions.len()],
+            locals: 0,
+        };
+        writer.body()?;
+        let (code, locals) = (writer.code, writer.locals);
+        let mut body = Vec::new();
+        match locals {
+            0 => body.push(0),
+            count => {
+                body.push(1);
+                unsigned(&mut body, count);
+                body.push(F64);
+            }
+        }
+        body.extend(code);
+        body.push(END);
+        self.functions.push((name.to_string(), kind, body));
+        Ok(())
+    }
+
+    /// Returns the bytes of the module.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut out = b"\0asm\x01\0\0\0".to_vec();
+        let mut types = Vec::new();
+        for (parameters, results) in &self.types {
+            types.push(0x60);
+            for list in [parameters, results] {
+                unsigned(&mut types, list.len());
+                types.extend(list);
+            }
+        }
+        section(&mut out, 1, self.types.len(), &types);
+        let mut imports = Vec::new();
+        text(&mut imports, "m");
+        text(&mut imports, "memory");
+        imports.extend([2, 0, 1]);
+        for (name, kind) in &self.imports {
+            text(&mut imports, "m");
+            text(&mut imports, name);
+            imports.push(0);
+            unsigned(&mut imports, *kind);
+        }
+        section(&mut out, 2, self.imports.len() + 1, &imports);
+        let (mut kinds, mut exports, mut code) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, (name, kind, body)) in self.functions.iter().enumerate() {
+            unsigned(&mut kinds, *kind);
+            text(&mut exports, name);
+            exports.push(0);
+            unsigned(&mut exports, self.imports.len() + k);
+            unsigned(&mut code, body.len());
+            code.extend(body);
+        }
+        section(&mut out, 3, self.functions.len(), &kinds);
+        section(&mut out, 7, self.functions.len(), &exports);
+        section(&mut out, 10, self.functions.len(), &code);
+        out
+    }
+
+    /// Returns the index of a type.
+    fn kind(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
+        let kind = (parameters, results);
+        index_of(&mut self.types, kind)
+    }
+
+    /// Returns the index of an imported function of numbers.
+    fn import(&mut self, name: &str, parameters: Vec<u8>) -> usize {
+        let kind = self.kind(parameters, vec![F64]);
+        index_of(&mut self.imports, (name.to_string(), kind))
+    }
+}
+
+/// Returns the index of an entry, which is added if it is absent.
+fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
+    list.iter().position(|known| *known == entry).unwrap_or_else(|| {
+        list.push(entry);
+        list.len() - 1
+    })
+}
+
+/// Where the result of an instruction is.
+#[derive(Clone, Copy, PartialEq)]
+enum Value {
+    Missing,
+    Local(usize),
+    /// Computed where it is used, with operations nested this deep.
+    Nested(usize),
+}
+
+struct Writer<'a> {
+    module: &'a mut Module,
+    program: &'a Program,
+    layout: &'a Layout,
+    code: Vec<u8>,
+    values: Vec<Value>,
+    locals: usize,
+}
+
+impl Writer<'_> {
+    fn body(&mut self) -> Result<(), String> {
+        let program = self.program;
+        for (k, op) in program.instructions.iter().enumerate() {
+            let mut depth = 1;
+            op.operands(|operand| {
+                if let Operand::Value(a) = operand
+                    && let Value::Nested(nested) = self.values[a]
+                {
+                    depth = depth.max(nested + 1);
+                }
+            });
+            if program.uses.get(k) == Some(&1) && depth < DEPTH {
+                self.values[k] = Value::Nested(depth);
+                continue;
+            }
+            self.instruction(k)?;
+            self.values[k] = Value::Local(self.locals);
+            self.code.push(SET);
+            let local = self.local(self.locals);
+            unsigned(&mut self.code, local);
+            self.locals += 1;
+        }
+        for (k, output) in program.outputs.iter().enumerate() {
+            self.code.push(GET);
+            unsigned(&mut self.code, self.layout.len());
+            self.operand(*output)?;
+            self.code.extend([STORE, 3]);
+            unsigned(&mut self.code, 8 * k);
+        }
+        Ok(())
+    }
+
+    /// Returns the index of a local behind the parameters.
+    fn local(&self, index: usize) -> usize {
+        self.layout.len() + 1 + index
+    }
+
+    /// Writes the code that puts the result of an instruction on the stack.
+    fn instruction(&mut self, k: usize) -> Result<(), String> {
+        match self.program.instructions[k] {
+            Op::Neg(a) => self.operation(&[a], NEG),
+            Op::Add(a, b) => self.operation(&[a, b], ADD),
+            Op::Sub(a, b) => self.operation(&[a, b], SUB),
+            Op::Mul(a, b) => self.operation(&[a, b], MUL),
+            Op::Div(a, b) => self.operation(&[a, b], DIV),
+            Op::Extreme(Extreme::Min, a, b) => self.operation(&[a, b], MIN),
+            Op::Extreme(Extreme::Max, a, b) => self.operation(&[a, b], MAX),
+            Op::MulAdd(a, b, c) => {
+                self.operation(&[a, b], MUL)?;
+                self.operation(&[c], ADD)
+            }
+            Op::MulSub(a, b, c) => {
+                self.operation(&[a, b], MUL)?;
+                self.operation(&[c], SUB)
+            }
+            Op::NegMulAdd(a, b, c) => {
+                self.operand(c)?;
+                self.operation(&[a, b], MUL)?;
+                self.code.push(SUB);
+                Ok(())
+            }
+            Op::Call(Elementary::Sqrt, a) => self.operation(&[a], SQRT),
+            Op::Call(Elementary::Abs, a) => self.operation(&[a], ABS),
+            Op::Call(f, a) => self.call(f.name(), &[a]),
+            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
+            Op::Pow(a, b) => self.call("pow", &[a, b]),
+            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Err("a program has lanes".to_string()),
+        }
+    }
+
+    fn operation(&mut self, operands: &[Operand], operation: u8) -> Result<(), String> {
+        operands.iter().try_for_each(|operand| self.operand(*operand))?;
+        self.code.push(operation);
+        Ok(())
+    }
+
+    fn call(&mut self, name: &str, operands: &[Operand]) -> Result<(), String> {
+        operands.iter().try_for_each(|operand| self.operand(*operand))?;
+        let function = self.module.import(name, vec![F64; operands.len()]);
+        self.code.push(CALL);
+        unsigned(&mut self.code, function);
+        Ok(())
+    }
+
+    /// Writes the lookup of a table: its index, orders of differentiation of two bits each, and three
+    /// variables, of which a table may use fewer.
+    fn lookup(&mut self, lookup: Lookup, variables: [Operand; 3]) -> Result<(), String> {
+        let count = lookup.variables();
+        let orders = (0..count).fold(0, |all, k| all | lookup.order(k) << (2 * k));
+        for integer in [lookup.table(), orders] {
+            self.code.push(INTEGER);
+            signed(&mut self.code, integer);
+        }
+        for (k, variable) in variables.into_iter().enumerate() {
+            self.operand(if k < count { variable } else { Operand::Const(0.0) })?;
+        }
+        self.module.tables = self.module.tables.max(lookup.table() + 1);
+        let function = self.module.import("lookup", vec![I32, I32, F64, F64, F64]);
+        self.code.push(CALL);
+        unsigned(&mut self.code, function);
+        Ok(())
+    }
+
+    fn operand(&mut self, operand: Operand) -> Result<(), String> {
+        match operand {
+            Operand::Const(x) => {
+                self.code.push(NUMBER);
+                self.code.extend(x.to_le_bytes());
+            }
+            Operand::Symbol(symbol) => self.symbol(symbol)?,
+            Operand::Value(k) => match self.values[k] {
+                Value::Local(local) => {
+                    self.code.push(GET);
+                    let local = self.local(local);
+                    unsigned(&mut self.code, local);
+                }
+                Value::Nested(_) => self.instruction(k)?,
+                Value::Missing => return Err("a value is used before it is computed".to_string()),
+            },
+            Operand::Tuple(_) | Operand::Gather(_) => return Err("a program has lanes".to_string()),
+        }
+        Ok(())
+    }
+
+    fn symbol(&mut self, symbol: Symbol) -> Result<(), String> {
+        let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
+        self.code.push(GET);
+        unsigned(&mut self.code, slot);
+        self.code.extend([LOAD, 3]);
+        unsigned(&mut self.code, 8 * index);
+        Ok(())
+    }
+}
+
+/// Writes an unsigned integer in LEB128.
+fn unsigned(out: &mut Vec<u8>, mut x: usize) {
+    while x >= 0x80 {
+        out.push((x & 0x7f) as u8 | 0x80);
+        x >>= 7;
+    }
+    out.push(x as u8);
+}
+
+/// Writes a signed integer, which is not negative, in LEB128.
+fn signed(out: &mut Vec<u8>, mut x: usize) {
+    while x >= 0x40 {
+        out.push((x & 0x7f) as u8 | 0x80);
+        x >>= 7;
+    }
+    out.push(x as u8);
+}
+
+/// Writes a name with its length.
+fn text(out: &mut Vec<u8>, name: &str) {
+    unsigned(out, name.len());
+    out.extend(name.bytes());
+}
+
+/// Writes a section: its number, its length, and a list with this number of entries.
+fn section(out: &mut Vec<u8>, number: u8, count: usize, entries: &[u8]) {
+    let mut list = Vec::new();
+    unsigned(&mut list, count);
+    list.extend(entries);
+    out.push(number);
+    unsigned(out, list.len());
+    out.extend(list);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The examples of the WebAssembly specification and of DWARF, appendix C.
+    #[test]
+    fn integers_have_variable_lengths() {
+        let encoded = |write: fn(&mut Vec<u8>, usize), x: usize| {
+            let mut out = Vec::new();
+            write(&mut out, x);
+            out
+        };
+        assert_eq!(encoded(unsigned, 624_485), [0xe5, 0x8e, 0x26]);
+        assert_eq!(encoded(unsigned, 127), [0x7f]);
+        assert_eq!(encoded(signed, 127), [0xff, 0]);
+        assert_eq!(encoded(signed, 2), [2]);
+    }
+}
