@@ -108,7 +108,7 @@ impl Page {
     /// Returns the program that simulates mechanisms in [fragments](Self::fragment) of pages that `linkwork
     /// view --live` writes. It precedes [`script`](Self::script).
     pub fn simulation() -> &'static str {
-        include_str!("simulate.js")
+        concat!(include_str!("simulate.js"), include_str!("controls.js"))
     }
 
     /// Writes the page to a file, and creates its folder if necessary.

@@ -168,14 +168,21 @@ class Simulation {
     this.reset(data);
   }
 
-  // Begins again at a state, which is changed to satisfy the constraints.
-  reset({ q, v, x }) {
+  // Begins again at a state, which is changed to satisfy the constraints; the coordinate with the index
+  // `fixed` keeps its value if possible.
+  reset({ q, v, x }, fixed = -1) {
     this.t = 0;
     this.q = new Float64Array(q);
     this.v = new Float64Array(v);
     this.x = new Float64Array(x);
     this.h = 1e-3;
     this.isImplicit = false;
+    const chart = this.data.charts.find(([kind, i]) => kind === 0 && i === fixed);
+    if (chart && this.data.holonomic && !this.has("rates_of_speeds")) {
+      this.project(chart[2]);
+      if (this.violation() < 1e-9) return;
+      [this.q, this.v] = [new Float64Array(q), new Float64Array(v)];
+    }
     this.project();
   }
 
@@ -224,10 +231,12 @@ class Simulation {
     return half;
   }
 
-  // Returns the mass matrix with the Jacobian of the constraints, scaled; `solve` is applied to its copies.
-  saddle(t, q) {
-    const { nv, data } = this, m = this.at("mass_matrix", t, q), rows = data.constraints, n = nv + rows, all = new Float64Array(n * n);
+  // Returns the mass matrix with the Jacobian of the constraints, scaled. The velocity with the index `fixed`
+  // gets a large inertia.
+  saddle(t, q, fixed) {
+    const { nv, data } = this, m = this.at("mass_matrix", t, q).slice(), rows = data.constraints, n = nv + rows, all = new Float64Array(n * n);
     const jacobian = rows ? this.functions.constraint_jacobian() : null;
+    if (fixed >= 0) m[fixed * nv + fixed] = 1e8 * (m[fixed * nv + fixed] || 1);
     const scale = new Float64Array(n).fill(1);
     for (let k = 0; k < nv; k++) { const x = m[k * nv + k]; if (x > 0) scale[k] = 1 / Math.sqrt(x); }
     for (let k = 0; k < rows; k++) {
@@ -242,8 +251,8 @@ class Simulation {
     return { n, all, scale };
   }
   // Solves `M a + Jᵀ λ = force`, `J a = side` for several right-hand sides.
-  solved(t, q, sides) {
-    const { n, all, scale } = this.saddle(t, q);
+  solved(t, q, sides, fixed = -1) {
+    const { n, all, scale } = this.saddle(t, q, fixed);
     for (const side of sides) for (let k = 0; k < n; k++) side[k] *= scale[k];
     solve(n, all, sides);
     for (const side of sides) for (let k = 0; k < n; k++) side[k] *= scale[k];
@@ -293,7 +302,7 @@ class Simulation {
   }
 
   // Moves the state onto the constraints.
-  project() {
+  project(fixed = -1) {
     const { data, nv } = this;
     this.normalise(this.q);
     if (!data.constraints) return;
@@ -305,7 +314,7 @@ class Simulation {
         before = size;
         const side = new Float64Array(nv + data.constraints);
         for (let k = 0; k < data.holonomic; k++) side[nv + k] = -r[k];
-        const [dq] = this.solved(this.t, this.q, [side]);
+        const [dq] = this.solved(this.t, this.q, [side], fixed);
         this.q = this.moved(this.q, dq.subarray(0, nv), 1);
       }
     }
@@ -479,7 +488,7 @@ class Simulation {
     this.grip();
     const { jacobian } = this.pull, a = this.accelerations(this.t, this.q, this.v).slice();
     let give = 0, count = 0;
-    // Mean acceleration of the point for unit forces; the spring has a frequency of about 10 rad/s with its
+    // Mean acceleration of the point for unit forces; the spring has a frequency of 14 rad/s with its
     // inverse, the effective mass.
     for (let i = 0; i < 3; i++) {
         const forces = this.forces;
@@ -491,7 +500,7 @@ class Simulation {
       if (sum > 1e-12) { give += sum; count++; }
     }
     const mass = give > 0 ? count / give : 0;
-    Object.assign(this.pull, { stiffness: 100 * mass, damping: 10 * mass });
+    Object.assign(this.pull, { stiffness: 200 * mass, damping: 14 * mass });
   }
   // Computes the Jacobian of the pulled point by central differences.
   grip() {

@@ -103,9 +103,14 @@ function decode(motion) {
 // motion. Returns false if the number of values is that of another mechanism.
 const KEPT = 20;
 function receive(motion, data) {
-  const lists = [...motion.tracks.flat(), ...motion.plots.flatMap(plot => plot.curves.map(curve => curve.values)), ...motion.inputs];
-  if (data.byteLength !== 8 + 4 * lists.length) return false;
-  const t = new DataView(data).getFloat64(0, true), numbers = new Float32Array(data, 8), { times } = motion;
+  const count = 7 * motion.tracks.length + motion.plots.reduce((sum, plot) => sum + plot.curves.length, motion.inputs.length);
+  if (data.byteLength !== 8 + 4 * count) return false;
+  append(motion, new DataView(data).getFloat64(0, true), new Float32Array(data, 8));
+  return true;
+}
+// Appends the values of a sample: placements, plots, inputs.
+function append(motion, t, numbers) {
+  const lists = [...motion.tracks.flat(), ...motion.plots.flatMap(plot => plot.curves.map(curve => curve.values)), ...motion.inputs], { times } = motion;
   lists.push(times);
   if (!motion.heard || t < motion.start + motion.duration) {
     for (const list of lists) list.length = 0;
@@ -121,7 +126,6 @@ function receive(motion, data) {
   motion.duration = times[last];
   const old = times.findIndex(x => x >= motion.duration - KEPT);
   if (old > 60) for (const list of lists) list.splice(0, old);
-  return true;
 }
 // Returns the index of the sample before a time, and the fraction of the interval to the next sample.
 function locate(times, t) {
@@ -480,14 +484,31 @@ const element = (name, attributes = {}, ...children) => {
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const FLOOR_HALF = 3.2;
 
+// Lower and upper corner of the box around a form.
+function boxOf(name, more) {
+  switch (name) {
+    case "sphere": return [[-1, -1, -1], [1, 1, 1]];
+    case "box": return [[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]];
+    case "square": return [[-1, -1, 0], [1, 1, 0]];
+    case "cone": case "coil": return [[-1, -1, 0], [1, 1, 1]];
+    case "torus": return [[-1 - more[0], -1 - more[0], -more[0]], [1 + more[0], 1 + more[0], more[0]]];
+    case "capsule": return [[-1, -1, -1 - more[0]], [1, 1, 1 + more[0]]];
+    case "spiral": case "bow": return [[-1, -1, -0.1], [1, 1, 0.1]];
+    default: return [[-1, -1, -0.5], [1, 1, 0.5]];
+  }
+}
+
 function start(root) {
   const motions = JSON.parse(root.querySelector("script").textContent);
   motions.forEach(decode);
   if (!motions.length) return;
-  const live = motions.find(motion => motion.live);
+  const live = motions.find(motion => motion.live), simulated = live?.simulated;
+  if (simulated) linkworkControls.addPlots(live);
+  const isFree = simulated?.charts.some(([kind]) => kind === 2);
+  if (isFree && !simulated.contacts.length && !live.pieces.some(([kind, , , frame]) => kind === "Plane" && frame < 0)) live.floor = null;
   let duration = Math.max(...motions.map(motion => motion.duration));
   const begin = () => live ? live.times[0] : 0;
-  const painted = motions.map(paint);
+  let painted = motions.map(paint);
   const canvas = element("canvas", { tabindex: "0", role: "img", "aria-label": "motion in three dimensions" });
   const stage = element("div", { class: "stage" }, canvas);
   const play = element("button", { class: "play", type: "button" });
@@ -497,9 +518,16 @@ function start(root) {
   const speeds = [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10], begun = live ? 1 : speeds.findLast(x => x <= 1 && duration >= x) ?? speeds[0];
   const speed = element("select", { "aria-label": "speed" }, ...speeds.map(x => element("option", x === begun ? { value: x, selected: "" } : { value: x }, x + " ×")));
   const toggle = (text, on) => { const b = element("button", { type: "button", "aria-pressed": on }, text); b.on = on; return b; };
-  const frames = toggle("Frames", false), follow = toggle("Follow", motions.some(m => m.radius > 2.5 * m.size));
-  const reset = element("button", { type: "button" }, "Reset view");
-  root.append(stage, element("div", { class: "bar" }, play, slider, clock, ...(live ? [] : [speed]), frames, follow, reset));
+  const frames = toggle("Frames", false), follow = toggle("Follow", motions.some(m => m.radius > 2.5 * m.size) || isFree);
+  const button = (text, title) => element("button", { type: "button", title }, text);
+  const reset = button("Fit", "whole mechanism (0)"), restart = button("Reset", "to the beginning (r)"), one = button("Step", "one hundredth of a second (.)");
+  const sides = [["Front", 0, 0, "1"], ["Side", Math.PI / 2, 0, "2"], ["Top", 0, 1.55, "3"]].map(([text, yaw, pitch, key]) => {
+    const node = button(text, text.toLowerCase() + " view (" + key + ")"), look = () => { view = fitted({ ...home(), yaw, pitch }); state.dirty = true; };
+    node.onclick = look;
+    return { node, key, look };
+  });
+  const group = (...nodes) => element("div", { class: "group" }, ...nodes);
+  root.append(stage, element("div", { class: "bar" }, play, ...(simulated ? [one, restart] : []), slider, clock, ...(live && !simulated ? [] : [speed]), group(...sides.map(({ node }) => node), reset), group(frames, follow)));
   const labels = motions.map(motion => {
     const label = element("div", { class: "label" }, element("b", {}, motion.title), element("span"));
     stage.append(label);
@@ -512,7 +540,9 @@ function start(root) {
   const state = { now: 0, playing: live || duration > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches, dirty: true };
   const plane = motions.every(motion => motion.plane);
   const home = () => ({ yaw: plane ? 0.25 : 0.7, pitch: plane ? 0.2 : 0.38, zoom: 1, shift: [0, 0] });
-  let view = home();
+  // A view that is fitted to the mechanism is fitted again when the stage changes.
+  const fitted = view => ({ ...view, isFitted: true, fittedTo: "" });
+  let view = fitted(home());
   const plots = motions.flatMap((motion, k) => motion.plots.map(plot => ({ ...plot, motion, title: (motions.length > 1 && motion.title ? motion.title + ": " : "") + plot.title })));
   const figures = plots.map(plot => figure(plot, () => [begin(), duration > begin() ? duration : begin() + 1], t => { seek(t); }));
   if (figures.length) root.append(element("div", { class: "plots" }, ...figures.map(f => f.node)));
@@ -524,12 +554,12 @@ function start(root) {
   slider.oninput = () => { setPlaying(false); seek(+slider.value); };
   frames.onclick = () => press(frames);
   follow.onclick = () => press(follow);
-  reset.onclick = () => { view = home(); state.dirty = true; };
+  reset.onclick = () => { view = fitted(home()); state.dirty = true; };
   setPlaying(state.playing);
 
   root.addEventListener("keydown", e => {
-    if (e.target === speed || e.ctrlKey || e.metaKey || e.altKey) return;
-    const onSlider = e.target === slider, onButton = e.target.tagName === "BUTTON", step = Math.max(duration / 200, 1e-3), turn = (x, y) => { view.yaw += x; view.pitch = clamp(view.pitch + y, -1.55, 1.55); };
+    if (e.target === speed || e.ctrlKey || e.metaKey || e.altKey || e.target.matches("input[type=number], summary")) return;
+    const onSlider = e.target.type === "range", onButton = e.target.tagName === "BUTTON", step = Math.max(duration / 200, 1e-3), turn = (x, y) => { view.yaw += x; view.pitch = clamp(view.pitch + y, -1.55, 1.55); };
     const actions = {
       " ": () => { if (onButton) return true; setPlaying(!state.playing); },
       ArrowLeft: () => { if (onSlider) return true; e.shiftKey ? turn(-0.1, 0) : seek(state.now - step); },
@@ -537,20 +567,28 @@ function start(root) {
       ArrowUp: () => { if (onSlider || !e.shiftKey) return true; turn(0, 0.1); },
       ArrowDown: () => { if (onSlider || !e.shiftKey) return true; turn(0, -0.1); },
       Home: () => seek(0), End: () => seek(duration),
-      "+": () => { view.zoom *= 1.15; }, "=": () => { view.zoom *= 1.15; }, "-": () => { view.zoom /= 1.15; },
-      f: () => press(frames), c: () => press(follow), 0: () => { view = home(); },
+      "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
+      f: () => press(frames), c: () => press(follow), 0: () => { view = fitted(home()); },
+      r: () => { if (!simulated) return true; restart.onclick(); }, ".": () => { if (!simulated) return true; one.onclick(); },
+      ...Object.fromEntries(sides.map(({ key, look }) => [key, look])),
     };
     const act = actions[e.key];
     if (act && act() !== true) { e.preventDefault(); state.dirty = true; }
   });
 
+  const zoom = factor => { view.zoom = clamp(view.zoom * factor, 0.05, 50); view.isFitted = false; };
   // One finger or the left button rotates; two fingers move and zoom; the right button moves.
   const touches = new Map();
-  canvas.addEventListener("pointerdown", e => { canvas.setPointerCapture(e.pointerId); touches.set(e.pointerId, [e.clientX, e.clientY, e.button === 2 || e.shiftKey]); });
+  canvas.addEventListener("pointerdown", e => {
+    if (!touches.size && e.button === 0 && !e.shiftKey && simulation) { canvas.setPointerCapture(e.pointerId); if (simulation.grab(e)) return; }
+    simulation?.release();
+    canvas.setPointerCapture(e.pointerId); touches.set(e.pointerId, [e.clientX, e.clientY, e.button === 2 || e.shiftKey]);
+  });
   canvas.addEventListener("pointermove", e => {
     const before = touches.get(e.pointerId);
-    if (!before) return;
+    if (!before) { simulation?.drag(e); return; }
     const dx = e.clientX - before[0], dy = e.clientY - before[1], height = canvas.clientHeight || 1;
+    view.isFitted = false;
     const others = [...touches].filter(([id]) => id !== e.pointerId).map(([, p]) => p);
     if (others.length) {
       const apart = p => Math.hypot(p[0] - others[0][0], p[1] - others[0][1]) || 1;
@@ -562,9 +600,9 @@ function start(root) {
     touches.set(e.pointerId, [e.clientX, e.clientY, before[2]]);
     state.dirty = true;
   });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, e => touches.delete(e.pointerId));
+  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, e => { touches.delete(e.pointerId); simulation?.release(e); });
   canvas.addEventListener("contextmenu", e => e.preventDefault());
-  canvas.addEventListener("wheel", e => { e.preventDefault(); view.zoom = clamp(view.zoom * Math.exp(-0.0015 * e.deltaY), 0.05, 50); state.dirty = true; }, { passive: false });
+  canvas.addEventListener("wheel", e => { e.preventDefault(); zoom(Math.exp(-0.0015 * e.deltaY)); state.dirty = true; }, { passive: false });
   canvas.addEventListener("webglcontextlost", e => e.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => { pen.begin(); state.dirty = true; });
   dark.addEventListener("change", () => { state.dirty = true; });
@@ -595,7 +633,58 @@ function start(root) {
     const sun = unit(add(add(times(up, 1), times(front, 0.45)), times(right, 0.5)));
     // Fraction of the height that one metre at the centre occupies.
     const pixels = 1 / (2 * away * Math.tan(angle));
-    return { matrix: mul(lens, look), eye, up, sun, level: [right, front], pixels };
+    return { matrix: mul(lens, look), eye, up, sun, level: [right, front], pixels, axes: [x, y, back], tangent: Math.tan(angle), aspect: w / h };
+  }
+
+  const targetOf = (motion, poses) => follow.on && poses.length ? times(poses.reduce((sum, m) => add(sum, [m[12], m[13], m[14]]), [0, 0, 0]), 1 / poses.length) : motion.centre;
+  const partsAt = (index, t) => {
+    const motion = motions[index], [k, part] = locate(motion.times, t), now = poses(motion, t);
+    return { now, parts: painted[index].map(make => make(now, k, part)) };
+  };
+  // Chooses centre, zoom and shift so that the mechanism fills the stage: throughout its motion, or as it is now if
+  // the view follows it or it is simulated. Motions next to each other share a view, which is centred.
+  function fit(boxes) {
+    if (!follow.on) motions.forEach(centre);
+    for (let round = 0; round < 4; round++) {
+      let [reach, shift] = [0, [0, 0]];
+      motions.forEach((motion, index) => {
+        const [, , w, h] = boxes[index], [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
+        const note = ({ matrix }, p) => {
+          const deep = matrix[3] * p[0] + matrix[7] * p[1] + matrix[11] * p[2] + matrix[15];
+          if (deep > 0) for (const i of [0, 1]) { const x = (matrix[i] * p[0] + matrix[4 + i] * p[1] + matrix[8 + i] * p[2] + matrix[12 + i]) / deep; low[i] = Math.min(low[i], x); high[i] = Math.max(high[i], x); }
+        };
+        if (motion.extent && !follow.on) { const camera = cameraOf(motion, motion.centre, w, h); for (const p of cornersOf(motion.extent)) note(camera, p); }
+        for (const t of instants(motion)) {
+          const { now, parts } = partsAt(index, t), camera = cameraOf(motion, targetOf(motion, now), w, h);
+          for (const p of corners(parts.flat())) note(camera, p);
+        }
+        if (!(low[0] <= high[0])) return;
+        const middle = motions.length > 1 ? [0, 0] : [0, 1].map(i => (low[i] + high[i]) / 2);
+        // The title takes a strip at the top.
+        const room = [0.9, motions.length > 1 || motion.title ? 0.8 : 0.86];
+        for (const i of [0, 1]) reach = Math.max(reach, Math.max(high[i] - middle[i], middle[i] - low[i]) / room[i]);
+        shift = [-middle[0] * w / h / 2 / view.zoom, middle[1] / 2 / view.zoom];
+      });
+      if (!(reach > 0)) return;
+      view.shift = [view.shift[0] + shift[0], view.shift[1] + shift[1]];
+      view.zoom = clamp(view.zoom / reach, 0.05, 50);
+    }
+  }
+  // Returns the instants whose pictures the view contains.
+  const instants = motion => follow.on || motion.live ? [Math.min(state.now, motion.duration)] : Array.from({ length: 25 }, (_, k) => motion.duration * k / 24);
+  // Puts the centre of rotations of the view in the middle of the motion.
+  function centre(motion, index) {
+    const [low, high] = motion.extent ? motion.extent.map(p => [...p]) : [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (const t of instants(motion)) for (const p of corners(partsAt(index, t).parts.flat())) p.forEach((x, k) => { low[k] = Math.min(low[k], x); high[k] = Math.max(high[k], x); });
+    if (low[0] <= high[0]) motion.centre = times(add(low, high), 0.5);
+  }
+  const cornersOf = ([a, b]) => Array.from({ length: 8 }, (_, k) => [k & 1 ? a[0] : b[0], k & 2 ? a[1] : b[1], k & 4 ? a[2] : b[2]]);
+  // Returns the corners of the boxes around opaque parts.
+  const corners = parts => parts.filter(part => part[4] === 1).flatMap(([name, more, m]) => cornersOf(boxAround(name, more)).map(p => moved(m, p)));
+  function boxAround(name, more) {
+    if (name !== "mesh") return boxOf(name, more);
+    const [low, step] = mesh(more[0]);
+    return [low, low.map((x, k) => x + 65535 * step[k])];
   }
 
   function triads(motion, poses) {
@@ -626,11 +715,17 @@ function start(root) {
   // Extends the scene to new samples of a control loop: the view is enlarged, and a floor that is not
   // declared is lowered.
   function widen(motion, parts) {
-    for (const [, , m] of parts) {
-      const place = [m[12], m[13], m[14]], beyond = Math.max(...[0, 4, 8].map(k => Math.hypot(m[k], m[k + 1], m[k + 2]))) / 2;
-      motion.radius = Math.max(motion.radius, norm(sub(place, motion.centre)) + beyond);
-      if (motion.floor !== null && !motion.level) motion.floor = Math.min(motion.floor, dot(place, motion.up) - beyond);
+    const extent = motion.extent ??= [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    let grows = false;
+    for (const p of corners(parts)) {
+      motion.radius = Math.max(motion.radius, norm(sub(p, motion.centre)));
+      if (motion.floor !== null && !motion.level) motion.floor = Math.min(motion.floor, dot(p, motion.up));
+      for (const k of [0, 1, 2]) {
+        if (p[k] < extent[0][k]) { extent[0][k] = p[k] - 0.03 * motion.size; grows = true; }
+        if (p[k] > extent[1][k]) { extent[1][k] = p[k] + 0.03 * motion.size; grows = true; }
+      }
     }
+    if (grows && !follow.on) view.fittedTo = "";
   }
 
   const mesh = key => { const [m, k] = key.split(".").map(Number); return motions[m].pieces[k][6]; };
@@ -646,21 +741,21 @@ function start(root) {
       if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     }
     const boxes = cells(w, h);
+      const shape = [w, h, follow.on].join();
+    if (view.isFitted && view.fittedTo !== shape && w && h) { view.fittedTo = shape; fit(boxes); }
     if (pen && w && h) pen.clear(tones.back);
     motions.forEach((motion, index) => {
       const [x, y, cw, ch] = boxes[index], t = Math.min(state.now, motion.duration);
-      const now = poses(motion, t), [k, part] = locate(motion.times, t);
+      const { now, parts: own } = partsAt(index, t), parts = own.flat();
       Object.assign(labels[index].style, { left: x + "px", top: y + "px", maxWidth: cw + "px" });
       const caption = motion.captions.filter(c => c[0] <= t + 1e-9).pop();
       labels[index].lastChild.textContent = caption ? caption[1] : "";
       if (!pen || !w || !h) return;
-      const parts = painted[index].flatMap(make => make(now, k, part));
       if (motion.live) widen(motion, parts.filter(([, , , , alpha]) => alpha === 1));
       if (frames.on) parts.push(...triads(motion, now));
       parts.push(...trails(motion, t));
-      let target = motion.centre;
-      if (follow.on && now.length) target = times(now.reduce((sum, m) => add(sum, [m[12], m[13], m[14]]), [0, 0, 0]), 1 / now.length);
-      const camera = cameraOf(motion, target, cw, ch);
+      if (simulation) parts.push(...simulation.spring(motion));
+      const target = targetOf(motion, now), camera = cameraOf(motion, target, cw, ch);
       let floor = null;
       if (motion.floor !== null) {
         const half = FLOOR_HALF * Math.max(follow.on ? motion.size : motion.radius, 1e-9), lower = p => add(p, times(motion.up, motion.floor - dot(p, motion.up)));
@@ -693,12 +788,118 @@ function start(root) {
     };
     socket.onclose = () => { live.captions = [[-1e9, "the program has ended, or cannot be reached"]]; state.dirty = true; setTimeout(listen, 1000); };
   }
-  if (live) listen();
+  let simulation = null;
+  if (simulated) simulate();
+  else if (live) listen();
+
+  // Simulates the mechanism: a sample is recorded whenever the page is drawn.
+  function simulate() {
+    let hasFailed = false;
+    const begin = { q: [...simulated.q], v: [...simulated.v], x: [...simulated.x] };
+    const say = words => { live.captions = words ? [[-1e9, words]] : []; state.dirty = true; };
+    const record = sim => {
+      append(live, sim.t, linkworkControls.sampleOf(live, sim));
+      duration = live.duration;
+      [slider.min, slider.max] = [live.times[0], duration];
+      state.now = duration;
+      state.dirty = true;
+    };
+    // Carries out a change. A mechanism that cannot be assembled or continued stops, with a message.
+    const attempt = change => {
+      try { change(); if (hasFailed) say(""); hasFailed = false; }
+      catch (error) {
+        if (!(error instanceof RangeError)) throw error;
+        hasFailed = true;
+        setPlaying(false);
+        say(error.message);
+      }
+    };
+    linkwork.Simulation.open({ ...simulated, module: live.module }).then(sim => {
+      const restartNow = () => { live.heard = false; sim.reset(begin); record(sim); };
+      const act = (change, restarts) => attempt(() => {
+        change();
+        painted = motions.map(paint);
+        if (!sim.isFinite() || sim.violation() > 1e-6) throw new RangeError("The mechanism cannot be assembled with these values.");
+        if (restarts) live.heard = false;
+        if (restarts || !state.playing) record(sim);
+      });
+      const controls = linkworkControls.panels(live, sim, begin, act);
+      root.insertBefore(element("div", { class: "panels" }, ...controls.nodes), root.querySelector(".plots"));
+      restart.onclick = () => attempt(restartNow);
+      one.onclick = () => { setPlaying(false); attempt(() => { sim.advance(0.01); record(sim); }); };
+      restartNow();
+      setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+      simulation = player(sim, attempt, record, say);
+      root.dataset.ready = "true";
+    }).catch(error => { say("The simulation could not be started: " + error.message); });
+  }
+  // Returns the functions that advance the simulation and pull a point of it.
+  function player(sim, attempt, record, say) {
+    let late = 0, told = "", plane = null;
+    const ray = e => {
+      const box = canvas.getBoundingClientRect(), { now } = partsAt(motions.indexOf(live), state.now), camera = cameraOf(live, targetOf(live, now), box.width, box.height);
+      const [x, y, back] = camera.axes, [a, b] = [2 * (e.clientX - box.left) / box.width - 1, 1 - 2 * (e.clientY - box.top) / box.height];
+      return { camera, way: unit(add(add(times(x, a * camera.tangent * camera.aspect), times(y, b * camera.tangent)), times(back, -1))), height: box.height };
+    };
+    // Returns the frame and the position of the nearest part of a body under the pointer.
+    const pick = e => {
+      const { camera, way, height } = ray(e), { parts } = partsAt(motions.indexOf(live), state.now), margin = (e.pointerType === "touch" ? 14 : 5) / (camera.pixels * height);
+      let best = null;
+      parts.forEach((list, k) => {
+        const piece = live.pieces[k];
+        if (!piece || piece[3] < 0 || piece[1] === "Input" || piece[1] === "Surface") return;
+        for (const [name, more, m, , alpha] of list) {
+          const away = alpha < 1 ? null : linkworkControls.entry(name, m, boxAround(name, more), camera.eye, way, margin);
+          if (away !== null && (!best || away < best.away)) best = { away, frame: piece[3], place: add(camera.eye, times(way, away)), back: camera.axes[2] };
+        }
+      });
+      return best;
+    };
+    const onPlane = e => {
+      const { camera, way } = ray(e);
+      return add(camera.eye, times(way, dot(sub(plane.place, camera.eye), plane.back) / (dot(way, plane.back) || -1e-9)));
+    };
+    return {
+      advance(passed) {
+        const start = performance.now(), time = passed * +speed.value;
+        attempt(() => {
+          const left = sim.advance(time, () => performance.now() - start > 14);
+          record(sim);
+          late = 0.95 * late + 0.05 * left / Math.max(time, 1e-9);
+          const words = late > 0.1 ? `slower than real time: ${(+speed.value * (1 - late)).toFixed(2)} ×` : "";
+          if (words !== told) say(told = words);
+        });
+      },
+      grab(e) {
+        const found = pick(e);
+        if (!found) return false;
+        const pose = poses(live, state.now)[found.frame], way = sub(found.place, [pose[12], pose[13], pose[14]]);
+        const local = [0, 1, 2].map(k => dot(way, [pose[4 * k], pose[4 * k + 1], pose[4 * k + 2]]));
+        plane = found;
+        attempt(() => sim.hold(live.used[found.frame], local, found.place));
+        setPlaying(true);
+        canvas.classList.add("pulls");
+        return true;
+      },
+      drag(e) {
+        if (sim.pull && e.buttons) sim.pull.target = onPlane(e);
+        else if (e.pointerType === "mouse" && !e.buttons) canvas.classList.toggle("grabs", !!pick(e));
+      },
+      release() { if (sim.pull) sim.hold(null); canvas.classList.remove("pulls"); },
+      spring(motion) {
+        if (!sim.pull || motion !== live) return [];
+        const from = sim.point(sim.t, sim.q), to = sim.pull.target, way = sub(to, from), length = norm(way), r = 0.012 * motion.size;
+        const ball = place => ["sphere", [], mul(columns([1, 0, 0], [0, 1, 0], [0, 0, 1], place), scaled(1.6 * r, 1.6 * r, 1.6 * r)), TONES.Input, 1];
+        return [ball(from), ball(to), ...(length > 1e-9 ? [["coil", [], mul(along(from, way), scaled(2 * r, 2 * r, length)), TONES.Input, 1]] : [])];
+      },
+    };
+  }
 
   let before = null;
   function step(time) {
     const passed = Math.min(0.1, (time - (before ?? time)) / 1000);
     before = time;
+    if (simulation && state.playing && visible) simulation.advance(passed);
     if (state.playing && visible && !live) {
       state.now += passed * +speed.value;
       if (state.now > duration) state.now = 0;
