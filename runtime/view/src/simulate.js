@@ -108,7 +108,9 @@ function explicitStep(f, t, y, h, tolerance) {
 function implicitStep(f, t, y, h, tolerance) {
   const n = y.length, d = 1 / (2 + Math.SQRT2), e = 6 + Math.SQRT2;
   const rate = (t, y) => { const out = new Float64Array(n); f(t, y, out); return out; };
-  const f0 = rate(t, y), w = new Float64Array(n * n), there = y.slice();
+  const f0 = rate(t, y);
+  if (!f0.every(Number.isFinite)) return [y, NaN, 3];
+  const w = new Float64Array(n * n), there = y.slice();
   for (let j = 0; j < n; j++) {
     const step = 1e-7 * Math.max(1, Math.abs(y[j]));
     there[j] = y[j] + step;
@@ -130,6 +132,7 @@ function implicitStep(f, t, y, h, tolerance) {
 const STEP = 1e-3;          // Time step with contacts, s.
 const SMALLEST = 1e-9;      // Smallest step, s.
 const RELUCTANT = 3000;     // Explicit steps per second above which implicit steps are tried.
+const TOUCH = 1e-6;         // Gap of closed contacts, m.
 const SWEEPS = 80;          // Iterations over the contacts of a step.
 
 class Simulation {
@@ -382,24 +385,20 @@ class Simulation {
 
   // ---- Contacts
 
-  // Takes a step of fixed length. Impulses satisfy Coulomb's law and Newton's law of restitution at the end
-  // of the step; displacements then remove overlaps without giving energy.
+  // Takes a step of this length, or up to the first impact. The motion is first that without contact forces;
+  // impulses at its end then satisfy Coulomb's law and Newton's law of restitution. They act throughout a
+  // step without impacts, so that they displace by half of the changes of velocities.
   contactStep(h) {
-    const { data } = this, gaps = this.at("contact_gaps").slice(), before = this.at("contact_rates").slice();
-    const reach = data.contacts.map(({ first }, k) => gaps[k] + Math.min(0, before[first]) * h * 2);
-    if (!reach.some((x, k) => data.contacts[k].pressedBy === k && x < 1e-3)) {
-      const end = this.t + h;
-      while (this.t < end - 1e-12) this.smoothStep(end);
-      return;
-    }
-    const a = this.accelerations(this.t, this.q, this.v).slice(), x = this.x.slice();
-    data.states.forEach(([, rate], k) => { x[k] += h * this.at(rate)[0]; });
-    const v = this.v.map((v, k) => v + h * a[k]);
-    this.resolve(gaps, before, v, h);
-    this.q = this.moved(this.q, v, h);
-    this.v = v;
-    this.x = x;
-    this.t += h;
+    const { data, nq, nv } = this, own = data.contacts.map((_, k) => k).filter(k => data.contacts[k].pressedBy === k);
+    const start = this.at("contact_gaps").slice(), before = this.at("contact_rates").slice();
+    const y = Float64Array.from([...this.q, ...this.v, ...this.x]), f = (t, y, out) => this.derivative(t, y, out);
+    const free = h => { const [end] = explicitStep(f, this.t, y, h, 1), q = end.slice(0, nq); this.normalise(q); return { q, v: end.slice(nq, nq + nv), x: end.slice(nq + nv), gaps: this.at("contact_gaps", this.t + h, q).slice() }; };
+    let end = free(h), hit = h;
+    for (const k of own) if (start[k] > TOUCH && end.gaps[k] < 0) hit = Math.min(hit, h * start[k] / (start[k] - end.gaps[k]));
+    if (hit < h) { hit = Math.max(hit, h / 50); end = free(hit); }
+    [this.q, this.v, this.x, this.t] = [end.q, end.v, end.x, this.t + hit];
+    const change = this.resolve(end.gaps, before, h);
+    if (change && hit === h) this.q = this.moved(this.q, change, h / 2);
     this.separate();
     this.project();
   }
@@ -422,23 +421,20 @@ class Simulation {
     const dot = (row, column) => { let sum = 0; for (let j = 0; j < nv; j++) sum += row[j] * column[j]; return sum; };
     return { list, rows, sides, w: rows.map(row => sides.map(side => dot(row, side))) };
   }
-  // Changes velocities by the impulses of contacts.
-  resolve(gaps, before, v, h) {
-    const { data } = this, near = k => gaps[k] + h * Math.min(0, before[data.contacts[k].first]) * 2 < 1e-3;
-    const { list, rows, sides, w } = this.closed(near);
-    if (!list.length) return;
-    // The rates are affine in the velocities.
-    const free = this.at("contact_rates", this.t, this.q, v), rate = [];
+  // Changes velocities by the impulses of contacts (projected Gauss–Seidel), and returns the change.
+  resolve(gaps, before, h) {
+    const { data } = this, { list, rows, sides, w } = this.closed(k => gaps[k] < TOUCH);
+    if (!list.length) return null;
+    const free = this.at("contact_rates"), rate = [];
     for (const { k, count } of list) for (let i = 0; i < count; i++) rate.push(free[data.contacts[k].first + i]);
-    const impulses = new Float64Array(rows.length), normal = new Map();
+    const impulses = new Float64Array(rows.length), normal = new Map(), start = rate.slice();
     const change = (row, by) => { impulses[row] += by; for (let i = 0; i < rows.length; i++) rate[i] += w[i][row] * by; };
     for (let sweep = 0; sweep < SWEEPS; sweep++) {
       let most = 0;
       for (const { k, pressedBy, first, count, friction, restitution } of list) {
         let from = first;
         if (pressedBy === k) {
-          const approach = before[data.contacts[k].first], bounce = approach < -20 * h ? -restitution * approach : 0;
-          const goal = bounce - Math.max(0, gaps[k]) / h * (bounce > 0 ? 0 : 1);
+          const goal = before[data.contacts[k].first] < -20 * h ? -restitution * start[first] : 0;
           const next = Math.max(0, impulses[first] + (goal - rate[first]) / (w[first][first] || Infinity)), by = next - impulses[first];
           if (by) { change(first, by); most = Math.max(most, Math.abs(by)); }
           normal.set(k, next);
@@ -454,7 +450,10 @@ class Simulation {
       }
       if (most < 1e-12 * (1 + impulses.reduce((sum, x) => Math.max(sum, Math.abs(x)), 0))) break;
     }
-    impulses.forEach((impulse, row) => { for (let j = 0; j < this.nv; j++) v[j] += impulse * sides[row][j]; });
+    const velocities = new Float64Array(this.nv);
+    impulses.forEach((impulse, row) => { for (let j = 0; j < this.nv; j++) velocities[j] += impulse * sides[row][j]; });
+    for (let j = 0; j < this.nv; j++) this.v[j] += velocities[j];
+    return velocities;
   }
   // Removes overlaps by displacements.
   separate() {
@@ -469,7 +468,7 @@ class Simulation {
       });
     const dq = new Float64Array(nv);
     own.forEach(({ first }, i) => { for (let j = 0; j < nv; j++) dq[j] += push[i] * sides[first][j]; });
-    this.q = this.moved(this.q, dq, 0.5);
+    this.q = this.moved(this.q, dq, 1);
   }
 
   // ---- Pulling a point
