@@ -29,6 +29,22 @@ pub fn command() -> Command {
         )
         .subcommand(view())
         .subcommand(
+            Command::new("gallery")
+                .about("Writes pages that simulate several mechanisms, and an index of them")
+                .arg(
+                    Arg::new("list")
+                        .value_name("LIST")
+                        .help("A file whose lines have a file and options of `linkwork view --live`; `#` begins a comment")
+                        .required(true)
+                        .value_parser(value_parser!(PathBuf)),
+                )
+                .arg(
+                    text("out", "FOLDER", "Output folder of the pages [default: gallery]")
+                        .short('o')
+                        .value_parser(value_parser!(PathBuf)),
+                ),
+        )
+        .subcommand(
             with_input(
                 Command::new("convert").about("Converts a robot file to a Rust struct"),
             )
@@ -55,7 +71,8 @@ pub fn command() -> Command {
         .subcommand(export())
 }
 
-fn view() -> Command {
+/// Returns the definition of `linkwork view`.
+pub fn view() -> Command {
     with_motion(with_input(
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
     ))

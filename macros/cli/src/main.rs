@@ -6,6 +6,7 @@ mod commands;
 mod convert;
 mod export;
 mod fmu;
+mod gallery;
 mod grid;
 mod input;
 mod library;
@@ -75,6 +76,7 @@ fn main() -> ExitCode {
         Some(("show", given)) => show::run(given),
         Some(("simulate", given)) => simulate::run(given),
         Some(("view", given)) => view::run(given),
+        Some(("gallery", given)) => gallery::run(given),
         Some(("convert", given)) => convert::run(given),
         Some(("new", given)) => new::run(given),
         Some(("completions", given)) => completions(given),

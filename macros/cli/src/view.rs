@@ -20,6 +20,15 @@ type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 const PLOTTED: usize = 12;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let (name, page) = page(matches)?;
+    let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{name}.html")));
+    page.write(&out)?;
+    crate::say!("{}", out.display());
+    Ok(())
+}
+
+/// Returns the mechanism's name and its page.
+pub fn page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     let mut input = Input::one(matches)?;
     if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
         input.declaration.add(quote::quote!(drawing));
@@ -28,20 +37,21 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let loaded = input.loaded(&graph)?;
     let Loaded { source, model, .. } = &loaded;
     let start = Start::new(&loaded, matches)?;
-    let out = matches
-        .get_one("out")
-        .cloned()
-        .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.declaration.name)));
     let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
     let page = Page::new(&input.declaration.name).text(&about);
-    if matches.get_flag("live") {
-        let figure = with_meshes(figure(&start, model), &input, matches)?;
-        page.equations(&loaded.equations).motion(live::motion(&start, figure)?).write(&out)?;
-        crate::say!("{}", out.display());
-        return Ok(());
-    }
+    let figure = with_meshes(figure(&start, model), &input, matches)?;
+    let page = match matches.get_flag("live") {
+        true => page.equations(&loaded.equations).motion(live::motion(&start, figure)?),
+        false => page.motion(recorded(&start, figure, matches)?),
+    };
+    Ok((input.declaration.name, page))
+}
+
+/// Returns the motion of a log, or a simulated one.
+fn recorded(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Result<Motion, Stop> {
+    let model = start.model;
     let states = match matches.get_one::<PathBuf>("motion") {
-        Some(path) => from_log(path, &start)?,
+        Some(path) => from_log(path, start)?,
         None => match start.obstacle() {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
                 crate::note!("linkwork: the page shows one configuration: {why}");
@@ -50,7 +60,6 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             _ => start.run(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
         },
     };
-    let figure = with_meshes(figure(&start, model), &input, matches)?;
     let times = states.iter().map(|(t, ..)| *t).collect();
     let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
     let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
@@ -72,9 +81,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             motion = motion.plots("Inputs", curves)?;
         }
     }
-    page.motion(motion).write(&out)?;
-    crate::say!("{}", out.display());
-    Ok(())
+    Ok(motion)
 }
 
 /// Returns the drawing with the meshes that are found, and prints the paths of the others.

@@ -5,6 +5,7 @@ mod encode;
 mod error;
 mod figure;
 mod free_body;
+mod gallery;
 mod live;
 mod log;
 mod mcap;
@@ -20,6 +21,8 @@ mod text;
 pub use error::Error;
 pub use figure::Figure;
 pub use free_body::{Side, free_body};
+#[doc(hidden)]
+pub use gallery::gallery;
 pub use live::Live;
 pub use log::csv;
 pub use mcap::{Instant, Names, mcap, mcap_of};

@@ -84,6 +84,14 @@ impl Page {
         )
     }
 
+    /// Returns a link to the page with its title, the first paragraph of its text, and still pictures.
+    pub(crate) fn card(&self, address: &str) -> String {
+        let pictures: String = self.motions.iter().map(Motion::picture).collect();
+        let about = text::blocks(&self.text).into_iter().next().unwrap_or_default();
+        let (address, title) = (text::html(address), text::html(&self.title));
+        format!("<article>{pictures}<h2><a href=\"{address}\">{title}</a></h2>{about}</article>\n")
+    }
+
     /// Returns the motions as an element for another page. That page needs [`style`](Self::style) in its
     /// head, and [`script`](Self::script) once after all fragments.
     pub fn fragment(&self) -> String {

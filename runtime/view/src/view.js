@@ -515,7 +515,7 @@ function start(root) {
   const slider = element("input", { type: "range", min: 0, max: duration, step: "any", value: 0, "aria-label": "time" });
   const clock = element("output");
   // Motions shorter than a second are played in slow motion at first.
-  const speeds = [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10], begun = live ? 1 : speeds.findLast(x => x <= 1 && duration >= x) ?? speeds[0];
+  const speeds = [0.001, 0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10], begun = live ? 1 : speeds.findLast(x => x <= 1 && duration >= x) ?? speeds[1];
   const speed = element("select", { "aria-label": "speed" }, ...speeds.map(x => element("option", x === begun ? { value: x, selected: "" } : { value: x }, x + " ×")));
   const toggle = (text, on) => { const b = element("button", { type: "button", "aria-pressed": on }, text); b.on = on; return b; };
   const frames = toggle("Frames", false), follow = toggle("Follow", motions.some(m => m.radius > 2.5 * m.size) || isFree);
@@ -866,7 +866,10 @@ function start(root) {
           const left = sim.advance(time, () => performance.now() - start > 14);
           record(sim);
           late = 0.95 * late + 0.05 * left / Math.max(time, 1e-9);
-          const words = late > 0.1 ? `slower than real time: ${(+speed.value * (1 - late)).toFixed(2)} ×` : "";
+          // A motion that is too fast for this machine is slowed down to a speed that it can follow.
+          const slower = speeds.findLast(x => x <= +speed.value * (1 - late));
+          if (late > 0.5 && slower) [speed.value, late] = [slower, 0];
+          const words = late > 0.1 ? `slower than real time: ${(+speed.value * (1 - late)).toPrecision(2)} ×` : "";
           if (words !== told) say(told = words);
         });
       },

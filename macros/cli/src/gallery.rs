@@ -1,0 +1,70 @@
+//! `linkwork gallery`: pages that simulate several mechanisms, and an index of them.
+
+use crate::{Stop, commands, view};
+use clap::ArgMatches;
+use linkwork_view::Page;
+use std::path::{Path, PathBuf};
+
+/// Writes a page for each line of the list, and the index.
+pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+    let list: &PathBuf =
+        matches.get_one("list").ok_or_else(|| Stop::Failure("expected a list".to_string()))?;
+    let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from("gallery"));
+    let text = std::fs::read_to_string(list)
+        .map_err(|error| Stop::Failure(format!("{}: {error}", list.display())))?;
+    let mut pages: Vec<(String, Page)> = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        if line.trim().is_empty() || line.trim_start().starts_with('#') {
+            continue;
+        }
+        let here = format!("{}:{}", list.display(), number + 1);
+        let (name, page) = page(list, line).map_err(|stop| match stop {
+            Stop::Failure(why) => Stop::Failure(format!("{here}: {why}")),
+            other => {
+                crate::note!("linkwork: {here}: the mechanism has errors");
+                other
+            }
+        })?;
+        let mut address = format!("{name}.html");
+        if pages.iter().any(|(known, _)| *known == address) {
+            address = format!("{name}-{}.html", number + 1);
+        }
+        page.write(out.join(&address))?;
+        pages.push((address, page));
+    }
+    if pages.is_empty() {
+        return Err(Stop::Failure(format!("{}: there is no mechanism", list.display())));
+    }
+    let index = out.join("index.html");
+    std::fs::write(&index, linkwork_view::gallery("Mechanisms", &pages))?;
+    crate::say!("{}", index.display());
+    Ok(())
+}
+
+/// Returns the name and the page of the mechanism of a line.
+fn page(list: &Path, line: &str) -> Result<(String, Page), Stop> {
+    let mut words = words(line)?;
+    if let (Some(file), Some(folder)) = (words.first_mut(), list.parent()) {
+        *file = folder.join(&*file).display().to_string();
+    }
+    let all = ["view".to_string(), "--live".to_string()].into_iter().chain(words);
+    let matches = commands::view()
+        .try_get_matches_from(all)
+        .map_err(|error| Stop::Failure(error.to_string().trim_end().to_string()))?;
+    view::page(&matches)
+}
+
+/// Splits a line at spaces outside of double quotes.
+fn words(line: &str) -> Result<Vec<String>, Stop> {
+    let mut out: Vec<String> = Vec::new();
+    for (k, part) in line.split('"').enumerate() {
+        match k % 2 {
+            0 => out.extend(part.split_whitespace().map(ToString::to_string)),
+            _ => out.push(part.to_string()),
+        }
+    }
+    match line.matches('"').count() % 2 {
+        0 => Ok(out),
+        _ => Err(Stop::Failure("a quote is not closed".to_string())),
+    }
+}
