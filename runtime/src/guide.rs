@@ -60,6 +60,9 @@ pub mod gpus {}
 #[doc = include_str!("../guide/fmi.md")]
 pub mod fmi {}
 
+#[doc = include_str!("../guide/live.md")]
+pub mod live {}
+
 #[doc = include_str!("../guide/without_std.md")]
 pub mod without_std {}
 

@@ -56,6 +56,7 @@
 //! - [simulating](guide/simulating/index.html): integrators, inputs, events;
 //! - [control](guide/control/index.html): regulators, estimators, optimal control;
 //! - [batches](guide/batches/index.html): many states at once;
+//! - [live pages](guide/live/index.html): simulation in a browser;
 //! - [without std](guide/without_std/index.html): microcontrollers;
 //! - [Python](guide/python/index.html): mechanisms as classes of Python;
 //! - [speed](guide/speed/index.html): release and debug builds, accuracy, stack;

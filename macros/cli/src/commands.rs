@@ -103,7 +103,16 @@ pub fn view() -> Command {
             "live",
             "Writes a page that simulates the mechanism, with sliders for parameters, state and inputs",
         )
-        .conflicts_with_all(["motion", "duration", "every", "inputs", "method", "step", "tolerance", "table"]),
+        .conflicts_with_all([
+            "motion",
+            "duration",
+            "every",
+            "inputs",
+            "method",
+            "step",
+            "tolerance",
+            "table",
+        ]),
     )
     .arg(
         text("out", "FILE", "Output file [default: the mechanism's name with .html]")

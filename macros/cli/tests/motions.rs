@@ -2,6 +2,8 @@
 
 #[path = "motions/flail.rs"]
 mod flail;
+#[path = "motions/live.rs"]
+mod live;
 #[path = "mechanisms/speeds.rs"]
 mod speeds;
 

@@ -65,9 +65,9 @@ impl Written {
     ) -> Result<(), String> {
         let layout = Layout::new(arguments).ok_or_else(|| format!("`{name}` has too many arguments"))?;
         self.module.add(name, program, &layout)?;
-        let list = arguments
-            .iter()
-            .map(|argument| format!("[{},{}]", quoted(argument.name()), robot.shared.sizes.length(*argument)));
+        let list = arguments.iter().map(|argument| {
+            format!("[{},{}]", quoted(argument.name()), robot.shared.sizes.length(*argument))
+        });
         let (list, length) = (joined(list), program.outputs.len());
         self.signatures.push(format!("{}:{{\"args\":{list},\"length\":{length}}}", quoted(name)));
         Ok(())

@@ -17,7 +17,7 @@ function addPlots(motion) {
   const { configuration, velocities, stateNames, outputs, functions } = motion.simulated, groups = new Map();
   const add = (title, unit, name, value) => {
     const key = title + unit;
-    if (!groups.has(key)) groups.set(key, { title, unit: unit === "1" ? "" : unit, curves: [] });
+    if (!groups.has(key)) groups.set(key, { title, unit: unitOf(unit), curves: [] });
     groups.get(key).curves.push({ name, values: [NaN], value });
   };
   configuration.forEach(([name, unit], k) => add("Coordinates", unit, name, sim => sim.q[k]));
@@ -61,7 +61,8 @@ function redraw(motion, sim) {
 // ---- Sliders
 
 const nice = x => { const p = 10 ** Math.floor(Math.log10(x)); return [1, 2, 5, 10].find(f => f * p >= x * 0.999) * p; };
-const shown = x => String(+x.toPrecision(5));
+const shown = x => Math.abs(x) < 1e-12 ? "0" : String(+x.toPrecision(5));
+const unitOf = unit => unit === "1" || unit === "any" ? "" : unit;
 
 // Returns a row with a slider and a field, and a function that sets both.
 function row(name, unit, value, [low, high], changed) {
@@ -75,7 +76,7 @@ function row(name, unit, value, [low, high], changed) {
   };
   range.oninput = () => { field.value = shown(+range.value); changed(+range.value); };
   field.onchange = () => { const x = field.valueAsNumber; if (Number.isFinite(x)) { show(x); changed(x); } else show(+range.value); };
-  return { show, node: make("label", { class: "row" }, make("span", { class: "name" }, name, make("small", {}, unit ? " " + unit : "")), range, field) };
+  return { show, node: make("label", { class: "row" }, make("span", { class: "name" }, name, make("small", {}, unitOf(unit) ? " " + unitOf(unit) : "")), range, field) };
 }
 function panel(title, rows, isOpen) {
   if (!rows.length) return [];
@@ -101,9 +102,9 @@ function panels(motion, sim, begin, act) {
   const inputs = data.inputs.map(([name, unit], k) => row(name, unit, sim.u[k], rangeOfInput(sim, k), x => act(() => { sim.u[k] = x; })));
   const state = [], turns = new Set(data.charts.flatMap(([kind, i]) => kind === 0 ? [] : [0, 1, 2, 3].map(k => (kind === 2 ? i + 3 : i) + k)));
   const reset = (change, fixed) => act(() => { change(); sim.reset(begin, fixed); [begin.q, begin.v] = [[...sim.q], [...sim.v]]; shows.forEach(show => show()); }, true);
-  const shows = [];
+  const shows = [], names = new Set(data.configuration.map(([name]) => name));
   const add = (list, k, name, unit, range) => {
-    const one = row((list === "v" ? "rate of " : "") + name, unit, begin[list][k], range, x => reset(() => { begin[list][k] = x; }, list === "q" ? k : -1));
+    const one = row((list === "v" && names.has(name) ? "rate of " : "") + name, unit, begin[list][k], range, x => reset(() => { begin[list][k] = x; }, list === "q" ? k : -1));
     shows.push(() => { if (document.activeElement?.closest(".row") !== one.node) one.show(begin[list][k]); });
     state.push(one);
   };

@@ -435,8 +435,11 @@ impl Motion {
                 ("sources", text::list(self.figure.shown().map(source))),
             ]
         });
-        let fields: Vec<String> =
-            fields.into_iter().chain(simulated).map(|(name, value)| format!("{}:{value}", text::json(name))).collect();
+        let fields: Vec<String> = fields
+            .into_iter()
+            .chain(simulated)
+            .map(|(name, value)| format!("{}:{value}", text::json(name)))
+            .collect();
         format!("{{{}}}", fields.join(","))
     }
 }

@@ -7,7 +7,8 @@ use std::path::Path;
 ///
 /// Motions are shown next to each other, with a common time. Drag to rotate the view, drag with two fingers
 /// or the right button to move it, pinch or use the wheel to zoom. The space bar starts and stops, arrow keys
-/// step, `+` and `−` zoom, `f` shows frames, `c` follows the motion, `0` restores the initial view.
+/// step, `+` and `−` zoom, `f` shows frames, `c` follows the motion,
+/// `1`, `2` and `3` select the view from the front, the side and the top, `0` fits the initial view.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,

@@ -12,7 +12,7 @@ const SIZE: [f64; 2] = [640.0, 420.0];
 /// Margin of the picture, pixels.
 const MARGIN: f64 = 24.0;
 /// Number of points on a circle.
-const ROUND: usize = 20;
+const ROUND: usize = 28;
 /// Maximum number of corners of a mesh whose outline is drawn.
 const CORNERS: usize = 2000;
 /// Colours of bodies, as in moving pictures.
@@ -124,10 +124,7 @@ fn samples(shape: &Shape, size: f64) -> (Vec<(Option<usize>, Vector3<f64>)>, f64
     };
     let scaled = |corners: &[[f64; 3]]| {
         let axes = Matrix3::from_row_slice(&n[3..12]);
-        own(corners
-            .iter()
-            .map(|c| vector(0) + axes * Vector3::from(*c).component_mul(&vector(12)))
-            .collect())
+        own(corners.iter().map(|c| vector(0) + axes * Vector3::from(*c).component_mul(&vector(12))).collect())
     };
     let ball = |radius: f64| own(sphere().iter().map(|c| vector(0) + Vector3::from(*c) * radius).collect());
     let areas = match shape.kind {

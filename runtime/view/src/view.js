@@ -679,8 +679,14 @@ function start(root) {
     if (low[0] <= high[0]) motion.centre = times(add(low, high), 0.5);
   }
   const cornersOf = ([a, b]) => Array.from({ length: 8 }, (_, k) => [k & 1 ? a[0] : b[0], k & 2 ? a[1] : b[1], k & 4 ? a[2] : b[2]]);
-  // Returns the corners of the boxes around opaque parts.
-  const corners = parts => parts.filter(part => part[4] === 1).flatMap(([name, more, m]) => cornersOf(boxAround(name, more)).map(p => moved(m, p)));
+  // Returns points whose hull contains the opaque parts.
+  const corners = parts => parts.filter(part => part[4] === 1).flatMap(([name, more, m]) => outlineOf(name, boxAround(name, more)).map(p => moved(m, p)));
+  // Returns points whose hull contains a form or nearly does: of round forms on circles, else the corners.
+  function outlineOf(name, [low, high]) {
+    if (name === "mesh" || name === "box" || name === "square") return cornersOf([low, high]);
+    const rings = name === "sphere" ? [[-1, 0], [-0.7, 0.72], [0, 1.05], [0.7, 0.72], [1, 0]] : [[low[2], high[0]], [high[2], name === "cone" ? 0 : high[0]]];
+    return rings.flatMap(([z, r]) => Array.from({ length: r ? 8 : 1 }, (_, k) => [r * Math.cos(k * HALF / 2), r * Math.sin(k * HALF / 2), z]));
+  }
   function boxAround(name, more) {
     if (name !== "mesh") return boxOf(name, more);
     const [low, step] = mesh(more[0]);

@@ -1,0 +1,215 @@
+//! Pages that simulate: their trajectories equal those of the command, and closed forms of contacts.
+
+use super::{folder, linkwork, rows};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Program for Node that opens the simulation of a page, advances it, and prints its state.
+const PROGRAM: &str = r#"
+const [, file, time, tolerance] = process.argv;
+const html = require("fs").readFileSync(file, "utf8");
+const [motion] = JSON.parse(html.match(/<script type="application\/json">(.*?)<\/script>/s)[1]);
+globalThis.document = { querySelectorAll: () => [] };
+globalThis.matchMedia = () => ({ addEventListener() {} });
+const code = html.slice(html.lastIndexOf("<script>") + 8, html.lastIndexOf("</script>"));
+const { Simulation } = new Function(code + "; return linkwork;")();
+Simulation.open({ ...motion.simulated, module: motion.module }).then(sim => {
+  sim.tolerance = +tolerance;
+  sim.reluctant = Infinity;
+  sim.advance(+time);
+  console.log(JSON.stringify([...sim.q, ...sim.v, ...sim.x, ...sim.energies()]));
+}).catch(error => { console.error(error); process.exit(1); });
+"#;
+
+/// Returns the first of these programs on the path.
+fn program(names: &[&str]) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path)
+        .flat_map(|folder| names.iter().map(move |name| folder.join(name)))
+        .find(|p| p.is_file())
+}
+
+/// Writes the page of a mechanism, and returns its state and energies after some seconds; `None` without Node.
+fn simulated(here: &Path, given: &[&str], seconds: &str, tolerance: &str) -> Option<Vec<f64>> {
+    let (status, _, stderr) = linkwork(here, &[&["view", "--live", "--out", "page.html"], given].concat());
+    assert_eq!(status, 0, "{stderr}");
+    let Some(node) = program(&["node"]) else {
+        println!("skipped: no Node on the path");
+        return None;
+    };
+    let command =
+        Command::new(node).args(["-e", PROGRAM, "page.html", seconds, tolerance]).current_dir(here).output();
+    let output = command.unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(text.trim().trim_matches(['[', ']']).split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect())
+}
+
+const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+
+/// Checks that pages and the command compute the same trajectories to 1e-9: of a tree with a free joint and
+/// ball joints, of declared speeds, of a loop, of a rolling body, of sliding friction, of states of first
+/// order, and of a robot.
+#[test]
+fn pages_and_the_command_compute_the_same_trajectories() {
+    let here = folder("live");
+    let models = |file: &str| format!("{MODELS}/{file}");
+    let [loop_, disk, rotor, arm] =
+        ["src/four_bar.rs", "src/rolling_disk.rs", "src/quadrotor.rs", "urdf/ur5.urdf"].map(models);
+    let cases: [(&str, &str); 6] = [
+        (super::FLAIL, "handle=0.5 v.flight.wx=2 v.chain.wy=-3 q.flight.z=1 u.thrust=3"),
+        (super::JUGGLER, "axial=0.25 q.theta=0.4 v.ux=0.3 v.uy=-0.2 v.wx=0.4 v.wz=2 v.bend=-0.6"),
+        (&loop_, "g=9.81 density=0.8 a=0.3 b=0.9 c=0.7 d=0.8 q.input=0.7 v.input=12"),
+        (&disk, "g=9.81 m=2 radius=0.4 q.lean=0.3 v.roll=6 v.heading=1"),
+        (
+            &rotor,
+            "g=9.81 mass=0.8 ixx=6e-3 iyy=7e-3 izz=11e-3 arm=0.2 thrust=9e-6 drag=1.5e-7 lag=0.04 u.front=470 u.left=460 u.back=465 u.right=475",
+        ),
+        (&arm, "q.shoulder_lift_joint=-1 q.elbow_joint=0.5 u.wrist_1_joint=0.1"),
+    ];
+    for (file, values) in cases {
+        let set: Vec<&str> = values.split(' ').flat_map(|value| ["--set", value]).collect();
+        let given = [&[file], &set[..]].concat();
+        let Some(found) = simulated(&here, &given, "0.5", "1e-12") else { return };
+        let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-13"];
+        let (status, log, stderr) = linkwork(&here, &[&["simulate"], &given[..], &times].concat());
+        assert_eq!(status, 0, "{stderr}");
+        let rows = rows(&log);
+        // The command prints inputs behind the state; the page prints energies.
+        let expected = &rows.last().unwrap()[1..];
+        let states = found.len() - 3;
+        assert!(states <= expected.len(), "{file}");
+        for (a, b) in found[..states].iter().zip(expected) {
+            assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{file}: {found:?} {expected:?}");
+        }
+    }
+}
+
+/// Checks contacts with closed forms. A ball dropped from 0.9 m with restitution ½ rebounds to a quarter of
+/// the height. A block slides `v²/(2μg)`. A ball that slides at first rolls with 5/7 of its speed, so that
+/// its kinetic energy is `m (5/7 v)² (1 + 2/5) / 2`. All of them come to rest on the floor, not in it.
+#[test]
+fn contacts_of_pages_have_their_closed_forms() {
+    let here = folder("live_contacts");
+    let text = "#[mechanism(gravity = -9.81 * z)]
+        struct Bouncing {
+            #[body(mass = 1, inertia = sphere(1, 0.1))] ball: Body,
+            #[joint(ground -> ball, along = z)] height: Sleeve,
+            #[contact(ball.sphere(0.1), ground.plane(z), restitution = 0.5)] floor: Contact,
+        }
+        #[mechanism(gravity = -9.81 * z)]
+        struct Sliding {
+            #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))] block: Body,
+            #[joint(ground -> block)] pose: Free,
+            #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = 0.3)] floor: Contact,
+        }
+        #[mechanism(gravity = -9.81 * z)]
+        struct Rolling {
+            #[body(mass = 2, inertia = sphere(2, 0.1))] ball: Body,
+            #[joint(ground -> ball)] pose: Free,
+            #[contact(ball.sphere(0.1), ground.plane(z), friction = 0.3)] floor: Contact,
+        }";
+    std::fs::write(here.join("contacts.rs"), text).unwrap();
+    let run = |name: &str, values: &[&str], seconds: f64| {
+        let set: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
+        simulated(
+            &here,
+            &[&["contacts.rs", "--struct", name], &set[..]].concat(),
+            &seconds.to_string(),
+            "1e-9",
+        )
+    };
+    // The highest point after the first impact: as long again as half of the fall.
+    let fall = (2.0 * 0.9 / 9.81_f64).sqrt();
+    let Some(top) = run("Bouncing", &["q.height=1"], 1.5 * fall) else { return };
+    assert!((top[0] - 0.1 - 0.9 / 4.0).abs() < 1e-3 && top[1].abs() < 5e-3, "{top:?}");
+    let at_rest = run("Bouncing", &["q.height=1"], 3.0).unwrap();
+    assert!((at_rest[0] - 0.1).abs() < 1e-5 && at_rest[1].abs() < 1e-5, "{at_rest:?}");
+    let block = run("Sliding", &["q.pose.z=0.05", "v.pose.vx=2"], 1.0).unwrap();
+    assert!(
+        (block[0] - 4.0 / (2.0 * 0.3 * 9.81)).abs() < 1e-5 && (block[2] - 0.05).abs() < 1e-9,
+        "{block:?}"
+    );
+    let ball = run("Rolling", &["q.pose.z=0.1", "v.pose.vx=2"], 1.0).unwrap();
+    let energy = (5.0 / 7.0 * 2.0_f64).powi(2) * 1.4;
+    assert!((ball[ball.len() - 3] - energy).abs() < 1e-5 && (ball[2] - 0.1).abs() < 1e-9, "{ball:?}");
+}
+
+/// Checks that pages are self-contained, and the messages for mechanisms that a page cannot simulate.
+#[test]
+fn pages_that_simulate_need_nothing_else() {
+    let here = folder("live_page");
+    let disk = format!("{MODELS}/src/double_pendulum.rs");
+    let (status, _, stderr) = linkwork(&here, &["view", "--live", &disk, "--out", "page.html"]);
+    assert_eq!(
+        (status, stderr.as_str()),
+        (0, "linkwork: parameters without a value begin at g = 9.81, m1 = 1, m2 = 1, l1 = 1, l2 = 1\n")
+    );
+    let html = std::fs::read_to_string(here.join("page.html")).unwrap();
+    assert!(html.len() < 1_500_000 && !html.contains("http"), "{}", html.len());
+    assert!(
+        html.contains("<noscript><p>This page needs scripts")
+            && html.contains("<svg")
+            && html.contains("<math>")
+    );
+    std::fs::write(
+        here.join("still.rs"),
+        "#[mechanism(inertia = none)] struct Still { #[body] rod: Body, #[joint(ground -> rod, about = z)] pin: Pin }",
+    )
+    .unwrap();
+    let (status, _, stderr) = linkwork(&here, &["view", "--live", "still.rs"]);
+    assert!(status == 2 && stderr.contains("no masses"), "{stderr}");
+    let (status, _, stderr) = linkwork(&here, &["view", "--live", &disk, "--duration", "2"]);
+    assert!(status == 2 && stderr.contains("--duration"), "{stderr}");
+}
+
+/// Checks the page in a browser, if one is installed: it simulates, draws, and reports no error.
+#[test]
+fn a_browser_simulates_the_page() {
+    let here = folder("live_browser");
+    let disk = format!("{MODELS}/src/double_pendulum.rs");
+    let (status, _, stderr) =
+        linkwork(&here, &["view", "--live", &disk, "--set", "q.shoulder=1", "--out", "page.html"]);
+    assert_eq!(status, 0, "{stderr}");
+    let Some(browser) = program(&["chromium", "chromium-browser", "google-chrome", "chrome"]) else {
+        println!("skipped: no Chromium on the path");
+        return;
+    };
+    let mut command = Command::new(browser);
+    command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--disable-quic"]);
+    command.args(["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-logging=stderr"]);
+    command.args(["--disable-background-networking", "--virtual-time-budget=1500", "--dump-dom"]);
+    command.arg(format!("--user-data-dir={}", here.join("browser").display()));
+    let output = command.arg(format!("file://{}", here.join("page.html").display())).output().unwrap();
+    let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if !output.status.success() || dom.is_empty() {
+        println!("skipped: this browser does not start without a screen");
+        return;
+    }
+    let is_said = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
+    let console: Vec<&str> = log.lines().filter(is_said).collect();
+    assert!(console.is_empty(), "{console:?}");
+    assert!(dom.contains("data-ready=\"true\"") && !dom.contains("class=\"failure\""), "{dom}");
+    assert_eq!(dom.matches("class=\"row\"").count(), 5 + 4, "sliders of parameters and of the initial state");
+    let (_, clock) = dom.split_once("<output>").unwrap();
+    let time: f64 = clock.split_once(" s<").unwrap().0.parse().unwrap();
+    assert!(time > 0.0, "{time}");
+}
+
+/// Checks that the list of all mechanisms of the models has pages, with an index.
+#[test]
+fn a_gallery_has_an_index() {
+    let here = folder("gallery");
+    let list = "# two pages\n\ndouble.rs --set q.shoulder=1\ndouble.rs --set q.elbow=1 --with \"derivatives\"\n";
+    std::fs::write(here.join("list.txt"), list).unwrap();
+    std::fs::copy(format!("{MODELS}/src/double_pendulum.rs"), here.join("double.rs")).unwrap();
+    let (status, out, stderr) = linkwork(&here, &["gallery", "list.txt", "--out", "pages"]);
+    assert_eq!((status, out.as_str()), (0, "pages/index.html\n"), "{stderr}");
+    let index = std::fs::read_to_string(here.join("pages/index.html")).unwrap();
+    for page in ["DoublePendulum.html", "DoublePendulum-4.html"] {
+        assert!(index.contains(&format!("<a href=\"{page}\">")) && here.join("pages").join(page).is_file());
+    }
+    std::fs::write(here.join("bad.txt"), "double.rs --set q.elbw=1\n").unwrap();
+    let (status, _, stderr) = linkwork(&here, &["gallery", "bad.txt"]);
+    assert!(status == 2 && stderr.contains("bad.txt:1: `--set`: there is no `q.elbw`"), "{stderr}");
+}
