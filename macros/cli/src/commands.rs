@@ -114,6 +114,7 @@ pub fn view() -> Command {
             "table",
         ]),
     )
+    .arg(switch("fragment", "Writes a part of a page, for the documentation of a crate and other documents"))
     .arg(
         text("out", "FILE", "Output file [default: the mechanism's name with .html]")
             .short('o')

@@ -22,7 +22,10 @@ const PLOTTED: usize = 12;
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let (name, page) = page(matches)?;
     let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{name}.html")));
-    page.write(&out)?;
+    match matches.get_flag("fragment") {
+        true => std::fs::write(&out, page.embedded())?,
+        false => page.write(&out)?,
+    }
     crate::say!("{}", out.display());
     Ok(())
 }

@@ -50,12 +50,12 @@ const SLIPPING: &str = "__constrained_dynamics";
 
 /// A module with the signatures of its functions as JSON.
 #[derive(Default)]
-struct Written {
+struct WebModule {
     module: Module,
     signatures: Vec<String>,
 }
 
-impl Written {
+impl WebModule {
     fn add(
         &mut self,
         robot: &Robot,
@@ -118,7 +118,7 @@ impl Robot {
         Ok((format!("{{{}}}", fields.join(",")), module.module.bytes()))
     }
 
-    fn web_module(&self, drawing: &Program) -> Result<Written, String> {
+    fn web_module(&self, drawing: &Program) -> Result<WebModule, String> {
         let shared = &self.shared;
         let is_bound = !(shared.constraints.names.is_empty() && shared.contacts.is_empty());
         let slips = !shared.constraints.slipping.is_empty();
@@ -129,7 +129,7 @@ impl Robot {
         indices.extend(shared.states.iter().filter_map(|state| state.rate));
         indices.sort_unstable();
         indices.dedup();
-        let mut written = Written::default();
+        let mut written = WebModule::default();
         for index in indices {
             written.add_entry(self, &shared.entries[index])?;
         }

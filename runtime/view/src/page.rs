@@ -52,7 +52,6 @@ impl Page {
             let more = about.split_off(1).concat();
             about.push(format!("<details><summary>More</summary>{more}</details>"));
         }
-        let simulates = self.motions.iter().any(Motion::is_simulated);
         let mut missing: Vec<&str> = self.motions.iter().flat_map(Motion::missing_meshes).collect();
         missing.sort_unstable();
         missing.dedup();
@@ -73,15 +72,12 @@ impl Page {
         };
         let about: String = about.iter().map(|block| format!("{block}\n")).collect();
         format!(
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <link rel=\"icon\" href=\"data:,\">\n\
-             <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body class=\"linkwork-page\">\n\
-             <header><h1>{title}</h1>\n{about}</header>\n{}\n{equations}<script>\n{simulation}{}</script>\n</body>\n</html>\n",
-            Page::style(),
+            "{}<body class=\"linkwork-page\">\n<header><h1>{title}</h1>\n{about}</header>\n{}\n\
+             {equations}<script>\n{simulation}{}</script>\n</body>\n</html>\n",
+            head(&title),
             self.fragment(),
             Page::script(),
-            simulation = if simulates { Page::simulation() } else { "" },
+            simulation = if self.simulates() { Page::simulation() } else { "" },
         )
     }
 
@@ -99,7 +95,10 @@ impl Page {
         let motions = text::list(self.motions.iter().map(Motion::json));
         let pictures: String = self.motions.iter().map(Motion::picture).collect();
         format!(
-            "<div class=\"linkwork-view\" role=\"group\" aria-label=\"{}\"><script type=\"application/json\">{motions}</script><noscript><p>This page needs scripts to move; they are disabled in this browser. The drawing shows the beginning.</p>{pictures}</noscript></div>",
+            "<div class=\"linkwork-view\" role=\"group\" aria-label=\"{}\">\
+             <script type=\"application/json\">{motions}</script>\
+             <noscript><p>This page needs scripts to move; they are disabled in this browser. The drawing \
+             shows the beginning.</p>{pictures}</noscript></div>",
             text::html(&self.title)
         )
     }
@@ -120,6 +119,23 @@ impl Page {
         concat!(include_str!("simulate.js"), include_str!("controls.js"))
     }
 
+    /// Returns the motions for a document that contains HTML, such as the documentation of a crate
+    /// (`#![doc = include_str!("pendulum.html")]`): a style sheet, an element, and its program. A document
+    /// may contain several of them.
+    pub fn embedded(&self) -> String {
+        let simulation = if self.simulates() { Page::simulation() } else { "" };
+        format!(
+            "<style>\n{}</style>\n{}\n<script>\n{{\n{simulation}{}}}\n</script>\n",
+            Page::style(),
+            self.fragment(),
+            Page::script()
+        )
+    }
+
+    fn simulates(&self) -> bool {
+        self.motions.iter().any(Motion::is_simulated)
+    }
+
     /// Writes the page to a file, and creates its folder if necessary.
     ///
     /// # Errors
@@ -132,4 +148,15 @@ impl Page {
         let failed = |cause| Error::File { path: path.to_path_buf(), cause };
         made.and_then(|()| std::fs::write(path, self.html())).map_err(failed)
     }
+}
+
+/// Returns the beginning of a page, up to its body. The title is escaped.
+pub(crate) fn head(title: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n\
+         <title>{title}</title>\n<style>\n{}</style>\n</head>\n",
+        Page::style()
+    )
 }

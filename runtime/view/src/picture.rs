@@ -98,12 +98,14 @@ fn drawn(outlines: &[Outline]) -> String {
         let _ = match *line > 0.0 {
             true => write!(
                 out,
-                "<polyline points=\"{points}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{:.1}\" stroke-linecap=\"round\"/>",
+                "<polyline points=\"{points}\" fill=\"none\" stroke=\"{colour}\" \
+                 stroke-width=\"{:.1}\" stroke-linecap=\"round\"/>",
                 (scale * line).max(2.0)
             ),
             false => write!(
                 out,
-                "<polygon points=\"{points}\" fill=\"{colour}\" stroke=\"#00000055\" stroke-linejoin=\"round\"/>"
+                "<polygon points=\"{points}\" fill=\"{colour}\" \
+                 stroke=\"#00000055\" stroke-linejoin=\"round\"/>"
             ),
         };
     }

@@ -392,8 +392,10 @@ class Simulation {
     const { data, nq, nv } = this, own = data.contacts.map((_, k) => k).filter(k => data.contacts[k].pressedBy === k);
     const start = this.at("contact_gaps").slice(), before = this.at("contact_rates").slice();
     const y = Float64Array.from([...this.q, ...this.v, ...this.x]), f = (t, y, out) => this.derivative(t, y, out);
-    const free = h => { const [end] = explicitStep(f, this.t, y, h, 1), q = end.slice(0, nq); this.normalise(q); return { q, v: end.slice(nq, nq + nv), x: end.slice(nq + nv), gaps: this.at("contact_gaps", this.t + h, q).slice() }; };
-    let end = free(h), hit = h;
+    const free = h => { const [end, error] = explicitStep(f, this.t, y, h, 1e-3), q = end.slice(0, nq); this.normalise(q); return { error, q, v: end.slice(nq, nq + nv), x: end.slice(nq + nv), gaps: this.at("contact_gaps", this.t + h, q).slice() }; };
+    let end = free(h);
+    while (!(end.error <= 1) && h > 1e-6) { h /= 4; end = free(h); }
+    let hit = h;
     for (const k of own) if (start[k] > TOUCH && end.gaps[k] < 0) hit = Math.min(hit, h * start[k] / (start[k] - end.gaps[k]));
     if (hit < h) { hit = Math.max(hit, h / 50); end = free(hit); }
     [this.q, this.v, this.x, this.t] = [end.q, end.v, end.x, this.t + hit];

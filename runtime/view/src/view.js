@@ -499,6 +499,9 @@ function boxOf(name, more) {
 }
 
 function start(root) {
+  // A document may contain this program several times.
+  if (root.dataset.started) return;
+  root.dataset.started = "true";
   const motions = JSON.parse(root.querySelector("script").textContent);
   motions.forEach(decode);
   if (!motions.length) return;

@@ -29,7 +29,8 @@ fn program(names: &[&str]) -> Option<PathBuf> {
         .find(|p| p.is_file())
 }
 
-/// Writes the page of a mechanism, and returns its state and energies after some seconds; `None` without Node.
+/// Writes the page of a mechanism, and returns its state and energies after some seconds; `None` without
+/// Node.
 fn simulated(here: &Path, given: &[&str], seconds: &str, tolerance: &str) -> Option<Vec<f64>> {
     let (status, _, stderr) = linkwork(here, &[&["view", "--live", "--out", "page.html"], given].concat());
     assert_eq!(status, 0, "{stderr}");
@@ -63,7 +64,8 @@ fn pages_and_the_command_compute_the_same_trajectories() {
         (&disk, "g=9.81 m=2 radius=0.4 q.lean=0.3 v.roll=6 v.heading=1"),
         (
             &rotor,
-            "g=9.81 mass=0.8 ixx=6e-3 iyy=7e-3 izz=11e-3 arm=0.2 thrust=9e-6 drag=1.5e-7 lag=0.04 u.front=470 u.left=460 u.back=465 u.right=475",
+            "g=9.81 mass=0.8 ixx=6e-3 iyy=7e-3 izz=11e-3 arm=0.2 thrust=9e-6 drag=1.5e-7 lag=0.04 \
+             u.front=470 u.left=460 u.back=465 u.right=475",
         ),
         (&arm, "q.shoulder_lift_joint=-1 q.elbow_joint=0.5 u.wrist_1_joint=0.1"),
     ];
@@ -152,9 +154,16 @@ fn pages_that_simulate_need_nothing_else() {
             && html.contains("<svg")
             && html.contains("<math>")
     );
+    let fragment = ["view", "--live", "--fragment", &disk, "--out", "part.html"];
+    assert_eq!(linkwork(&here, &fragment).0, 0);
+    let part = std::fs::read_to_string(here.join("part.html")).unwrap();
+    // Markdown ends a block of HTML at an empty line, except in styles and scripts.
+    let (_, element) = part.split_once("</style>\n").unwrap();
+    assert!(part.starts_with("<style>") && !element.split_once("<script>\n").unwrap().0.contains("\n\n"));
     std::fs::write(
         here.join("still.rs"),
-        "#[mechanism(inertia = none)] struct Still { #[body] rod: Body, #[joint(ground -> rod, about = z)] pin: Pin }",
+        "#[mechanism(inertia = none)] struct Still { #[body] rod: Body, \
+         #[joint(ground -> rod, about = z)] pin: Pin }",
     )
     .unwrap();
     let (status, _, stderr) = linkwork(&here, &["view", "--live", "still.rs"]);
@@ -196,11 +205,12 @@ fn a_browser_simulates_the_page() {
     assert!(time > 0.0, "{time}");
 }
 
-/// Checks that the list of all mechanisms of the models has pages, with an index.
+/// Checks that each line of a list has a page and an entry of the index, and the message for a wrong line.
 #[test]
 fn a_gallery_has_an_index() {
     let here = folder("gallery");
-    let list = "# two pages\n\ndouble.rs --set q.shoulder=1\ndouble.rs --set q.elbow=1 --with \"derivatives\"\n";
+    let list = "# two pages\n\ndouble.rs --set q.shoulder=1\n\
+                double.rs --set q.elbow=1 --with \"derivatives\"\n";
     std::fs::write(here.join("list.txt"), list).unwrap();
     std::fs::copy(format!("{MODELS}/src/double_pendulum.rs"), here.join("double.rs")).unwrap();
     let (status, out, stderr) = linkwork(&here, &["gallery", "list.txt", "--out", "pages"]);
