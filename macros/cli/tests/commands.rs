@@ -357,7 +357,7 @@ fn documented_commands_run() {
         .collect();
     assert!(commands.len() >= 10, "{commands:?}");
     for mut command in commands {
-        if command[0] == "view" || command[0] == "simulate" {
+        if command[0] == "simulate" || command[0] == "view" && !command.contains(&"--live") {
             command.retain(|word| !["--duration", "2"].contains(word));
             command.extend(["--duration", "0.05"]);
         }
