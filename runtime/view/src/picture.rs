@@ -87,14 +87,14 @@ fn drawn(outlines: &[Outline]) -> String {
     let [width, height] = SIZE;
     let scale = (0..2).map(|k| (SIZE[k] - 2.0 * MARGIN) / (high[k] - low[k]).max(1e-9));
     let scale = scale.fold(f64::INFINITY, f64::min);
-    let at = |p: &[f64; 2]| {
+    let pixel = |p: &[f64; 2]| {
         let x = width / 2.0 + scale * (p[0] - (low[0] + high[0]) / 2.0);
         let y = height / 2.0 - scale * (p[1] - (low[1] + high[1]) / 2.0);
         format!("{x:.1},{y:.1}")
     };
     let mut out = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"drawing\">");
     for Outline { points, colour, line, .. } in outlines {
-        let points = points.iter().map(at).collect::<Vec<_>>().join(" ");
+        let points = points.iter().map(pixel).collect::<Vec<_>>().join(" ");
         let _ = match *line > 0.0 {
             true => write!(
                 out,
@@ -119,16 +119,19 @@ fn samples(shape: &Shape, size: f64) -> (Vec<(Option<usize>, Vector3<f64>)>, f64
     let n = &shape.numbers;
     let vector = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
-    let own = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
+    let in_frame = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
     let round = |half: f64, radius: f64| {
         let (axis, at) = (vector(3), vector(0));
-        own([-half, half].iter().flat_map(|h| circle(at + axis * *h, axis, radius)).collect())
+        in_frame([-half, half].iter().flat_map(|h| circle(at + axis * *h, axis, radius)).collect())
     };
     let scaled = |corners: &[[f64; 3]]| {
         let axes = Matrix3::from_row_slice(&n[3..12]);
-        own(corners.iter().map(|c| vector(0) + axes * Vector3::from(*c).component_mul(&vector(12))).collect())
+        in_frame(
+            corners.iter().map(|c| vector(0) + axes * Vector3::from(*c).component_mul(&vector(12))).collect(),
+        )
     };
-    let ball = |radius: f64| own(sphere().iter().map(|c| vector(0) + Vector3::from(*c) * radius).collect());
+    let ball =
+        |radius: f64| in_frame(sphere().iter().map(|c| vector(0) + Vector3::from(*c) * radius).collect());
     let areas = match shape.kind {
         Kind::Bar => return (vec![(a, vector(0)), (b, vector(3))], 0.018 * size),
         Kind::Coil | Kind::Damper => return (vec![(a, vector(0)), (b, vector(3))], 0.03 * size),
@@ -139,7 +142,7 @@ fn samples(shape: &Shape, size: f64) -> (Vec<(Option<usize>, Vector3<f64>)>, f64
         Kind::Capsule => round(n[7] / 2.0 + n[6] / 2.0, n[6]),
         Kind::Tube => round(n[8] / 2.0, n[7]),
         Kind::Cone => {
-            let mut points = own(circle(vector(0) - vector(3) * (n[7] / 4.0), vector(3), n[6]));
+            let mut points = in_frame(circle(vector(0) - vector(3) * (n[7] / 4.0), vector(3), n[6]));
             points.push((a, vector(0) + vector(3) * (0.75 * n[7])));
             points
         }
