@@ -43,7 +43,7 @@ impl State {
             Quantity::Acceleration(k) => self.a[k],
             Quantity::Force(k) => self.tau[k],
             Quantity::Input(k) => self.u[k],
-            Quantity::Given(k) | Quantity::Momentum(k) => self.given[k],
+            Quantity::Given(_, k) | Quantity::Momentum(k) => self.given[k],
             _ => sample(s, 3),
         }
     }
