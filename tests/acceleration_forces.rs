@@ -40,9 +40,13 @@ struct Unsteady<T: Real> {
     reduced: Scalar,
     #[define(density(-dot(r(airframe / ground), ground.z)) / 2 * speed * speed * area)]
     load: Scalar,
-    #[acts(on = airframe, value = -load * (lift(alpha) + lift_rate * reduced) * airframe.z + power * airframe.x)]
+    #[acts(
+        on = airframe, value = -load * (lift(alpha) + lift_rate * reduced) * airframe.z + power * airframe.x
+    )]
     lifting: Force,
-    #[acts(on = airframe, value = load * chord * (elevator + moment_rate * (1 + alpha) * reduced) * airframe.y)]
+    #[acts(
+        on = airframe, value = load * chord * (elevator + moment_rate * (1 + alpha) * reduced) * airframe.y
+    )]
     pitching: Torque,
     #[output(dot(a(airframe / ground / ground), airframe.z))]
     felt: Scalar,

@@ -47,7 +47,10 @@ struct Machine<T> {
     cross: Universal,
     #[joint(weight.at(l * z) -> rotor, about = z, pitch = 0.02)]
     thread: Screw,
-    #[acts(between = (ground, weight.at(0.1 * x)), energy = k * (exp(stretch / l) + sqrt(stretch * stretch / (l * l) + 1)))]
+    #[acts(
+        between = (ground, weight.at(0.1 * x)),
+        energy = k * (exp(stretch / l) + sqrt(stretch * stretch / (l * l) + 1))
+    )]
     rope: Spring,
     #[acts(on = thread, coulomb = 0.3)]
     rubbing: Friction,

@@ -100,7 +100,7 @@ fn check_forward<'g>(
 /// Checks that the lowered program and its fused form compute the values of the expression graph.
 fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     let q = random_configuration(model, seed);
-    let symbol = |s| match Quantity::of(s) {
+    let symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         _ => sample(s, seed),
     };

@@ -191,7 +191,7 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
 
 /// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
 fn displaced(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
-    let symbol_value = |s| match Quantity::of(s) {
+    let symbol_value = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(i) => q[i],
         Quantity::Velocity(i) => f64::from(u8::from(i == k)),
         _ => 0.0,
@@ -236,7 +236,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
             let column: Vec<f64> = if known.contains(&k) { column } else { (0..n).map(product).collect() };
             let side = |h: f64| {
                 let q = if by_q { displaced(model, &q, k, h) } else { q.clone() };
-                let displaced_value = |s| match Quantity::of(s) {
+                let displaced_value = |s| match Quantity::from_symbol(s) {
                     Quantity::Configuration(i) => q[i],
                     Quantity::Velocity(i) if i == k && !by_q => at(s) + h,
                     _ => at(s),
@@ -265,7 +265,8 @@ fn forces_from_the_ground_are_not_forgotten() {
         let mut found = None;
         let fields = format!(
             "#[body(mass = 2, inertia = diagonal(1, 2, 3))] hull: Body, #[joint(ground -> hull)] pose: Free,
-             #[body(mass = 1, com = x)] arm: Body, #[joint(hull.at(y) -> arm, about = z)] elbow: Pin, {element}"
+             #[body(mass = 1, com = x)] arm: Body, #[joint(hull.at(y) -> arm, about = z)] elbow: Pin, \
+                 {element}"
         );
         let source = ("gravity = -9.81 * z".to_string(), format!("struct Boat {{ {fields} }}"));
         with_model(&source, |_, model| found = Some(check_what_is_known(model, 3)));

@@ -48,7 +48,7 @@ impl State {
     /// first order.
     fn values_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
         let other = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
-        eval(e, &|s| match Quantity::of(s) {
+        eval(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
             Quantity::Velocity(k) => self.v[k] + time * other(Quantity::Acceleration(k).symbol()),
             Quantity::Time => other(s) + time,
@@ -84,7 +84,8 @@ fn check_outline(description: &Description, model: &Model<'_>) {
     assert_eq!(outline.frames, model.frames.iter().map(|frame| frame.name.clone()).collect::<Vec<_>>());
     assert_eq!((outline.time, outline.velocity_inputs), (model.time, model.velocity_inputs));
     for (guess, output) in outline.outputs.iter().zip(&model.outputs) {
-        let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
+        let symbols: Vec<Quantity> =
+            symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
         let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
         assert_eq!((&guess.name, guess.size), (&output.name, output.values.len()));
         assert_eq!(
@@ -164,7 +165,7 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
         power -= velocity_derivative(*function);
     }
     for load in &model.loads {
-        let idle = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
+        let idle = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
         power += replace(load.force, &idle) * velocity_derivative(load.rate);
     }
     let expected = power - derivative(model, Quantity::Time, kinetic - potential);

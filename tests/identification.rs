@@ -32,9 +32,14 @@ struct Puma {
     d3: f64,
     d4: f64,
     m: f64,
-    #[body(mass = 3 * m, com = [0.1 * a2, 0.02 * d3, 0.1 * d4], inertia = cuboid(3 * m, a2, d3, d4).rotated(x(0.3)))]
+    #[body(
+        mass = 3 * m, com = [0.1 * a2, 0.02 * d3, 0.1 * d4],
+        inertia = cuboid(3 * m, a2, d3, d4).rotated(x(0.3))
+    )]
     trunk: Body,
-    #[body(mass = 2 * m, com = [a2 / 2, d3, 0.1 * d4], inertia = cuboid(2 * m, a2, d3, d4).rotated(y(0.4), z(1)))]
+    #[body(
+        mass = 2 * m, com = [a2 / 2, d3, 0.1 * d4], inertia = cuboid(2 * m, a2, d3, d4).rotated(y(0.4), z(1))
+    )]
     upper: Body,
     #[body(mass = m, com = [-a3, -d4 / 2, d3 / 9], inertia = cuboid(m, a3, d4, d3).rotated(y(0.2)))]
     fore: Body,

@@ -276,7 +276,9 @@ macro_rules! hand {
             thumb_tip: Body,
             #[joint(thumb.at(0.1 * x) -> thumb_tip, about = y)]
             bend_thumb: Pin,
-            #[acts(between = (left_tip.at(0.04 * z), right_tip.at(0.04 * z)), stiffness = 20, free_length = 0.1)]
+            #[acts(
+                between = (left_tip.at(0.04 * z), right_tip.at(0.04 * z)), stiffness = 20, free_length = 0.1
+            )]
             band: Spring,
             #[acts(between = (thumb_tip.at(0.04 * z), ground.at(0.3 * x)), damping = 2)]
             cord: Dashpot,
@@ -308,7 +310,9 @@ macro_rules! noisy {
             b: Body,
             #[joint(a.at([1e-9, 0.1, 0.4]).rotated(x(3e-15), y(-2e-15)) -> b, about = z)]
             second: Pin,
-            #[body(mass = 1, com = [1e-12, 2e-13, 0.03], inertia = diagonal(0.02, 0.01, 0.02).rotated(y(0.3)))]
+            #[body(
+                mass = 1, com = [1e-12, 2e-13, 0.03], inertia = diagonal(0.02, 0.01, 0.02).rotated(y(0.3))
+            )]
             c: Body,
             #[joint(b.at([0.2, 1e-16, 0.1]).rotated(y(1.3e-8), x(4e-9)) -> c, about = z)]
             third: Pin,

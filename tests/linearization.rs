@@ -135,7 +135,10 @@ struct Placed {
     s: Coordinate,
     #[frame(ground, z(phi * phi / 2))]
     turned: Frame,
-    #[body(at = length * turned.x + s * s * turned.y, frame = turned, mass = 1.3, com = 0.1 * y, inertia = diagonal(0.1, 0.2, 0.3))]
+    #[body(
+        at = length * turned.x + s * s * turned.y, frame = turned, mass = 1.3, com = 0.1 * y,
+        inertia = diagonal(0.1, 0.2, 0.3)
+    )]
     block: Body,
     #[body(mass = 0.4, com = 0.2 * x, inertia = rod(0.4, 0.4, x))]
     arm: Body,

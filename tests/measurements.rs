@@ -11,7 +11,10 @@ use support::random::Random;
 struct Carrier {
     mass: f64,
     reach: f64,
-    #[body(mass = mass, com = 0.02 * z, inertia = diagonal(mass * gyration, 1.2 * mass * gyration, 2 * mass * gyration))]
+    #[body(
+        mass = mass, com = 0.02 * z,
+        inertia = diagonal(mass * gyration, 1.2 * mass * gyration, 2 * mass * gyration)
+    )]
     frame: Body,
     #[define(0.01)]
     gyration: Scalar,
@@ -75,7 +78,9 @@ struct Bodies {
     bead: Particle,
     #[output(momentum(hull) + momentum(table) + momentum(bead))]
     linear: Vector,
-    #[output(angular_momentum(hull / ground) + angular_momentum(table / ground) + angular_momentum(bead / ground))]
+    #[output(
+        angular_momentum(hull / ground) + angular_momentum(table / ground) + angular_momentum(bead / ground)
+    )]
     angular: Vector,
     #[output(kinetic_energy(hull) + kinetic_energy(table) + kinetic_energy(bead))]
     energy: Scalar,

@@ -153,7 +153,7 @@ fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Outp
     for seed in 0..3 {
         let at = symbols(model, seed);
         let numbers = prepared.numbers.run(&at);
-        let of_state = |s| match Quantity::of(s) {
+        let of_state = |s| match Quantity::from_symbol(s) {
             Quantity::Prepared(k) => numbers[k],
             Quantity::Parameter(_) => f64::NAN,
             _ => at(s),
@@ -205,7 +205,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
     let tau = eval(&rnea::inverse_dynamics(model, joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let with_tau = |s| match Quantity::of(s) {
+    let with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -272,7 +272,7 @@ fn check_digits(model: &Model<'_>, seed: u64) {
     let mass = eval(&crba::mass_matrix(model, &joints).concat(), &at);
     let tau = eval(&rnea::inverse_dynamics(model, &joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let with_tau = |s| match Quantity::of(s) {
+    let with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -339,9 +339,13 @@ proptest! {
                 _ => ("about", "Pin"),
             };
             fields += &format!(
-                "#[body(mass = 1.5, com = [0.1, {length}, 0.2], inertia = cuboid(1.5, 0.3, 0.2, 0.1).rotated(x(0.4)))]
+                "#[body(mass = 1.5, com = [0.1, {length}, 0.2], inertia = cuboid(1.5, 0.3, 0.2, \
+                 0.1).rotated(x(0.4)))]
                  b{k}: Body,
-                 #[joint({parent}.at([{length}, 0.3, 0.2]).rotated({axis}({length})) -> b{k}, {motion} = {sign}{axis})]
+                 #[joint(
+                     {parent}.at([{length}, 0.3, 0.2]).rotated({axis}({length})) -> b{k},
+                     {motion} = {sign}{axis}
+                 )]
                  j{k}: {joint},"
             );
         }

@@ -25,7 +25,9 @@ struct Arm<T> {
     dry: T,
     #[body(mass = m, com = l / 2 * x + l / 9 * y, inertia = rod(m, l, x))]
     upper: Body,
-    #[body(mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt)))]
+    #[body(
+        mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt))
+    )]
     lower: Body,
     #[body(mass = m / 3, com = l / 6 * z, inertia = disk(m / 3, l / 4, z))]
     hand: Body,

@@ -25,7 +25,9 @@ struct Arm {
     _spare: f64,
     #[body(mass = m, com = l / 2 * x + l / 9 * y, inertia = rod(m, l, x))]
     upper: Body,
-    #[body(mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt)))]
+    #[body(
+        mass = m / 2, com = [l / 3, -l / 7, l / 11], inertia = cuboid(m / 2, l, l / 4, l / 5).rotated(z(tilt))
+    )]
     lower: Body,
     #[particle(mass = m / 5, at = lower.at(l / 3 * x))]
     tool: Particle,

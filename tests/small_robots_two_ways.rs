@@ -11,7 +11,9 @@ const TOLERANCE: f64 = 1e-12;
 struct CartPole {
     #[body(mass = 1.0, inertia = diagonal(0.004, 0.003, 0.005))]
     cart: Body,
-    #[body(mass = 0.1, com = [0.01, 0, 0.5], inertia = [[0.0085, 0, 0.0001], [0, 0.0084, 0], [0.0001, 0, 0.0002]])]
+    #[body(
+        mass = 0.1, com = [0.01, 0, 0.5], inertia = [[0.0085, 0, 0.0001], [0, 0.0084, 0], [0.0001, 0, 0.0002]]
+    )]
     pole: Body,
     #[joint(ground.at(0.2 * z) -> cart, along = x)]
     slide: Sleeve,
@@ -56,9 +58,15 @@ struct Ur5 {
     base: Body,
     #[body(mass = 3.7, inertia = [[0.010267495893, 0, 0], [0, 0.010267495893, 0], [0, 0, 0.00666]])]
     shoulder_link: Body,
-    #[body(mass = 8.393, com = 0.28 * z, inertia = [[0.22689067591, 0, 0], [0, 0.22689067591, 0], [0, 0, 0.0151074]])]
+    #[body(
+        mass = 8.393, com = 0.28 * z,
+        inertia = [[0.22689067591, 0, 0], [0, 0.22689067591, 0], [0, 0, 0.0151074]]
+    )]
     upper_arm_link: Body,
-    #[body(mass = 2.275, com = 0.25 * z, inertia = [[0.049443313556, 0, 0], [0, 0.049443313556, 0], [0, 0, 0.004095]])]
+    #[body(
+        mass = 2.275, com = 0.25 * z,
+        inertia = [[0.049443313556, 0, 0], [0, 0.049443313556, 0], [0, 0, 0.004095]]
+    )]
     forearm_link: Body,
     #[body(mass = 1.219, inertia = [[0.111172755531, 0, 0], [0, 0.111172755531, 0], [0, 0, 0.21942]])]
     wrist_1_link: Body,

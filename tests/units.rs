@@ -88,15 +88,18 @@ fn every_place_gives_a_unit() {
         &["kg", "m", "kg·m²"],
     );
     check(
-        "#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, #[joint(arm -> k)] j: Ball,",
+        "#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, \
+         #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "rad"],
     );
     check(
-        "#[body(mass = 1, inertia = sphere(1, 1))] k: Body, #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,",
+        "#[body(mass = 1, inertia = sphere(1, 1))] k: Body, \
+         #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,",
         &["m", "rad", "m/rad"],
     );
     check(
-        "#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,",
+        "#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, \
+         #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,",
         &["N/m", "m", "N·m/rad", "rad"],
     );
     check(
@@ -108,23 +111,31 @@ fn every_place_gives_a_unit() {
         &["kg", "kg·m²"],
     );
     check(
-        "#[acts(on = rail, coulomb = a, stiction = b, stribeck_speed = c, viscous = d, speed = e)] s: Friction,",
+        "#[acts(on = rail, coulomb = a, stiction = b, stribeck_speed = c, viscous = d, speed = e)] s: \
+         Friction,",
         &["N", "N", "m/s", "N·s/m", "m/s"],
     );
     check(
-        "#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, #[acts(between = (ground, p), mu = a)] s: Gravity, #[acts(between = (cart, p), constant = b)] t: Gravity, #[acts(between = (arm, p), strength = c)] u: Attraction,",
+        "#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, \
+         #[acts(between = (ground, p), mu = a)] s: Gravity, \
+         #[acts(between = (cart, p), constant = b)] t: Gravity, \
+         #[acts(between = (arm, p), strength = c)] u: Attraction,",
         &["m³/s²", "m³/(kg·s²)", "N·m²"],
     );
     check(
-        "#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,",
+        "#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, \
+         #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, \
+         #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,",
         &["N/m", "kg/(m²·s²)", "N·m", "kg/m"],
     );
     check(
-        "#[acts(on = rail, value = a * cos(b * t))] s: Force, #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,",
+        "#[acts(on = rail, value = a * cos(b * t))] s: Force, \
+         #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,",
         &["N", "1/s", "N·m", "s"],
     );
     check(
-        "#[energy(a / 2 * rail * rail)] s: Potential, #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,",
+        "#[energy(a / 2 * rail * rail)] s: Potential, \
+         #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,",
         &["N/m", "N·s/m", "J"],
     );
 }
@@ -137,19 +148,24 @@ fn expressions_carry_units() {
     );
     // The square root of a product whose factors have their units from other uses.
     check(
-        "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
+        "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, \
+         #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, \
+         #[joint(cart -> w)] j: Weld,",
         &["N/m", "kg", "1"],
     );
     check(
-        "#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,",
+        "#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, \
+         #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,",
         &["N·s/m"],
     );
     check(
-        "#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, #[define(atan2(a, b))] alpha_: Scalar,",
+        "#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, \
+         #[define(atan2(a, b))] alpha_: Scalar,",
         &["N·m·s", "N·m·s"].map(|_| "kg·m²/s"),
     );
     check(
-        "#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,",
+        "#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, \
+         #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,",
         &["N", "N", "kg/(m·s²)", "m"],
     );
     check("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
@@ -161,7 +177,8 @@ fn expressions_carry_units() {
         &["N", "N", "N"],
     );
     check(
-        "#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,",
+        "#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, \
+         #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,",
         &["rad", "1/s", "N", "N"],
     );
 }
@@ -169,7 +186,8 @@ fn expressions_carry_units() {
 #[test]
 fn numbers_take_any_unit() {
     for fields in [
-        "#[acts(on = cart, value = -g * a * y)] s: Force, #[define(9.81)] g: Scalar, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        "#[acts(on = cart, value = -g * a * y)] s: Force, #[define(9.81)] g: Scalar, \
+         #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
         "#[acts(on = rail, value = a + 0.1)] s: Force,",
         "#[acts(on = rail, value = -2 * rail + a)] s: Force,",
         "#[acts(on = rail, value = a * tanh(rate(rail) / 0.01))] s: Force,",
@@ -179,7 +197,8 @@ fn numbers_take_any_unit() {
         "#[particle(mass = a, at = sin(hinge) * x - cos(hinge) * y)] p: Particle,",
         "#[energy(a * sin(rail + 0.2 * t))] e: Potential,",
         "#[acts(on = rail, value = -rail)] s: Force, #[energy(a * sin(t))] e: Potential,",
-        "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, #[energy(a)] e: Potential,",
+        "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, \
+         #[energy(a)] e: Potential,",
     ] {
         if let Err(messages) = of_machine(&format!("a: f64, {fields}")) {
             panic!("{fields}: {messages:?}");
@@ -239,7 +258,8 @@ fn a_parameter_is_one_thing() {
     );
     // The conflict follows through another parameter: a b is a mass, and so is b.
     refuse(
-        "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
+        "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, \
+         #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
         &[
             "expected a mass (kg), found a quantity in kg·m",
             "`a` is a length (m) in",
@@ -391,10 +411,11 @@ fn attributes_pin_units_down() {
     assert!(message("kq").contains("did you mean `kg`?"));
     assert!(message("m99").contains("unknown unit `m99`"));
     assert!(message("2 * kg").contains("expected a unit"));
-    assert!(message("kg +").contains("nothing stands behind this operator"));
-    assert!(message("").contains("this says no unit"));
+    assert!(message("kg +").contains("missing operand after this operator"));
+    assert!(message("").contains("missing unit"));
     refuse(
-        "#[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        "#[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar, #[body(mass = a)] w: Body, \
+         #[joint(cart -> w)] j: Weld,",
         &["`a` is declared as a length (m), but used as a mass (kg)", "it is a mass (kg) in"],
     );
     refuse("#[unit(m)] #[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar,", &["a parameter has one `#[unit]`"]);
@@ -404,7 +425,8 @@ fn attributes_pin_units_down() {
 #[test]
 fn units_are_documented() {
     let item = machine(
-        "/// A length.\n#[unit(m)] a: f64, b: f64, #[acts(on = rail, stiffness = b, free_length = a)] s: Spring,
+        "/// A length.\n#[unit(m)] a: f64, b: f64, #[acts(on = rail, stiffness = b, free_length = a)] s: \
+         Spring,
         #[output(r(arm / ground))] place: Vector,",
     );
     let emitted = expand("".parse().unwrap(), item.parse().unwrap(), Path::new(""));

@@ -188,7 +188,10 @@ fn impossible_inertia_is_taken_on_trust() {
 
 #[test]
 fn single_precision() {
-    #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z, scalar = f32)]
+    #[mechanism(
+        urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z,
+        scalar = f32
+    )]
     struct Single;
 
     let q = Random::new(21).configuration(&Everything);

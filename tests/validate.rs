@@ -109,7 +109,7 @@ const ARM_ROWS: [(&str, f64, Fault, &str); 21] = [
     ("radius", -0.1, Fault::Negative, "the radius of a `cylinder`"),
     ("height", -0.1, Fault::Negative, "the height of a `cylinder`"),
     ("load", -0.5, Fault::Negative, "the mass of `tool`"),
-    ("reach", -1e80, Fault::TooLarge, "the place of a joint on `arm`"),
+    ("reach", -1e80, Fault::TooLarge, "the position of a joint on `arm`"),
     ("d", -0.1, Fault::Negative, "the damping of `dashpot`"),
     ("dry", -0.1, Fault::Negative, "friction"),
     ("b", -0.1, Fault::Negative, "friction"),

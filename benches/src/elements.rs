@@ -24,7 +24,8 @@ pub fn sprung_arm(springs: usize) -> Source {
         let (x, y, z) = (0.1 + 0.01 * k as f64, 0.3 + 0.003 * k as f64, 0.1 + 0.002 * k as f64);
         let _ = writeln!(
             item,
-            "#[acts(between = (ground.at({x:.3} * x + {y:.3} * y), link{}.at({z:.3} * z)), stiffness = {}, free_length = 0.{})] spring{k}: Spring,",
+            "#[acts(between = (ground.at({x:.3} * x + {y:.3} * y), link{}.at({z:.3} * z)), stiffness = {}, \
+             free_length = 0.{})] spring{k}: Spring,",
             k % LINKS,
             10 + k,
             1 + k % 9

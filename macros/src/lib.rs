@@ -40,8 +40,9 @@ use std::path::PathBuf;
 ///
 /// A field of the struct is a parameter (`f64`, `f32` or the struct's own type parameter) or an element
 /// (`linkwork::elements`). Parameters remain fields. Elements define the bodies, joints and forces of the
-/// mechanism and are removed from the struct. The trait `linkwork::Mechanism` documents the generated methods with their
-/// shapes, units and conventions; the rustdoc of the struct lists them. The guide, `linkwork::guide`, is an introduction from the beginning.
+/// mechanism and are removed from the struct. The trait `linkwork::Mechanism` documents the generated methods
+/// with their shapes, units and conventions; the rustdoc of the struct lists them. The guide,
+/// `linkwork::guide`, is an introduction from the beginning.
 ///
 /// **Order.** `#[mechanism]` must be above `#[derive(…)]`, so that the derives see the struct without its
 /// elements. The other order is reported as an error.
@@ -166,7 +167,7 @@ pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     match emitted.text.parse::<TokenStream>() {
         Ok(text) => tokens.extend(text),
         Err(error) => {
-            let message = format!("a mistake of Linkwork's: {error}");
+            let message = format!("internal error of Linkwork: {error}");
             tokens.extend(format!("::core::compile_error!({message:?});").parse::<TokenStream>());
         }
     }

@@ -217,7 +217,8 @@ fn main() -> Result<(), Error> {
     let [position, tilt, speed] = [mean(|f| f.position), mean(|f| f.tilt), mean(|f| f.speed)].map(f64::sqrt);
     let normalised = mean(|f| f.normalised);
     println!(
-        "\nof three flights: {position:.3} m, {tilt:.3} rad, {speed:.3} m/s; {normalised:.1} by the spread, of 12"
+        "\nof three flights: {position:.3} m, {tilt:.3} rad, {speed:.3} m/s; {normalised:.1} by the spread, \
+         of 12"
     );
 
     // A position fix alone has an error of 0.17 m, √3 times its deviation along each axis.

@@ -73,7 +73,9 @@ pub struct Aircraft {
     #[define(dot(omega(airframe / ground), airframe.y))]
     pitch_rate: Scalar,
 
-    #[acts(on = airframe, value = load * lift_coefficient * (sin(attack) * airframe.x - cos(attack) * airframe.z))]
+    #[acts(
+        on = airframe, value = load * lift_coefficient * (sin(attack) * airframe.x - cos(attack) * airframe.z)
+    )]
     lift: Force,
     #[acts(
         on = airframe,

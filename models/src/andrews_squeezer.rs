@@ -15,7 +15,9 @@ pub struct AndrewsSqueezer {
     k1: Body,
     #[body(mass = 0.00365, com = -115e-4 * x, inertia = diagonal(2.205e-7, 2.205e-7, 4.410e-7))]
     k2: Body,
-    #[body(mass = 0.02373, com = 1043e-5 * x - 1874e-5 * y, inertia = diagonal(2.6275e-6, 2.6275e-6, 5.255e-6))]
+    #[body(
+        mass = 0.02373, com = 1043e-5 * x - 1874e-5 * y, inertia = diagonal(2.6275e-6, 2.6275e-6, 5.255e-6)
+    )]
     k3: Body,
     #[body(mass = 0.00706, com = -(2e-2 - 1421e-5) * y, inertia = diagonal(2.8335e-7, 2.8335e-7, 5.667e-7))]
     k4: Body,
@@ -49,7 +51,10 @@ pub struct AndrewsSqueezer {
 
     #[acts(on = beta, value = 0.033)]
     motor: Torque,
-    #[acts(between = (ground.at(0.014 * x + 0.072 * y), k3.at(2e-2 * x - 18e-3 * y)), stiffness = 4530, free_length = 7785e-5)]
+    #[acts(
+        between = (ground.at(0.014 * x + 0.072 * y), k3.at(2e-2 * x - 18e-3 * y)), stiffness = 4530,
+        free_length = 7785e-5
+    )]
     spring: Spring,
 }
 

@@ -18,7 +18,9 @@ pub struct Panda;
 /// The arm of a [`Panda`] alone, fingers locked: seven joints.
 ///
 /// Coordinates: `panda_joint1` to `panda_joint7`, rad. Inputs: a torque on each, N·m.
-#[mechanism(urdf = "urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives, packed)]
+#[mechanism(
+    urdf = "urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives, packed
+)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PandaArm;
 

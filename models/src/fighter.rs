@@ -150,7 +150,9 @@ pub struct Fighter {
 
     #[define(cx(elevator, alpha) + cx_q(alpha) * pitching)]
     forward: Scalar,
-    #[define(-0.02 * beta + 0.021 * ailerons + 0.086 * rudders + cy_r(alpha) * yawing + cy_p(alpha) * rolling)]
+    #[define(
+        -0.02 * beta + 0.021 * ailerons + 0.086 * rudders + cy_r(alpha) * yawing + cy_p(alpha) * rolling
+    )]
     sideways: Scalar,
     #[define(cz(alpha) * (1 - pow(beta / 57.3, 2)) - 0.19 * elevator / 25 + cz_q(alpha) * pitching)]
     downward: Scalar,

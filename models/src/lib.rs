@@ -155,11 +155,12 @@
 //!
 //! # The book, section by section
 //!
-//! Topics of Bernstein, Goel and Ansari that concern a mechanism, in the order of the chapters: mechanisms and
-//! their classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics (6), Newton's and Euler's
-//! dynamics (7), energy (8), Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's equations (9); aircraft,
-//! linearisation, flight modes, linear systems and frequency response (10–16). The last column names a
-//! mechanism, or a test by its file in `tests` (of `linkwork-design` where indicated) and its function.
+//! Topics of Bernstein, Goel and Ansari that concern a mechanism, in the order of the chapters: mechanisms
+//! and their classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics (6), Newton's and
+//! Euler's dynamics (7), energy (8), Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's equations (9);
+//! aircraft, linearisation, flight modes, linear systems and frequency response (10–16). The last column
+//! names a mechanism, or a test by its file in `tests` (of `linkwork-design` where indicated) and its
+//! function.
 //!
 //! | chapter | topic | words | example and test |
 //! | --- | --- | --- | --- |

@@ -30,6 +30,8 @@ pub struct SlidingRod {
     rod: Body,
     #[joint(ground -> rod, about = z)]
     pose: Planar,
-    #[constraint(slips(rod.at(-half * x).sphere(radius), ground.plane(y)), friction = friction, speed = 0.001)]
+    #[constraint(
+        slips(rod.at(-half * x).sphere(radius), ground.plane(y)), friction = friction, speed = 0.001
+    )]
     floor: Slipping,
 }

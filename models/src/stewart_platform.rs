@@ -53,7 +53,9 @@ macro_rules! stewart_platform {
                 $foot: Universal,
                 #[joint($lower -> $upper, along = z)]
                 $slide: Sleeve,
-                #[joint($upper -> platform.at(platform_radius * (cos($b * pi / 180) * x + sin($b * pi / 180) * y)))]
+                #[joint(
+                    $upper -> platform.at(platform_radius * (cos($b * pi / 180) * x + sin($b * pi / 180) * y))
+                )]
                 $head: Ball,
                 #[acts(on = $slide)]
                 $force: Force,

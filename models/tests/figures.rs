@@ -40,7 +40,10 @@ struct Machine {
     socket: Ball,
     #[joint(ball.at(-y) -> weight, about = (x, y))]
     cross: Universal,
-    #[acts(between = (ground, weight.at(0.1 * x)), energy = k * (exp(stretch / l) + sqrt(stretch * stretch / (l * l) + 1)))]
+    #[acts(
+        between = (ground, weight.at(0.1 * x)),
+        energy = k * (exp(stretch / l) + sqrt(stretch * stretch / (l * l) + 1))
+    )]
     rope: Spring,
     #[acts(on = cross.first, coulomb = 0.3)]
     rubbing: Friction,

@@ -7,105 +7,107 @@
 
 /// Mechanism with the option `derivatives`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `derivatives`",
-    label = "this needs the word `derivatives`",
-    note = "add the word to the attribute: `#[mechanism(…, derivatives)]`"
+    message = "`{Self}` is compiled without `derivatives`",
+    label = "this needs the option `derivatives`",
+    note = "add the option to the attribute: `#[mechanism(…, derivatives)]`"
 )]
 pub trait AsksForDerivatives<'a> {}
 
 /// Mechanism with the option `second_derivatives`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `second_derivatives`",
-    label = "this needs the word `second_derivatives`",
-    note = "add the word to the attribute: `#[mechanism(…, second_derivatives)]`"
+    message = "`{Self}` is compiled without `second_derivatives`",
+    label = "this needs the option `second_derivatives`",
+    note = "add the option to the attribute: `#[mechanism(…, second_derivatives)]`"
 )]
 pub trait AsksForSecondDerivatives<'a> {}
 
 /// Mechanism with the option `momentum_derivatives`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `momentum_derivatives`",
-    label = "this needs the word `momentum_derivatives`",
-    note = "add the word to the attribute: `#[mechanism(…, momentum_derivatives)]`"
+    message = "`{Self}` is compiled without `momentum_derivatives`",
+    label = "this needs the option `momentum_derivatives`",
+    note = "add the option to the attribute: `#[mechanism(…, momentum_derivatives)]`"
 )]
 pub trait AsksForMomentumDerivatives<'a> {}
 
 /// Mechanism with the option `centroidal`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `centroidal`",
-    label = "this needs the word `centroidal`",
-    note = "add the word to the attribute: `#[mechanism(…, centroidal)]`"
+    message = "`{Self}` is compiled without `centroidal`",
+    label = "this needs the option `centroidal`",
+    note = "add the option to the attribute: `#[mechanism(…, centroidal)]`"
 )]
 pub trait AsksForCentroidal<'a> {}
 
 /// Mechanism with the option `hamilton`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `hamilton`",
-    label = "this needs the word `hamilton`",
-    note = "add the word to the attribute: `#[mechanism(…, hamilton)]`"
+    message = "`{Self}` is compiled without `hamilton`",
+    label = "this needs the option `hamilton`",
+    note = "add the option to the attribute: `#[mechanism(…, hamilton)]`"
 )]
 pub trait AsksForHamilton<'a> {}
 
 /// Mechanism with the option `routh`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `routh`",
-    label = "this needs the word `routh`",
-    note = "add the word to the attribute: `#[mechanism(…, routh)]`; the mechanism needs cyclic coordinates"
+    message = "`{Self}` is compiled without `routh`",
+    label = "this needs the option `routh`",
+    note = "add the option to the attribute: `#[mechanism(…, routh)]`; the mechanism needs cyclic \
+            coordinates"
 )]
 pub trait AsksForRouth<'a> {}
 
 /// Mechanism with the option `conserved`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `conserved`",
-    label = "this needs the word `conserved`",
-    note = "add the word to the attribute: `#[mechanism(…, conserved)]`"
+    message = "`{Self}` is compiled without `conserved`",
+    label = "this needs the option `conserved`",
+    note = "add the option to the attribute: `#[mechanism(…, conserved)]`"
 )]
 pub trait AsksForConserved<'a> {}
 
 /// Mechanism with the option `regressor`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `regressor`",
-    label = "this needs the word `regressor`",
-    note = "add the word to the attribute: `#[mechanism(…, regressor)]`"
+    message = "`{Self}` is compiled without `regressor`",
+    label = "this needs the option `regressor`",
+    note = "add the option to the attribute: `#[mechanism(…, regressor)]`"
 )]
 pub trait AsksForRegressor<'a> {}
 
 /// Mechanism with the option `sensitivities`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `sensitivities`",
-    label = "this needs the word `sensitivities`",
-    note = "add the word to the attribute: `#[mechanism(…, sensitivities)]`; the mechanism needs parameters"
+    message = "`{Self}` is compiled without `sensitivities`",
+    label = "this needs the option `sensitivities`",
+    note = "add the option to the attribute: `#[mechanism(…, sensitivities)]`; the mechanism needs \
+            parameters"
 )]
 pub trait AsksForSensitivities<'a> {}
 
 /// Mechanism with the option `packed`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `packed`",
-    label = "this needs the word `packed`",
-    note = "add the word to the attribute: `#[mechanism(…, packed)]`"
+    message = "`{Self}` is compiled without `packed`",
+    label = "this needs the option `packed`",
+    note = "add the option to the attribute: `#[mechanism(…, packed)]`"
 )]
 pub trait AsksForPacked<'a> {}
 
 /// Mechanism with the option `prepare`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `prepare`",
-    label = "this needs the word `prepare`",
-    note = "add the word to the attribute: `#[mechanism(…, prepare)]`; the mechanism needs parameters"
+    message = "`{Self}` is compiled without `prepare`",
+    label = "this needs the option `prepare`",
+    note = "add the option to the attribute: `#[mechanism(…, prepare)]`; the mechanism needs parameters"
 )]
 pub trait AsksForPrepare<'a> {}
 
 /// Mechanism with the option `batch`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `batch`",
-    label = "this needs the word `batch`",
-    note = "add the word to the attribute: `#[mechanism(…, batch)]`"
+    message = "`{Self}` is compiled without `batch`",
+    label = "this needs the option `batch`",
+    note = "add the option to the attribute: `#[mechanism(…, batch)]`"
 )]
 pub trait AsksForBatch<'a> {}
 
 /// Mechanism with the option `drawing`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `drawing`",
-    label = "this needs the word `drawing`",
-    note = "add the word to the attribute: `#[mechanism(…, drawing)]`"
+    message = "`{Self}` is compiled without `drawing`",
+    label = "this needs the option `drawing`",
+    note = "add the option to the attribute: `#[mechanism(…, drawing)]`"
 )]
 pub trait AsksForDrawing<'a> {}
 
@@ -137,7 +139,7 @@ pub trait HasNoConstraints<'a> {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that slip",
     label = "only mechanisms with friction at contacts have this",
-    note = "its equations always have an answer: `constrained_dynamics`"
+    note = "its equations always have a solution: `constrained_dynamics`"
 )]
 pub trait HasSlipping<'a> {}
 
@@ -153,7 +155,8 @@ pub trait HasNoSlipping<'a> {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that open and close",
     label = "only mechanisms with contacts or stops have this",
-    note = "declare one: `#[contact(ball.sphere(radius), ground.plane(z))] bounce: Contact`, or a `Limit` with `restitution`"
+    note = "declare one: `#[contact(ball.sphere(radius), ground.plane(z))] bounce: Contact`, or a `Limit` \
+            with `restitution`"
 )]
 pub trait HasContacts<'a> {}
 
@@ -161,15 +164,18 @@ pub trait HasContacts<'a> {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no speeds of its own",
     label = "only mechanisms with declared speeds have this",
-    note = "declare them: `#[speed(rate(psi) * sin(theta))] p: Speed`; without, the velocities are those of the joints"
+    note = "declare them: `#[speed(rate(psi) * sin(theta))] p: Speed`; without, the velocities are those of \
+            the joints"
 )]
 pub trait HasSpeeds<'a> {}
 
 /// Mechanism whose velocities are those of its joints.
 #[diagnostic::on_unimplemented(
-    message = "velocities of `{Self}` are declared speeds, which move a configuration by where it is",
+    message = "velocities of `{Self}` are declared speeds, whose effect on a configuration depends on it",
     label = "this does not depend on the configuration",
-    note = "`Mechanism::displacement_rate(&m, &q, &dv, &v)` is the rate of a displacement from `q`, and `Derivatives::displacement_rate_derivatives` and `Derivatives::integrate_derivatives_at` have its derivatives and those of `integrate`"
+    note = "`Mechanism::displacement_rate(&m, &q, &dv, &v)` is the rate of a displacement from `q`, and \
+            `Derivatives::displacement_rate_derivatives` and `Derivatives::integrate_derivatives_at` have \
+            its derivatives and those of `integrate`"
 )]
 pub trait HasNoSpeeds<'a> {}
 
@@ -185,7 +191,8 @@ pub trait HasRegularMass<'a> {}
 #[diagnostic::on_unimplemented(
     message = "an output of accelerations or reactions has no Jacobian",
     label = "this output has none",
-    note = "with the word `derivatives`, an output of accelerations has a function of its name with `_derivatives` after it; one of reactions has none yet"
+    note = "with the word `derivatives`, an output of accelerations has a function of its name with \
+            `_derivatives` after it; one of reactions has none yet"
 )]
 pub trait HasJacobian<'a> {}
 
@@ -201,13 +208,13 @@ pub trait HasFrames<'a> {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no parameters",
     label = "only mechanisms with parameters have this",
-    note = "all its figures are numbers: they were checked when it was compiled"
+    note = "all its values are constants, which were checked at compile time"
 )]
 pub trait HasParameters<'a> {}
 
 /// Mechanism that stores its parameters, unlike a prepared mechanism.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not hold its parameters",
+    message = "`{Self}` does not store its parameters",
     label = "the mechanism that it was prepared from has this",
     note = "call this on the mechanism itself, before it is prepared"
 )]
@@ -215,9 +222,9 @@ pub trait HoldsParameters<'a> {}
 
 /// Mechanism with values of its robot file as parameters.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` has no figures of a file as parameters",
+    message = "`{Self}` has no values of a file as parameters",
     label = "this needs the argument `parameters`",
-    note = "say which: `#[mechanism(urdf = \"…\", parameters = inertial)]`"
+    note = "name them: `#[mechanism(urdf = \"…\", parameters = inertial)]`"
 )]
 pub trait HasFileParameters<'a> {}
 
@@ -225,7 +232,8 @@ pub trait HasFileParameters<'a> {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no mass properties of links as parameters",
     label = "this needs `parameters = inertial`",
-    note = "write `#[mechanism(urdf = \"…\", parameters = inertial)]`, or `inertial(\"link\", …)` for some of the links"
+    note = "write `#[mechanism(urdf = \"…\", parameters = inertial)]`, or `inertial(\"link\", …)` for some \
+            of the links"
 )]
 pub trait HasFileInertials<'a> {}
 

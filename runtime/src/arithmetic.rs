@@ -185,8 +185,8 @@ pub trait Arithmetic: Registers {
         a: Vector<Self, T, N>,
         b: Vector<Self, T, M>,
     ) {
-        const { assert!(ROW + 1 < R, "there are not so many rows") };
-        const { assert!(I < N && J < M, "there are not so many lanes") };
+        const { assert!(ROW + 1 < R, "there are fewer rows") };
+        const { assert!(I < N && J < M, "there are fewer lanes") };
         if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut)
             && let Some(two) = a.pair(I, &b, J)
         {
@@ -202,7 +202,7 @@ pub trait Arithmetic: Registers {
         column: &mut [T; R],
         a: Vector<Self, T, N>,
     ) {
-        const { assert!(ROW + N <= R, "there are not so many rows") };
+        const { assert!(ROW + N <= R, "there are fewer rows") };
         if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
             *rows = *a.numbers();
         }
@@ -225,7 +225,7 @@ pub trait Arithmetic: Registers {
         a: Vector<Self, T, N>,
         b: Vector<Self, T, N>,
     ) {
-        const { assert!(ROW + 1 < R && COLUMN + N <= C, "there are not so many rows or columns") };
+        const { assert!(ROW + 1 < R && COLUMN + N <= C, "there are fewer rows or columns") };
         const { assert!(N <= 8, "there are more lanes") };
         let columns = columns.get_mut(COLUMN..).and_then(<[_]>::first_chunk_mut::<N>);
         let Some(columns) = columns else { return };

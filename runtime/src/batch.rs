@@ -38,8 +38,8 @@ type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 /// mechanism does not depend on time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no functions of several states at once",
-    label = "this needs the word `batch`",
-    note = "add the word to the attribute: `#[mechanism(…, batch)]`"
+    label = "this needs the option `batch`",
+    note = "add the option to the attribute: `#[mechanism(…, batch)]`"
 )]
 pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
     /// Returns the mechanism with `L` lanes as its scalar type.

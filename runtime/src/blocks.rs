@@ -4,7 +4,7 @@
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled, Vector};
-use crate::multiplication::{part, put, registers_of_eight, registers_of_four};
+use crate::multiplication::{part, registers_of_eight, registers_of_four, write_entries};
 use core::array::{from_mut, from_ref};
 use nalgebra::{ArrayStorage, SMatrix};
 
@@ -104,7 +104,7 @@ fn rolled<T>(list: &[T]) -> &[T] {
 
 /// Returns the number of rows left for a last strip of more than one and at most three registers, after
 /// strips of two registers of width `W`.
-const fn left(rows: usize, w: usize) -> usize {
+const fn remaining_rows(rows: usize, w: usize) -> usize {
     if rows > 3 * w { (rows - w - 1) % (2 * w) + w + 1 } else { rows }
 }
 
@@ -117,7 +117,7 @@ fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: 
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
-    let left = left(R, W);
+    let left = remaining_rows(R, W);
     let mut from = 0;
     for _ in 0..(R - left) / (2 * W) {
         strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from);
@@ -139,7 +139,7 @@ fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
-    let left = left(R, 8);
+    let left = remaining_rows(R, 8);
     let mut from = 0;
     for _ in 0..(R - left) / 16 {
         strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from);
@@ -219,10 +219,10 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
     #[inline(always)]
     fn write(&self, column: &mut [T], from: usize) {
         for (v, register) in self.whole.iter().enumerate() {
-            put(register, column, from + v * W);
+            write_entries(register, column, from + v * W);
         }
         for (f, register) in self.fours.iter().enumerate() {
-            put(register, column, from + V * W + 4 * f);
+            write_entries(register, column, from + V * W + 4 * f);
         }
     }
 

@@ -146,34 +146,35 @@ impl fmt::Display for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Configuration { constraint, residual } => {
-                write!(f, "the constraint `{constraint}` is off by {residual}")
+                write!(f, "the constraint `{constraint}` has a residual of {residual}")
             }
             Self::Velocity { constraint, rate } => {
-                write!(f, "the constraint `{constraint}` is left at a rate of {rate}")
+                write!(f, "the constraint `{constraint}` has a residual velocity of {rate}")
             }
             Self::Acceleration { constraint, acceleration } => {
-                write!(f, "the constraint `{constraint}` is left at an acceleration of {acceleration}")
+                write!(f, "the constraint `{constraint}` has a residual acceleration of {acceleration}")
             }
             Self::Mode { mode } => {
                 write!(
                     f,
-                    "no configuration of the assembly mode {mode} was found: give a guess that is nearer to one"
+                    "no configuration of the assembly mode {mode} was found: give a guess closer to one"
                 )
             }
             Self::Undriven { velocity, force } => {
                 write!(
                     f,
-                    "the driven velocities leave a force of {force} at `{velocity}`, which is not driven"
+                    "the driven velocities require a force of {force} at `{velocity}`, which is not driven"
                 )
             }
             Self::Singular => write!(f, "the constraints lose rank in this configuration"),
             Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
             Self::Contact { constraint } => {
-                write!(f, "no impulses at the contact `{constraint}` keep its surfaces apart")
+                write!(f, "no impulses at the contact `{constraint}` prevent penetration")
             }
             Self::Coefficient { constraint, value } => write!(
                 f,
-                "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, restitution between 0 and 1"
+                "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, \
+                 restitution between 0 and 1"
             ),
             Self::Overlap { constraint, depth } => {
                 write!(f, "the surfaces of the contact `{constraint}` overlap by {depth}")
@@ -231,8 +232,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     /// Indices of the entries of `q` that are angles, rad: coordinates of pins and of other rotations.
     const ANGLES: &'static [usize] = &[];
 
-    /// Returns the number of constraints that restrict configurations: `NH`, unless the mechanism is loaded at
-    /// run time and further rows are padding.
+    /// Returns the number of constraints that restrict configurations: `NH`, unless the mechanism is loaded
+    /// at run time and further rows are padding.
     #[doc(hidden)]
     #[inline(always)]
     fn holonomic(&self) -> usize {
@@ -430,20 +431,22 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             let (worst, size) = largest(&residuals)?;
             // The first check is strict: a configuration with uncorrected drift belongs to a slightly
             // different linkage, which may have no singular configuration near that of the mechanism.
-            let enough = if last.is_none() { known(&q) } else { rounding(&q) };
+            let enough = if last.is_none() { rounding_of_coordinates(&q) } else { rounding(&q) };
             if size <= enough {
                 return Ok(q);
             }
             // Convergence ends at rounding errors.
             if last.is_some_and(|last| size * constant(2.0) > last) {
-                return near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size));
+                return is_acceptable(size, &q)
+                    .then_some(q)
+                    .ok_or_else(|| off(Self::CONSTRAINTS, worst, size));
             }
             last = Some(size);
             let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(nalgebra::zero()));
             q = self.integrate(&q, &self.constraint_correction(t, &q, &gap));
         }
         let (worst, size) = largest(&self.constraint_residuals(t, &q))?;
-        near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size))
+        is_acceptable(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size))
     }
 
     /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the
@@ -471,14 +474,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
         let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
-        if near(size, &v) {
+        if is_acceptable(size, &v) {
             return Ok(v);
         }
         // Off a branch, near a singular configuration, the constraints have other directions than on the
         // branch.
         let left = self.constraint_residuals(t, q);
         let farthest = farthest(&self.constraint_jacobian(t, q));
-        if near(largest(&left)?.1, q) && size <= careful::turned(&left) * farthest * reach(&v) {
+        if is_acceptable(largest(&left)?.1, q)
+            && size <= careful::minimum_magnitude(&left) * farthest * reach(&v)
+        {
             return Ok(v);
         }
         let constraint = Self::CONSTRAINTS.get(worst).copied().unwrap_or_default();
@@ -606,13 +611,13 @@ fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
 
 /// Returns the residual that rounding of the coordinates alone causes. Angles of many revolutions have larger
 /// rounding errors than other coordinates.
-fn known<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+fn rounding_of_coordinates<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     epsilon::<T>() * reach(x).max(constant(ROUNDINGS))
 }
 
 /// Returns whether a residual is acceptable: half of the digits, which is the accuracy where constraints lose
 /// rank.
-fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
+fn is_acceptable<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= epsilon::<T>().sqrt() * reach(x)
 }
 

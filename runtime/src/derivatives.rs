@@ -22,7 +22,7 @@ pub type ByMotion<T, const NV: usize, const N: usize> =
 /// of a configuration are expressed in the same way.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives",
-    note = "the option asks for them: `#[mechanism(…, derivatives)]`"
+    note = "enable them with the option: `#[mechanism(…, derivatives)]`"
 )]
 pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
     /// Whether [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
@@ -309,8 +309,8 @@ pub struct LinearMotion<T, const NV: usize, const NU: usize> {
 
 /// Returns an entry of a matrix of two by two blocks.
 pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], i: usize, j: usize) -> T {
-    let of = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
-    let ((row, i), (column, j)) = (of(i), of(j));
+    let block_index = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
+    let ((row, i), (column, j)) = (block_index(i), block_index(j));
     let block = blocks.get(row).and_then(|blocks| blocks.get(column)).and_then(|block| block.get((i, j)));
     block.copied().unwrap_or(T::zero())
 }

@@ -201,13 +201,14 @@ where
     const {
         assert!(
             !M::CONTACTING,
-            "a step with derivatives is one of a mechanism whose contacts do not open and close: hold chosen ones by `contact::hold`, or leave them out by `contact::apart`"
+            "a step with derivatives needs a mechanism without contacts that open and close: enforce chosen \
+             contacts by `contact::hold`, or ignore all by `contact::apart`"
         )
     };
     const {
         assert!(
             !(M::CONSTRAINED && M::SLIPPING),
-            "a step with derivatives is one of a mechanism whose contacts do not slip"
+            "a step with derivatives needs a mechanism without slipping contacts"
         );
         let [free, held] = S::IN_MOMENTA;
         let in_momenta = if M::CONSTRAINED { held } else { free && !M::FEEDBACK };
@@ -229,8 +230,9 @@ where
 
 /// Methods with fixed steps: all methods that are not adaptive.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` has no steps of a length that is set",
-    note = "single steps are those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint`, `Rosenbrock` and `TimeStepping`"
+    message = "`{Self}` has no steps of fixed length",
+    note = "single steps are those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint`, `Rosenbrock` and \
+            `TimeStepping`"
 )]
 pub trait FixedStep<T: Real>: Method<T> {}
 
@@ -376,7 +378,7 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
     /// Returns the relation with the period `h`, s, and the derivatives of `q ⊕ h v⁺` with respect to `q` and
     /// to the displacement `h v⁺`.
     pub fn new(period: T, by_q: SMatrix<T, NV, NV>, by_displacement: SMatrix<T, NV, NV>) -> Self {
-        let others = [&by_q, &by_displacement].map(|matrix| NearlyIdentity::of(matrix).others());
+        let others = [&by_q, &by_displacement].map(|matrix| NearlyIdentity::new(matrix).others());
         Self { period, by_q, by_displacement, others }
     }
 
@@ -401,8 +403,8 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
     pub(crate) fn nearly(&self) -> [NearlyIdentity<'_, T, NV>; 2] {
         let [of_q, of_displacement] = self.others;
         [
-            NearlyIdentity::known(&self.by_q, of_q),
-            NearlyIdentity::known(&self.by_displacement, of_displacement),
+            NearlyIdentity::with_range(&self.by_q, of_q),
+            NearlyIdentity::with_range(&self.by_displacement, of_displacement),
         ]
     }
 }

@@ -161,9 +161,9 @@ impl Kind {
 /// assert_eq!(numbers[rod.first..rod.first + rod.kind.count()], [0.0, -0.4, 0.0, 0.0, 1.0, 0.0, 0.8]);
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` does not ask for `drawing`",
-    label = "this needs the word `drawing`",
-    note = "add the word to the attribute: `#[mechanism(…, drawing)]`"
+    message = "`{Self}` is compiled without `drawing`",
+    label = "this needs the option `drawing`",
+    note = "add the option to the attribute: `#[mechanism(…, drawing)]`"
 )]
 pub trait Drawn<const NQ: usize, const NV: usize>: Frames<NQ, NV> {
     /// Pieces of the drawing.

@@ -92,7 +92,7 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
     /// ```
     fn extended(&self) -> Extended<'_, Self, NV, NX, NE> {
         const { assert!(NE == NV + NX, "velocities and states are as many as the type says") };
-        Extended::of(self)
+        Extended::new(self)
     }
 }
 
@@ -100,7 +100,8 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
 /// implements the trait for mechanisms with such states and without constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives by states of first order",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms with constraints have none"
+    note = "enable them with the option: `#[mechanism(…, derivatives)]`; mechanisms with constraints have \
+            none"
 )]
 pub trait FirstOrderDerivatives<
     const NQ: usize,

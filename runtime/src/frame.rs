@@ -143,9 +143,10 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
 
 /// Name of a frame of the mechanism `M`, made by [`frame!`](crate::frame!).
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no frame of `{M}`",
+    message = "`{Self}` is not a frame of `{M}`",
     label = "a frame is named by `frame!`",
-    note = "write `frame!({M}, \"tool\")`; for a name that is known at run time alone, `index_of` and the trait `Frames`"
+    note = "write `frame!({M}, \"tool\")`; for a name that is known at run time alone, `index_of` and the \
+            trait `Frames`"
 )]
 pub trait FrameName<M, const NQ: usize, const NV: usize> {
     /// The scalar type.

@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, SVector, Vector3};
 /// Mechanism whose links' mass properties are parameters and whose base parameters are available: one with
 /// `parameters = inertial` and the option `regressor`. It has `N` such links and `B` base parameters.
 #[diagnostic::on_unimplemented(
-    message = "nothing can be put back into `{Self}`",
+    message = "identified values cannot be written to `{Self}`",
     label = "expected a mechanism whose links' mass properties are parameters",
     note = "write `#[mechanism(urdf = \"…\", parameters = inertial, regressor)]`"
 )]
@@ -63,7 +63,7 @@ impl fmt::Display for PutBackError {
         match self {
             Self::Prior { link } => write!(f, "link {link} has no mass properties of a body to begin with"),
             Self::NotPhysical { residual } => {
-                write!(f, "no bodies have these base parameters: {residual} is left")
+                write!(f, "no bodies have these base parameters: the residual is {residual}")
             }
             Self::NotFinite => f.write_str("a base parameter is not a finite number"),
         }
@@ -97,7 +97,7 @@ pub fn put_back<M, const N: usize, const B: usize>(
 where
     M: Identifiable<N, B>,
 {
-    put(mechanism, base, None)
+    put_parameters(mechanism, base, None)
 }
 
 /// Approximates base parameters that no bodies have, for example because of noise, as well as physically
@@ -117,10 +117,10 @@ pub fn approach<M, const N: usize, const B: usize>(
 where
     M: Identifiable<N, B>,
 {
-    put(mechanism, base, Some(softness))
+    put_parameters(mechanism, base, Some(softness))
 }
 
-fn put<M, const N: usize, const B: usize>(
+fn put_parameters<M, const N: usize, const B: usize>(
     mechanism: &mut M,
     base: &SVector<M::Scalar, B>,
     softness: Option<M::Scalar>,

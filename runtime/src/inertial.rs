@@ -106,17 +106,17 @@ impl<T: Real> Inertial<T> {
     where
         T: Into<f64>,
     {
-        let to = |x: T| constant::<U>(x.into());
+        let convert = |x: T| constant::<U>(x.into());
         let Inertial { mass, com, ixx, ixy, ixz, iyy, iyz, izz } = *self;
         Inertial {
-            mass: to(mass),
-            com: com.map(to),
-            ixx: to(ixx),
-            ixy: to(ixy),
-            ixz: to(ixz),
-            iyy: to(iyy),
-            iyz: to(iyz),
-            izz: to(izz),
+            mass: convert(mass),
+            com: com.map(convert),
+            ixx: convert(ixx),
+            ixy: convert(ixy),
+            ixz: convert(ixz),
+            iyy: convert(iyy),
+            iyz: convert(iyz),
+            izz: convert(izz),
         }
     }
 }

@@ -80,7 +80,7 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
     #[inline(always)]
     #[must_use]
     pub fn first<const M: usize>(self) -> Lanes<T, M> {
-        const { assert!(M <= N, "there are not so many lanes") };
+        const { assert!(M <= N, "there are fewer lanes") };
         Lanes::from_fn(|k| self.0[k])
     }
 

@@ -75,17 +75,17 @@ pub trait Limits<const NQ: usize, const NV: usize> {
 
     /// Returns the velocity with each entry clamped to its limit. NaN remains NaN.
     fn clamp_velocity(&self, v: &SVector<Self::Scalar, NV>) -> SVector<Self::Scalar, NV> {
-        within(v, &self.velocity_limits())
+        clamp_magnitudes(v, &self.velocity_limits())
     }
 
     /// Returns the generalized force with each entry clamped to its limit. NaN remains NaN.
     fn clamp_effort(&self, tau: &SVector<Self::Scalar, NV>) -> SVector<Self::Scalar, NV> {
-        within(tau, &self.effort_limits())
+        clamp_magnitudes(tau, &self.effort_limits())
     }
 }
 
 /// Returns `x` with each entry clamped to the magnitude in `most`.
-fn within<T: Real, const N: usize>(x: &SVector<T, N>, most: &SVector<T, N>) -> SVector<T, N> {
+fn clamp_magnitudes<T: Real, const N: usize>(x: &SVector<T, N>, most: &SVector<T, N>) -> SVector<T, N> {
     x.zip_map(most, |x, most| at_most(at_least(x, -most), most))
 }
 

@@ -26,9 +26,10 @@ impl<T: RealField + Copy> Real for T {}
 /// it: `fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(m: &M, …)` is
 /// called as `energy(&cart_pole, …)`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no mechanism",
+    message = "`{Self}` is not a mechanism",
     label = "expected a mechanism",
-    note = "a mechanism is a struct with the attribute `#[mechanism(…)]`, without `inertia = none`, or a reference to one"
+    note = "a mechanism is a struct with the attribute `#[mechanism(…)]`, without `inertia = none`, or a \
+            reference to one"
 )]
 pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
     Hooks<<Self as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>
@@ -172,7 +173,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
 
     /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`; called by
     /// integration methods. It equals [`tangent_rate`](Self::tangent_rate), which does not depend on `q`,
-    /// unless generalized speeds are declared ([`Speed`](crate::elements::Speed)): `tangent_rate` is then NaN.
+    /// unless generalized speeds are declared ([`Speed`](crate::elements::Speed)): `tangent_rate` is then
+    /// NaN.
     fn displacement_rate(
         &self,
         _q: &SVector<Self::Scalar, NQ>,

@@ -2,7 +2,7 @@
 //! nalgebra's own for large matrices, and skip structural zeros.
 
 mod column;
-pub(crate) use column::{part, put};
+pub(crate) use column::{part, write_entries};
 mod inverse;
 mod kernels;
 #[cfg(test)]

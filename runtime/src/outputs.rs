@@ -36,7 +36,7 @@ pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: u
 /// Derivatives of all outputs. `#[mechanism(…, derivatives)]` implements it.
 #[diagnostic::on_unimplemented(
     message = "the outputs of `{Self}` have no derivatives",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`"
+    note = "enable them with the option: `#[mechanism(…, derivatives)]`"
 )]
 pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, const NY: usize>:
     Outputs<NQ, NV, NU, NY>

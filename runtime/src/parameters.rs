@@ -91,10 +91,11 @@ impl fmt::Display for ParameterError {
                 write!(f, "{figure} is not of unit length: the square of its length is {value}")
             }
             Fault::NotFraction => write!(f, "{figure} is not between 0 and 1: it is {value}"),
-            Fault::EmptyRange => write!(f, "{figure} begins above its end, by {value}"),
+            Fault::EmptyRange => write!(f, "{figure} has a lower bound above the upper one, by {value}"),
             Fault::Inertia => write!(
                 f,
-                "{figure} is that of no real body: a principal moment is negative, or exceeds the sum of the others, by {} kg·m²",
+                "{figure} is not physically consistent: a principal moment is negative, or exceeds the sum \
+                 of the others, by {} kg·m²",
                 -value
             ),
         }?;
@@ -182,7 +183,7 @@ struct Range {
 }
 
 impl Range {
-    fn of<T: Real>() -> Range {
+    fn of_scalar<T: Real>() -> Range {
         if epsilon::<T>() > constant(1e-10) {
             return Range { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
         }
@@ -203,7 +204,7 @@ fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
         return Some((Fault::NotFinite, to_f64(*x)));
     }
-    let Range { most, length, least, tolerance } = Range::of::<T>();
+    let Range { most, length, least, tolerance } = Range::of_scalar::<T>();
     let zero = T::zero();
     let wrong = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
     match (rule, values) {
@@ -394,7 +395,7 @@ mod tests {
         let error = validate(&[figure], &[xx, yy, zz, xy, xz, yz, 1.0]).unwrap_err();
         assert!((error.value + 0.2).abs() < 1e-12);
         let said = std::string::ToString::to_string(&error);
-        assert!(said.starts_with("the inertia of `hand` is that of no real body"), "{said}");
+        assert!(said.starts_with("the inertia of `hand` is not physically consistent"), "{said}");
         assert!(said.ends_with("(by the parameters `m`, `l`)"), "{said}");
     }
 }

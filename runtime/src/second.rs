@@ -29,7 +29,8 @@ pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
 /// with respect to the configuration; for ball and free joints `dq` is a motion in body axes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
-    note = "the option asks for them: `#[mechanism(…, second_derivatives)]`; a mechanism with sliding contacts has none"
+    note = "enable them with the option: `#[mechanism(…, second_derivatives)]`; a mechanism with sliding \
+            contacts has none"
 )]
 pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Derivatives<NQ, NV, NU>

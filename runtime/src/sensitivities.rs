@@ -9,7 +9,8 @@ use nalgebra::{SMatrix, SVector};
 /// constraints. Time `t`, s, matters only if a function depends on it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives by parameters",
-    note = "the word asks for them: `#[mechanism(…, sensitivities)]`; mechanisms without parameters and those with constraints have none"
+    note = "enable them with the option: `#[mechanism(…, sensitivities)]`; mechanisms without parameters and \
+            those with constraints have none"
 )]
 pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
     Mechanism<NQ, NV, NU>

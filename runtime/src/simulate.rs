@@ -199,13 +199,13 @@ where
     /// [`Error::Quaternion`].
     pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
         let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
-        Self { start, ..self.afresh() }
+        Self { start, ..self.reset() }
     }
 
     /// Sets the initial time, s; the default is zero.
     pub fn start_at(self, t: T) -> Self {
         let start = State { t, ..self.start };
-        Self { start, ..self.afresh() }
+        Self { start, ..self.reset() }
     }
 
     /// Sets the treatment of [contact](crate::contact) surfaces that overlap at the start. By default,
@@ -236,20 +236,20 @@ where
     /// # }
     /// ```
     pub fn overlaps(self, overlaps: Overlaps) -> Self {
-        Self { overlaps, ..self.afresh() }
+        Self { overlaps, ..self.reset() }
     }
 
     /// Sets the duration, s. A duration of zero yields only the initial state. Without a duration, the run
     /// ends at an event of [`until`](Self::until), or continues as long as samples are requested.
     pub fn duration(self, duration: T) -> Self {
-        Self { duration: Some(duration), ..self.afresh() }
+        Self { duration: Some(duration), ..self.reset() }
     }
 
     /// Samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval. Fixed-step
     /// methods divide the interval into equal steps, adaptive methods interpolate. By default, every step of
     /// the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self { samples: Samples::Every(interval), ..self.afresh() }
+        Self { samples: Samples::Every(interval), ..self.reset() }
     }
 
     /// Samples at these times of the run, s. The times must increase, and none may be before the start; the
@@ -278,7 +278,7 @@ where
     /// # Ok::<(), Error>(())
     /// ```
     pub fn sample_at(self, times: &'m [T]) -> Self {
-        Self { samples: Samples::At(times), ..self.afresh() }
+        Self { samples: Samples::At(times), ..self.reset() }
     }
 
     /// Sets the inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For
@@ -399,7 +399,7 @@ where
     }
 
     /// Returns the simulation before its first sample.
-    fn afresh(self) -> Self {
+    fn reset(self) -> Self {
         Self { progress: None, over: false, ..self }
     }
 

@@ -97,11 +97,11 @@ where
     let (by_q, by_way, by_v) = m.displacement_rate_derivatives(q, &way, v);
     let own = Square::<T, NV>::identity() - by_way * s;
     let (by_q, by_v) = (eliminated(own, by_q * s), eliminated(own, by_v));
-    let through = |times: T| {
+    let derivatives_at = |times: T| {
         let (turned, moves) = m.integrate_derivatives_at(q, &(way * times));
         (turned + moves * by_q * times, moves * by_v)
     };
-    [through(T::one()), through(two)]
+    [derivatives_at(T::one()), derivatives_at(two)]
 }
 
 /// Returns `(∂/∂q, ∂/∂dv)` of `q₁ = q ⊕ Z(q) dv`, from `Z(q)`, `Y(q₁)`, the derivatives for the joints'

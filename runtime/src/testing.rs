@@ -141,7 +141,7 @@ impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
 }
 
 /// Returns `R(q) a` for a quaternion x y z w.
-pub(crate) fn turned(q: [f64; 4], a: Vector3<f64>) -> Vector3<f64> {
+pub(crate) fn rotate_vector(q: [f64; 4], a: Vector3<f64>) -> Vector3<f64> {
     let [x, y, z, w] = q;
     let u = Vector3::new(x, y, z);
     a + u.cross(&(u.cross(&a) + a * w)) * 2.0
@@ -213,7 +213,7 @@ impl Mechanism<7, 6, 0> for FreeBody {
     fn momentum_rate(&self, _t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
         let (linear, angular) = split(v);
         let weight = Vector3::new(0.0, 0.0, -self.mass * self.gravity);
-        let weight = turned([-q[3], -q[4], -q[5], q[6]], weight);
+        let weight = rotate_vector([-q[3], -q[4], -q[5], q[6]], weight);
         let spin = self.inertia.component_mul(&angular);
         join(linear.cross(&angular) * self.mass + weight, spin.cross(&angular))
     }

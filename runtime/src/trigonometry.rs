@@ -93,7 +93,7 @@ pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
     let (s, c, shifted) = kernel::<A, _>(x);
-    turned(s, c, shifted)
+    rotate_quadrant(s, c, shifted)
 }
 
 /// Coefficients of `(sin r - r) / r³` by powers of `r²`: those of fdlibm's `__kernel_sin` (Sun Microsystems
@@ -182,7 +182,7 @@ fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
 /// their signs.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
+pub(crate) fn rotate_quadrant(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     let quadrant = shifted.to_bits();
     let odd = (quadrant & 1).wrapping_neg();
     let (s, c) = (s.to_bits(), c.to_bits());

@@ -85,9 +85,11 @@ fn platform(legs: usize) -> String {
             item,
             "#[body(mass = 2, com = 0.3 * z, inertia = rod(2, 0.6, z))] lower{k}: Body,
             #[body(mass = 2, com = -0.3 * z, inertia = rod(2, 0.6, z))] upper{k}: Body,
-            #[joint(ground.at(0.8 * (cos(1 * {foot}) * x + sin(1 * {foot}) * y)) -> lower{k}, about = (x, y))] foot{k}: Universal,
+            #[joint(ground.at(0.8 * (cos(1 * {foot}) * x + sin(1 * {foot}) * y)) -> lower{k}, about = (x, \
+                y))] foot{k}: Universal,
             #[joint(lower{k} -> upper{k}, along = z)] slide{k}: Sleeve,
-            #[joint(upper{k} -> platform.at(0.5 * (cos(1 * {head}) * x + sin(1 * {head}) * y)))] head{k}: Ball,"
+            #[joint(upper{k} -> platform.at(0.5 * (cos(1 * {head}) * x + sin(1 * {head}) * y)))] head{k}: \
+                Ball,"
         );
     }
     item + "}"

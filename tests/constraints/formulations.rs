@@ -54,7 +54,8 @@ impl Chain {
             let (kind, key) = if *slide { ("Sleeve", "along") } else { ("Pin", "about") };
             let _ = writeln!(
                 item,
-                "#[body(mass = {mass:?}, com = {}, inertia = diagonal({mass:?} / 5, {mass:?} / 4, {mass:?} / 3))] b{k}: Body,
+                "#[body(mass = {mass:?}, com = {}, inertia = diagonal({mass:?} / 5, {mass:?} / 4, {mass:?} / \
+                 3))] b{k}: Body,
                 #[joint({parent}.at({}) -> b{k}, {key} = {axis})] j{k}: {kind},",
                 vector(&offset.map(|x| x / 2.0)),
                 vector(&offset)
@@ -188,7 +189,7 @@ proptest! {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
             let speed = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
-            let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::of(s) {
+            let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k] + step * speed(k),
                 Quantity::Velocity(k) => speed(k),
                 _ => 0.0,

@@ -189,7 +189,7 @@ fn states_off_the_constraints_are_errors() {
         matches!(error, Error::OffConstraints { by, .. } if by.abs() > 1e-3 && by.abs() < 0.02),
         "{error:?}"
     );
-    assert!(error.to_string().contains("off the constraints, which move `"), "{error}");
+    assert!(error.to_string().contains("violates the constraints, which change `"), "{error}");
     let Err(error) = simulate(&bar).from(closed, [1.0, 0.0, 0.0]).duration(0.001).finish() else {
         panic!("it would break")
     };

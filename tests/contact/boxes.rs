@@ -25,7 +25,9 @@ pub struct Two {
     high: Body,
     #[joint(ground -> high)]
     above: Free,
-    #[contact(high.cuboid(0.3, 0.2, 0.05), low.cuboid(0.2, 0.2, 0.1), friction = friction, restitution = restitution)]
+    #[contact(
+        high.cuboid(0.3, 0.2, 0.05), low.cuboid(0.2, 0.2, 0.1), friction = friction, restitution = restitution
+    )]
     seat: Contact,
     #[contact(low.cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = friction)]
     floor: Contact,
@@ -45,7 +47,9 @@ pub struct Swapped {
     high: Body,
     #[joint(ground -> high)]
     above: Free,
-    #[contact(low.cuboid(0.2, 0.2, 0.1), high.cuboid(0.3, 0.2, 0.05), friction = friction, restitution = restitution)]
+    #[contact(
+        low.cuboid(0.2, 0.2, 0.1), high.cuboid(0.3, 0.2, 0.05), friction = friction, restitution = restitution
+    )]
     seat: Contact,
     #[contact(low.cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = friction)]
     floor: Contact,

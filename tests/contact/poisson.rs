@@ -172,9 +172,14 @@ struct Block {
     block: Body,
     #[joint(ground -> block)]
     pose: Free,
-    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = poisson(restitution))]
+    #[contact(
+        block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = poisson(restitution)
+    )]
     floor: Contact,
-    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction, restitution = restitution)]
+    #[contact(
+        block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction,
+        restitution = restitution
+    )]
     wall: Contact,
 }
 

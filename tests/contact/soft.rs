@@ -104,7 +104,10 @@ struct Bowling {
     ball: Body,
     #[joint(ground -> ball)]
     pose: Free,
-    #[contact(ball.sphere(0.11), ground.plane(z), stiffness = 1e6, dissipation = 0.5, friction = friction, speed = 1e-4)]
+    #[contact(
+        ball.sphere(0.11), ground.plane(z), stiffness = 1e6, dissipation = 0.5, friction = friction,
+        speed = 1e-4
+    )]
     lane: Contact,
 }
 

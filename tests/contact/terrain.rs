@@ -12,7 +12,9 @@ struct BallOnHills {
     ball: Body,
     #[joint(ground -> ball)]
     pose: Free,
-    #[contact(ball.sphere(radius), ground.terrain(height * cos(u / length) * sin(w / length)), friction = 0.5)]
+    #[contact(
+        ball.sphere(radius), ground.terrain(height * cos(u / length) * sin(w / length)), friction = 0.5
+    )]
     hills: Contact,
 }
 
@@ -67,7 +69,9 @@ struct BallInHollow {
     ball: Body,
     #[joint(ground -> ball)]
     pose: Free,
-    #[contact(ball.sphere(radius), ground.terrain(curvature / 2 * (pow(u, 2) + pow(w, 2))), friction = friction)]
+    #[contact(
+        ball.sphere(radius), ground.terrain(curvature / 2 * (pow(u, 2) + pow(w, 2))), friction = friction
+    )]
     hollow: Contact,
 }
 

@@ -20,7 +20,9 @@ struct Ball {
     ball: Body,
     #[joint(ground -> ball)]
     pose: Free,
-    #[contact(ball.sphere(0.05), ground.plane(z), friction = friction, torsional = torsional, rolling = rolling)]
+    #[contact(
+        ball.sphere(0.05), ground.plane(z), friction = friction, torsional = torsional, rolling = rolling
+    )]
     floor: Contact,
 }
 
@@ -232,7 +234,9 @@ struct Soft {
     ball: Body,
     #[joint(ground -> ball)]
     pose: Free,
-    #[contact(ball.sphere(0.05), ground.plane(z), stiffness = 1e4, torsional = 0.002, rolling = 0.001, speed = 1e-6)]
+    #[contact(
+        ball.sphere(0.05), ground.plane(z), stiffness = 1e4, torsional = 0.002, rolling = 0.001, speed = 1e-6
+    )]
     floor: Contact,
     #[output(contact_moment(floor))]
     couple: Vector,

@@ -43,7 +43,9 @@ struct Driven {
 }
 
 /// Arm whose coordinates are all joint angles.
-#[mechanism(urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives)]
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives
+)]
 struct Panda;
 
 /// Closed loop, whose derivatives include the constraint forces.

@@ -26,7 +26,10 @@ struct Places {
     cord: Spring,
     #[frame(ground, z(turn), x(0.3 * sin(2 * t)))]
     axes: Frame,
-    #[body(mass = 1.5, com = 0.1 * y, inertia = diagonal(0.02, 0.03, 0.04), frame = axes, at = cos(turn) * x + 0.3 * t * z)]
+    #[body(
+        mass = 1.5, com = 0.1 * y, inertia = diagonal(0.02, 0.03, 0.04), frame = axes,
+        at = cos(turn) * x + 0.3 * t * z
+    )]
     plate: Body,
     #[particle(mass = 0.3, at = plate.at(0.2 * x))]
     weight: Particle,

@@ -179,7 +179,7 @@ fn dashpots() {
 }
 
 // ---- Frames and the mechanism as a
-// whole -------------------------------------------------------------------------
+// whole -----------------------------------------------------------------------------------------------------
 
 /// Checks placement, velocity, acceleration and Jacobian of a frame, and centre of mass and momentum: each is
 /// the rate of the one before it.
@@ -249,7 +249,7 @@ fn motors_do_not_change_the_momentum() {
 }
 
 // ----
-// Inputs ------------------------------------------------------------------------------------------------------
+// Inputs ----------------------------------------------------------------------------------------------------
 
 /// The power of an input is its force times the velocity of the point on which it acts.
 #[test]
@@ -287,7 +287,7 @@ fn inputs_work_where_they_act() {
 }
 
 // ----
-// Motion ------------------------------------------------------------------------------------------------------
+// Motion ----------------------------------------------------------------------------------------------------
 
 /// Without external forces, a mechanism conserves its momentum and its energy, and its centre of mass moves
 /// uniformly.
@@ -340,7 +340,7 @@ fn workshop_balances_its_energy() {
 }
 
 // ----
-// Scalars -----------------------------------------------------------------------------------------------------
+// Scalars ---------------------------------------------------------------------------------------------------
 
 /// Mechanism that is generic over the scalar type.
 #[mechanism(gravity = -g * y)]

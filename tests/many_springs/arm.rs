@@ -27,14 +27,16 @@ fn arm(springs: Range<usize>) -> [TokenStream; 2] {
     for k in springs {
         let (x, y, z) = (0.1 + 0.01 * k as f64, 0.3 + 0.003 * k as f64, 0.1 + 0.002 * k as f64);
         item += &format!(
-            "#[acts(between = (ground.at({x:.3} * x + {y:.3} * y), link{}.at({z:.3} * z)), stiffness = {}, free_length = 0.{})] spring{k}: Spring,",
+            "#[acts(between = (ground.at({x:.3} * x + {y:.3} * y), link{}.at({z:.3} * z)), stiffness = {}, \
+             free_length = 0.{})] spring{k}: Spring,",
             k % 3,
             10 + k,
             1 + k % 9
         );
         if k.is_multiple_of(5) {
             item += &format!(
-                "#[acts(between = (ground.at({y:.3} * x), link2.at({z:.3} * x)), damping = 2)] dashpot{k}: Dashpot,"
+                "#[acts(between = (ground.at({y:.3} * x), link2.at({z:.3} * x)), damping = 2)] dashpot{k}: \
+                 Dashpot,"
             );
         }
     }
@@ -59,7 +61,7 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
         false if name.starts_with("__") => Vec::new(),
         false => run(output, other, state).unwrap_or_default(),
     });
-    let symbol_value = |s| match Quantity::of(s) {
+    let symbol_value = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => state[0][k],
         Quantity::Velocity(k) => state[1][k],
         Quantity::Acceleration(k) => state[2][k],

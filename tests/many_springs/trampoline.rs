@@ -25,113 +25,275 @@ struct Trampoline<T> {
     first: Dashpot,
     #[acts(between = (ground.at(y - z), arm.at(0.4 * x)), damping = 2 * c)]
     second: Dashpot,
-    #[acts(between = (ground.at([1.50, 0.00, -0.40]), deck.at([0.57, 0.15, 0.00])), stiffness = k * 1.0, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([1.50, 0.00, -0.40]), deck.at([0.57, 0.15, 0.00])), stiffness = k * 1.0,
+        free_length = 0.50
+    )]
     spring0: Spring,
-    #[acts(between = (ground.at([1.49, 0.14, -0.45]), deck.at([0.55, 0.20, 0.10])), stiffness = k * 1.1, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([1.49, 0.14, -0.45]), deck.at([0.55, 0.20, 0.10])), stiffness = k * 1.1,
+        free_length = 0.52
+    )]
     spring1: Spring,
-    #[acts(between = (ground.at([1.46, 0.28, -0.50]), deck.at([0.52, 0.25, 0.00])), stiffness = k * 1.2, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([1.46, 0.28, -0.50]), deck.at([0.52, 0.25, 0.00])), stiffness = k * 1.2,
+        free_length = 0.54
+    )]
     spring2: Spring,
-    #[acts(between = (ground.at([1.41, 0.41, -0.40]), deck.at([0.48, 0.30, 0.10])), stiffness = k * 1.3, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([1.41, 0.41, -0.40]), deck.at([0.48, 0.30, 0.10])), stiffness = k * 1.3,
+        free_length = 0.56
+    )]
     spring3: Spring,
-    #[acts(between = (ground.at([1.34, 0.54, -0.45]), deck.at([0.43, 0.35, 0.00])), stiffness = k * 1.4, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([1.34, 0.54, -0.45]), deck.at([0.43, 0.35, 0.00])), stiffness = k * 1.4,
+        free_length = 0.58
+    )]
     spring4: Spring,
-    #[acts(between = (ground.at([1.25, 0.66, -0.50]), deck.at([0.38, 0.39, 0.10])), stiffness = k * 1.0, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([1.25, 0.66, -0.50]), deck.at([0.38, 0.39, 0.10])), stiffness = k * 1.0,
+        free_length = 0.60
+    )]
     spring5: Spring,
-    #[acts(between = (ground.at([1.15, 0.77, -0.40]), deck.at([0.33, 0.42, 0.00])), stiffness = k * 1.1, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([1.15, 0.77, -0.40]), deck.at([0.33, 0.42, 0.00])), stiffness = k * 1.1,
+        free_length = 0.62
+    )]
     spring6: Spring,
-    #[acts(between = (ground.at([1.03, 0.87, -0.45]), deck.at([0.26, 0.45, 0.10])), stiffness = k * 1.2, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([1.03, 0.87, -0.45]), deck.at([0.26, 0.45, 0.10])), stiffness = k * 1.2,
+        free_length = 0.50
+    )]
     spring7: Spring,
-    #[acts(between = (ground.at([0.90, 0.96, -0.50]), deck.at([0.20, 0.47, 0.00])), stiffness = k * 1.3, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([0.90, 0.96, -0.50]), deck.at([0.20, 0.47, 0.00])), stiffness = k * 1.3,
+        free_length = 0.52
+    )]
     spring8: Spring,
-    #[acts(between = (ground.at([0.75, 1.04, -0.40]), deck.at([0.13, 0.49, 0.10])), stiffness = k * 1.4, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([0.75, 1.04, -0.40]), deck.at([0.13, 0.49, 0.10])), stiffness = k * 1.4,
+        free_length = 0.54
+    )]
     spring9: Spring,
-    #[acts(between = (ground.at([0.59, 1.10, -0.45]), deck.at([0.06, 0.50, 0.00])), stiffness = k * 1.0, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([0.59, 1.10, -0.45]), deck.at([0.06, 0.50, 0.00])), stiffness = k * 1.0,
+        free_length = 0.56
+    )]
     spring10: Spring,
-    #[acts(between = (ground.at([0.43, 1.15, -0.50]), deck.at([-0.01, 0.50, 0.10])), stiffness = k * 1.1, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([0.43, 1.15, -0.50]), deck.at([-0.01, 0.50, 0.10])), stiffness = k * 1.1,
+        free_length = 0.58
+    )]
     spring11: Spring,
-    #[acts(between = (ground.at([0.26, 1.18, -0.40]), deck.at([-0.08, 0.50, 0.00])), stiffness = k * 1.2, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([0.26, 1.18, -0.40]), deck.at([-0.08, 0.50, 0.00])), stiffness = k * 1.2,
+        free_length = 0.60
+    )]
     spring12: Spring,
-    #[acts(between = (ground.at([0.09, 1.20, -0.45]), deck.at([-0.14, 0.49, 0.10])), stiffness = k * 1.3, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([0.09, 1.20, -0.45]), deck.at([-0.14, 0.49, 0.10])), stiffness = k * 1.3,
+        free_length = 0.62
+    )]
     spring13: Spring,
-    #[acts(between = (ground.at([-0.09, 1.20, -0.50]), deck.at([-0.21, 0.47, 0.00])), stiffness = k * 1.4, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([-0.09, 1.20, -0.50]), deck.at([-0.21, 0.47, 0.00])), stiffness = k * 1.4,
+        free_length = 0.50
+    )]
     spring14: Spring,
-    #[acts(between = (ground.at([-0.26, 1.18, -0.40]), deck.at([-0.27, 0.44, 0.10])), stiffness = k * 1.0, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([-0.26, 1.18, -0.40]), deck.at([-0.27, 0.44, 0.10])), stiffness = k * 1.0,
+        free_length = 0.52
+    )]
     spring15: Spring,
-    #[acts(between = (ground.at([-0.43, 1.15, -0.45]), deck.at([-0.33, 0.42, 0.00])), stiffness = k * 1.1, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([-0.43, 1.15, -0.45]), deck.at([-0.33, 0.42, 0.00])), stiffness = k * 1.1,
+        free_length = 0.54
+    )]
     spring16: Spring,
-    #[acts(between = (ground.at([-0.59, 1.10, -0.50]), deck.at([-0.39, 0.38, 0.10])), stiffness = k * 1.2, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([-0.59, 1.10, -0.50]), deck.at([-0.39, 0.38, 0.10])), stiffness = k * 1.2,
+        free_length = 0.56
+    )]
     spring17: Spring,
-    #[acts(between = (ground.at([-0.75, 1.04, -0.40]), deck.at([-0.44, 0.34, 0.00])), stiffness = k * 1.3, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([-0.75, 1.04, -0.40]), deck.at([-0.44, 0.34, 0.00])), stiffness = k * 1.3,
+        free_length = 0.58
+    )]
     spring18: Spring,
-    #[acts(between = (ground.at([-0.90, 0.96, -0.45]), deck.at([-0.48, 0.29, 0.10])), stiffness = k * 1.4, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([-0.90, 0.96, -0.45]), deck.at([-0.48, 0.29, 0.10])), stiffness = k * 1.4,
+        free_length = 0.60
+    )]
     spring19: Spring,
-    #[acts(between = (ground.at([-1.03, 0.87, -0.50]), deck.at([-0.52, 0.25, 0.00])), stiffness = k * 1.0, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([-1.03, 0.87, -0.50]), deck.at([-0.52, 0.25, 0.00])), stiffness = k * 1.0,
+        free_length = 0.62
+    )]
     spring20: Spring,
-    #[acts(between = (ground.at([-1.15, 0.77, -0.40]), deck.at([-0.55, 0.19, 0.10])), stiffness = k * 1.1, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([-1.15, 0.77, -0.40]), deck.at([-0.55, 0.19, 0.10])), stiffness = k * 1.1,
+        free_length = 0.50
+    )]
     spring21: Spring,
-    #[acts(between = (ground.at([-1.25, 0.66, -0.45]), deck.at([-0.58, 0.14, 0.00])), stiffness = k * 1.2, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([-1.25, 0.66, -0.45]), deck.at([-0.58, 0.14, 0.00])), stiffness = k * 1.2,
+        free_length = 0.52
+    )]
     spring22: Spring,
-    #[acts(between = (ground.at([-1.34, 0.54, -0.50]), deck.at([-0.59, 0.08, 0.10])), stiffness = k * 1.3, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([-1.34, 0.54, -0.50]), deck.at([-0.59, 0.08, 0.10])), stiffness = k * 1.3,
+        free_length = 0.54
+    )]
     spring23: Spring,
-    #[acts(between = (ground.at([-1.41, 0.41, -0.40]), deck.at([-0.60, 0.02, 0.00])), stiffness = k * 1.4, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([-1.41, 0.41, -0.40]), deck.at([-0.60, 0.02, 0.00])), stiffness = k * 1.4,
+        free_length = 0.56
+    )]
     spring24: Spring,
-    #[acts(between = (ground.at([-1.46, 0.28, -0.45]), deck.at([-0.60, -0.03, 0.10])), stiffness = k * 1.0, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([-1.46, 0.28, -0.45]), deck.at([-0.60, -0.03, 0.10])), stiffness = k * 1.0,
+        free_length = 0.58
+    )]
     spring25: Spring,
-    #[acts(between = (ground.at([-1.49, 0.14, -0.50]), deck.at([-0.59, -0.09, 0.00])), stiffness = k * 1.1, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([-1.49, 0.14, -0.50]), deck.at([-0.59, -0.09, 0.00])), stiffness = k * 1.1,
+        free_length = 0.60
+    )]
     spring26: Spring,
-    #[acts(between = (ground.at([-1.50, 0.00, -0.40]), deck.at([-0.57, -0.15, 0.10])), stiffness = k * 1.2, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([-1.50, 0.00, -0.40]), deck.at([-0.57, -0.15, 0.10])), stiffness = k * 1.2,
+        free_length = 0.62
+    )]
     spring27: Spring,
-    #[acts(between = (ground.at([-1.49, -0.14, -0.45]), deck.at([-0.55, -0.20, 0.00])), stiffness = k * 1.3, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([-1.49, -0.14, -0.45]), deck.at([-0.55, -0.20, 0.00])), stiffness = k * 1.3,
+        free_length = 0.50
+    )]
     spring28: Spring,
-    #[acts(between = (ground.at([-1.46, -0.28, -0.50]), deck.at([-0.52, -0.25, 0.10])), stiffness = k * 1.4, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([-1.46, -0.28, -0.50]), deck.at([-0.52, -0.25, 0.10])), stiffness = k * 1.4,
+        free_length = 0.52
+    )]
     spring29: Spring,
-    #[acts(between = (ground.at([-1.41, -0.41, -0.40]), deck.at([-0.48, -0.30, 0.00])), stiffness = k * 1.0, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([-1.41, -0.41, -0.40]), deck.at([-0.48, -0.30, 0.00])), stiffness = k * 1.0,
+        free_length = 0.54
+    )]
     spring30: Spring,
-    #[acts(between = (ground.at([-1.34, -0.54, -0.45]), deck.at([-0.43, -0.35, 0.10])), stiffness = k * 1.1, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([-1.34, -0.54, -0.45]), deck.at([-0.43, -0.35, 0.10])), stiffness = k * 1.1,
+        free_length = 0.56
+    )]
     spring31: Spring,
-    #[acts(between = (ground.at([-1.25, -0.66, -0.50]), deck.at([-0.38, -0.39, 0.00])), stiffness = k * 1.2, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([-1.25, -0.66, -0.50]), deck.at([-0.38, -0.39, 0.00])), stiffness = k * 1.2,
+        free_length = 0.58
+    )]
     spring32: Spring,
-    #[acts(between = (ground.at([-1.15, -0.77, -0.40]), deck.at([-0.33, -0.42, 0.10])), stiffness = k * 1.3, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([-1.15, -0.77, -0.40]), deck.at([-0.33, -0.42, 0.10])), stiffness = k * 1.3,
+        free_length = 0.60
+    )]
     spring33: Spring,
-    #[acts(between = (ground.at([-1.03, -0.87, -0.45]), deck.at([-0.26, -0.45, 0.00])), stiffness = k * 1.4, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([-1.03, -0.87, -0.45]), deck.at([-0.26, -0.45, 0.00])), stiffness = k * 1.4,
+        free_length = 0.62
+    )]
     spring34: Spring,
-    #[acts(between = (ground.at([-0.90, -0.96, -0.50]), deck.at([-0.20, -0.47, 0.10])), stiffness = k * 1.0, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([-0.90, -0.96, -0.50]), deck.at([-0.20, -0.47, 0.10])), stiffness = k * 1.0,
+        free_length = 0.50
+    )]
     spring35: Spring,
-    #[acts(between = (ground.at([-0.75, -1.04, -0.40]), deck.at([-0.13, -0.49, 0.00])), stiffness = k * 1.1, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([-0.75, -1.04, -0.40]), deck.at([-0.13, -0.49, 0.00])), stiffness = k * 1.1,
+        free_length = 0.52
+    )]
     spring36: Spring,
-    #[acts(between = (ground.at([-0.59, -1.10, -0.45]), deck.at([-0.06, -0.50, 0.10])), stiffness = k * 1.2, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([-0.59, -1.10, -0.45]), deck.at([-0.06, -0.50, 0.10])), stiffness = k * 1.2,
+        free_length = 0.54
+    )]
     spring37: Spring,
-    #[acts(between = (ground.at([-0.43, -1.15, -0.50]), deck.at([0.01, -0.50, 0.00])), stiffness = k * 1.3, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([-0.43, -1.15, -0.50]), deck.at([0.01, -0.50, 0.00])), stiffness = k * 1.3,
+        free_length = 0.56
+    )]
     spring38: Spring,
-    #[acts(between = (ground.at([-0.26, -1.18, -0.40]), deck.at([0.08, -0.50, 0.10])), stiffness = k * 1.4, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([-0.26, -1.18, -0.40]), deck.at([0.08, -0.50, 0.10])), stiffness = k * 1.4,
+        free_length = 0.58
+    )]
     spring39: Spring,
-    #[acts(between = (ground.at([-0.09, -1.20, -0.45]), deck.at([0.14, -0.49, 0.00])), stiffness = k * 1.0, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([-0.09, -1.20, -0.45]), deck.at([0.14, -0.49, 0.00])), stiffness = k * 1.0,
+        free_length = 0.60
+    )]
     spring40: Spring,
-    #[acts(between = (ground.at([0.09, -1.20, -0.50]), deck.at([0.21, -0.47, 0.10])), stiffness = k * 1.1, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([0.09, -1.20, -0.50]), deck.at([0.21, -0.47, 0.10])), stiffness = k * 1.1,
+        free_length = 0.62
+    )]
     spring41: Spring,
-    #[acts(between = (ground.at([0.26, -1.18, -0.40]), deck.at([0.27, -0.44, 0.00])), stiffness = k * 1.2, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([0.26, -1.18, -0.40]), deck.at([0.27, -0.44, 0.00])), stiffness = k * 1.2,
+        free_length = 0.50
+    )]
     spring42: Spring,
-    #[acts(between = (ground.at([0.43, -1.15, -0.45]), deck.at([0.33, -0.42, 0.10])), stiffness = k * 1.3, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([0.43, -1.15, -0.45]), deck.at([0.33, -0.42, 0.10])), stiffness = k * 1.3,
+        free_length = 0.52
+    )]
     spring43: Spring,
-    #[acts(between = (ground.at([0.59, -1.10, -0.50]), deck.at([0.39, -0.38, 0.00])), stiffness = k * 1.4, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([0.59, -1.10, -0.50]), deck.at([0.39, -0.38, 0.00])), stiffness = k * 1.4,
+        free_length = 0.54
+    )]
     spring44: Spring,
-    #[acts(between = (ground.at([0.75, -1.04, -0.40]), deck.at([0.44, -0.34, 0.10])), stiffness = k * 1.0, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([0.75, -1.04, -0.40]), deck.at([0.44, -0.34, 0.10])), stiffness = k * 1.0,
+        free_length = 0.56
+    )]
     spring45: Spring,
-    #[acts(between = (ground.at([0.90, -0.96, -0.45]), deck.at([0.48, -0.29, 0.00])), stiffness = k * 1.1, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([0.90, -0.96, -0.45]), deck.at([0.48, -0.29, 0.00])), stiffness = k * 1.1,
+        free_length = 0.58
+    )]
     spring46: Spring,
-    #[acts(between = (ground.at([1.03, -0.87, -0.50]), deck.at([0.52, -0.25, 0.10])), stiffness = k * 1.2, free_length = 0.60)]
+    #[acts(
+        between = (ground.at([1.03, -0.87, -0.50]), deck.at([0.52, -0.25, 0.10])), stiffness = k * 1.2,
+        free_length = 0.60
+    )]
     spring47: Spring,
-    #[acts(between = (ground.at([1.15, -0.77, -0.40]), deck.at([0.55, -0.19, 0.00])), stiffness = k * 1.3, free_length = 0.62)]
+    #[acts(
+        between = (ground.at([1.15, -0.77, -0.40]), deck.at([0.55, -0.19, 0.00])), stiffness = k * 1.3,
+        free_length = 0.62
+    )]
     spring48: Spring,
-    #[acts(between = (ground.at([1.25, -0.66, -0.45]), deck.at([0.58, -0.14, 0.10])), stiffness = k * 1.4, free_length = 0.50)]
+    #[acts(
+        between = (ground.at([1.25, -0.66, -0.45]), deck.at([0.58, -0.14, 0.10])), stiffness = k * 1.4,
+        free_length = 0.50
+    )]
     spring49: Spring,
-    #[acts(between = (ground.at([1.34, -0.54, -0.50]), deck.at([0.59, -0.08, 0.00])), stiffness = k * 1.0, free_length = 0.52)]
+    #[acts(
+        between = (ground.at([1.34, -0.54, -0.50]), deck.at([0.59, -0.08, 0.00])), stiffness = k * 1.0,
+        free_length = 0.52
+    )]
     spring50: Spring,
-    #[acts(between = (ground.at([1.41, -0.41, -0.40]), deck.at([0.60, -0.02, 0.10])), stiffness = k * 1.1, free_length = 0.54)]
+    #[acts(
+        between = (ground.at([1.41, -0.41, -0.40]), deck.at([0.60, -0.02, 0.10])), stiffness = k * 1.1,
+        free_length = 0.54
+    )]
     spring51: Spring,
-    #[acts(between = (ground.at([1.46, -0.28, -0.45]), deck.at([0.60, 0.03, 0.00])), stiffness = k * 1.2, free_length = 0.56)]
+    #[acts(
+        between = (ground.at([1.46, -0.28, -0.45]), deck.at([0.60, 0.03, 0.00])), stiffness = k * 1.2,
+        free_length = 0.56
+    )]
     spring52: Spring,
-    #[acts(between = (ground.at([1.49, -0.14, -0.50]), deck.at([0.59, 0.09, 0.10])), stiffness = k * 1.3, free_length = 0.58)]
+    #[acts(
+        between = (ground.at([1.49, -0.14, -0.50]), deck.at([0.59, 0.09, 0.10])), stiffness = k * 1.3,
+        free_length = 0.58
+    )]
     spring53: Spring,
 }
 

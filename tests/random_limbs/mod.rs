@@ -136,11 +136,16 @@ impl Creature {
         let _ = match TRUNKS[self.trunk] {
             "ground" => return "ground",
             "free body" => writeln!(out, "{body} trunk: Body, #[joint(ground -> trunk)] base: Free,"),
-            "pinned body" => writeln!(out, "{body} trunk: Body, #[joint(ground -> trunk, about = y)] base: Pin,"),
+            "pinned body" => writeln!(
+                out,
+                "{body} trunk: Body, #[joint(ground -> trunk, about = y)] base: \
+                                            Pin,"
+            ),
             _ => writeln!(
                 out,
                 "{body} below: Body, #[joint(ground -> below)] base: Free,
-                 {body} trunk: Body, #[joint(below.at([0.2, 0.1, 0.3]) -> trunk, about = unit(x + z))] waist: Pin,"
+                 {body} trunk: Body, #[joint(below.at([0.2, 0.1, 0.3]) -> trunk, about = unit(x + z))] \
+                     waist: Pin,"
             ),
         };
         "trunk"
@@ -168,7 +173,8 @@ impl Creature {
         };
         let _ = writeln!(
             out,
-            "#[body(mass = {mass}, com = [{:?}, {:?}, {:?}], inertia = cuboid({mass}, 0.3, 0.2, {:?}))] limb{limb}_{k}: Body,",
+            "#[body(mass = {mass}, com = [{:?}, {:?}, {:?}], inertia = cuboid({mass}, 0.3, 0.2, {:?}))] \
+             limb{limb}_{k}: Body,",
             0.2 * n(1) * end,
             0.2 * n(2) * side,
             0.3 * n(3),

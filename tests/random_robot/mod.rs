@@ -74,7 +74,8 @@ impl Link {
         let (mass, s) = ((1.5 + n(12)) * self.size, self.size);
         let _ = writeln!(
             out,
-            "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, {:?}).rotated(x({:?})))] b{k}: Body,",
+            "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, \
+             {:?}).rotated(x({:?})))] b{k}: Body,",
             self.vector(3, lengths),
             0.7 * s,
             0.4 * s,
@@ -92,7 +93,8 @@ impl Link {
         let axis = format!("unit([{:?}, {:?}, 1])", axes * n(17), axes * n(18));
         let _ = writeln!(
             out,
-            "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: {kind},",
+            "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: \
+             {kind},",
             self.vector(0, lengths),
             angle(2),
             angle(1),

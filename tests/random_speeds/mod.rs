@@ -37,7 +37,7 @@ struct State {
 
 impl State {
     fn value(&self, s: Symbol) -> f64 {
-        match Quantity::of(s) {
+        match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k],
             Quantity::Velocity(k) => self.v[k],
             Quantity::Acceleration(k) => self.a[k],
@@ -153,7 +153,8 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
         let [a, b, c] = std::array::from_fn(|_| random.uniform(0.4));
         let _ = writeln!(
             text,
-            "#[speed((1.5 + {a:?} * sin({next})) * rate({name}) + {b:?} * cos({name}) * rate({next}) + {c:?} * rate({other}))] speed{k}: Speed,"
+            "#[speed((1.5 + {a:?} * sin({next})) * rate({name}) + {b:?} * cos({name}) * rate({next}) + {c:?} \
+             * rate({other}))] speed{k}: Speed,"
         );
     }
     for k in 0..8 {

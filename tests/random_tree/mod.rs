@@ -132,7 +132,8 @@ impl Limb {
         let (m, l) = mass;
         let _ = writeln!(
             out,
-            "#[body(mass = {m}, com = {l} * {}, inertia = cuboid({m}, {l}, 0.7, 0.4).rotated(z({:?}), x({:?})))] body{k}: Body,",
+            "#[body(mass = {m}, com = {l} * {}, inertia = cuboid({m}, {l}, 0.7, 0.4).rotated(z({:?}), \
+             x({:?})))] body{k}: Body,",
             self.vector(2),
             self.number(5),
             self.number(6)

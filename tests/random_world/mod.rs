@@ -52,13 +52,21 @@ const PLACES: &str = "
     bead: Particle,
     #[particle(mass = 0.4, at = bead.at(0.5 * second * x + [#, #, #]))] pendant: Particle,
     #[particle(mass = 0.3, at = [first, second, 0.2 * @])] plain: Particle,
-    #[body(mass = 0.8, inertia = diagonal(0.3, 0.5, 0.6).rotated(y(#)), at = hook.at([#, #, #]), frame = carried)]
+    #[body(
+        mass = 0.8, inertia = diagonal(0.3, 0.5, 0.6).rotated(y(#)), at = hook.at([#, #, #]), frame = carried
+    )]
     placed: Body,
     #[particle(mass = 0.6, at = plain.at([#, #, #]))] beside: Particle,
     #[particle(mass = 0.2, at = [first + sin(second), second, cos(second)])] further: Particle,
-    #[body(mass = 0.4, com = [#, #, #], inertia = diagonal(0.2, 0.3, 0.25), at = [sin(first), @, 0], frame = turning)]
+    #[body(
+        mass = 0.4, com = [#, #, #], inertia = diagonal(0.2, 0.3, 0.25), at = [sin(first), @, 0],
+        frame = turning
+    )]
     twin: Body,
-    #[body(mass = 0.7, com = [#, #, #], inertia = diagonal(0.3, 0.3, 0.2), at = [sin(first), @, #], frame = turning)]
+    #[body(
+        mass = 0.7, com = [#, #, #], inertia = diagonal(0.3, 0.3, 0.2), at = [sin(first), @, #],
+        frame = turning
+    )]
     other: Body,
     #[body(mass = 0.5, com = [#, #, #], inertia = diagonal(0.2, 0.3, 0.25))] hung: Body,
     #[joint(hook.rotated(x(#)) -> hung.at([#, #, 0]), about = z)] pin: Pin,
@@ -69,24 +77,32 @@ const PLACES: &str = "
 /// Force elements, each of which may be absent.
 const ACTIONS: [&str; 21] = [
     "#[acts(between = (bead, base.at([#, #, 0.3])), stiffness = 3, free_length = 0.4)] e0: Spring,",
-    "#[acts(between = (hook, pendant), force = 3 * stretch + 2 * pow(stretch, 3) + 0.4, free_length = 0.2)] e1: Spring,",
-    "#[acts(between = (still, placed), energy = 0.9 * cosh(0.3 * stretch) + 1.1 * sin(length), free_length = 0.1)] e2: Spring,",
+    "#[acts(between = (hook, pendant), force = 3 * stretch + 2 * pow(stretch, 3) + 0.4, free_length = 0.2)] \
+     e1: Spring,",
+    "#[acts(between = (still, placed), energy = 0.9 * cosh(0.3 * stretch) + 1.1 * sin(length), free_length = \
+     0.1)] e2: Spring,",
     "#[acts(on = first, stiffness = 2, free_angle = #)] e3: Spring,",
     "#[acts(on = second, damping = 0.7)] e4: Dashpot,",
     "#[acts(between = (bead, hung), damping = 0.6)] e5: Dashpot,",
     "#[acts(between = (plain, hung), force = 2 * speed + 0.1 * pow(speed, 3))] e6: Dashpot,",
     "#[acts(between = (bead, hung.at([#, #, #])), inertance = 0.6)] e7: Inerter,",
     "#[acts(on = pin, inertance = 0.2 + 0.1)] e8: Inerter,",
-    "#[acts(on = pin, coulomb = 0.3, stiction = 0.5, stribeck_speed = 2, viscous = 0.2, speed = 1)] e9: Friction,",
+    "#[acts(on = pin, coulomb = 0.3, stiction = 0.5, stribeck_speed = 2, viscous = 0.2, speed = 1)] e9: \
+     Friction,",
     "#[acts(between = (bead, plain), constant = 0.7)] e10: Gravity,",
     "#[acts(between = (still, placed), mu = 2)] e11: Gravity,",
     "#[acts(between = (still, hung.at([#, #, #])), strength = 0.6)] e12: Attraction,",
-    "#[energy(0.3 * dot(r(bead / hook), r(bead / hook)) + 0.8 * sin(first) * cos(@) + 1.1 * dot(r(hung / ground), x + base.y))] e13: Potential,",
-    "#[dissipation(0.2 * dot(v(bead / base / ground), v(bead / base / ground)) + 0.9 * pow(rate(first), 4))] e14: Rayleigh,",
-    "#[acts(on = hung.at([#, #, #]), value = throttle * base.x + 0.7 * sin(@) * ground.y - 0.3 * v(hung / ground / ground))] e15: Force,",
-    "#[acts(on = placed, value = (throttle * rate(pin) + # * measure) * carried.x + # * omega(hung / placed))] e16: Torque,",
+    "#[energy(0.3 * dot(r(bead / hook), r(bead / hook)) + 0.8 * sin(first) * cos(@) + 1.1 * dot(r(hung / \
+     ground), x + base.y))] e13: Potential,",
+    "#[dissipation(0.2 * dot(v(bead / base / ground), v(bead / base / ground)) + 0.9 * pow(rate(first), 4))] \
+     e14: Rayleigh,",
+    "#[acts(on = hung.at([#, #, #]), value = throttle * base.x + 0.7 * sin(@) * ground.y - 0.3 * v(hung / \
+     ground / ground))] e15: Force,",
+    "#[acts(on = placed, value = (throttle * rate(pin) + # * measure) * carried.x + # * omega(hung / \
+     placed))] e16: Torque,",
     "#[acts(on = second, value = cos(@) * throttle + # * rate(first))] e17: Force,",
-    "#[acts(on = bead, value = cross(v(bead / ground / ground), 0.4 * turning.z) + throttle * x)] e18: Force,",
+    "#[acts(on = bead, value = cross(v(bead / ground / ground), 0.4 * turning.z) + throttle * x)] e18: \
+     Force,",
     "#[acts(on = hook, value = [#, #, #] * first)] e19: Force,",
     "#[acts(on = pendant, along = turning.x + y)] e20: Force,",
 ];

@@ -14,7 +14,8 @@ pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolera
         let error = (a - e).abs() / (1.0 + e.abs());
         assert!(
             error <= tolerance,
-            "{what}, entry {i} (column by column): {a:e} is not {e:e}; relative error {error:.2e}, allowed {tolerance:.0e}"
+            "{what}, entry {i} (column by column): {a:e} is not {e:e}; relative error {error:.2e}, allowed \
+             {tolerance:.0e}"
         );
     }
 }

@@ -42,7 +42,7 @@ pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>))
 /// Returns numbers for all symbols at a random state: parameters near one, variables near zero.
 pub fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
     let q = random_configuration(model, seed);
-    move |s| match Quantity::of(s) {
+    move |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         Quantity::Parameter(_) => sample(s, seed),
         _ => 4.0 * (sample(s, seed) - 1.0),

@@ -89,7 +89,9 @@ struct SphericalByUniversal {
 struct SphericalByAngles {
     theta: Coordinate,
     phi: Coordinate,
-    #[particle(mass = 0.5, at = 0.8 * (sin(theta) * cos(phi) * x + sin(theta) * sin(phi) * y - cos(theta) * z))]
+    #[particle(
+        mass = 0.5, at = 0.8 * (sin(theta) * cos(phi) * x + sin(theta) * sin(phi) * y - cos(theta) * z)
+    )]
     bob: Particle,
     #[output(r(bob / ground))]
     place: Vector,

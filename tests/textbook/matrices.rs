@@ -41,7 +41,9 @@ struct Carrier {
     moments: Matrix,
     #[output(rate(central / ground), resolved_in = hull)]
     moments_rate: Matrix,
-    #[output(skew(omega(wheel / ground)) * central - central * skew(omega(wheel / ground)), resolved_in = hull)]
+    #[output(
+        skew(omega(wheel / ground)) * central - central * skew(omega(wheel / ground)), resolved_in = hull
+    )]
     turning: Matrix,
     #[output(inertia((hull, wheel) / ground) * z)]
     column: Vector,

@@ -341,9 +341,11 @@ const PAGE: &[(&str, &str, &str, &str)] = &[
         #[define(v(airframe / ground / ground))] velocity: Vector,
         #[define(atan2(dot(velocity, airframe.z), dot(velocity, airframe.x)))] alpha: Scalar,
         #[define(rho / 2 * dot(velocity, velocity))] pressure: Scalar,
-        #[acts(on = airframe, value = pressure * area * (cl0 + cl_alpha * alpha) * (sin(alpha) * airframe.x - cos(alpha) * airframe.z))]
+        #[acts(on = airframe, value = pressure * area * (cl0 + cl_alpha * alpha) * (sin(alpha) * airframe.x \
+            - cos(alpha) * airframe.z))]
         lift: Force,
-        #[acts(on = airframe, value = pressure * area * chord * cm_elevator * elevator * airframe.y)] pitch: Torque,
+        #[acts(on = airframe, value = pressure * area * chord * cm_elevator * elevator * airframe.y)] pitch: \
+            Torque,
         #[output(alpha)] angle_of_attack: Scalar,",
         "kg kg·m² kg·m² kg·m² kg·m² kg/m³ m² m 1 1 any",
     ),

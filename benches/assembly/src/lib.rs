@@ -6,7 +6,10 @@
 use linkwork::prelude::*;
 
 /// Panda of Franka Emika without its fingers: seven joint axes in a row.
-#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives, packed)]
+#[mechanism(
+    urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives,
+    packed
+)]
 pub struct Panda;
 
 /// Solo 12: free body with four identical legs.

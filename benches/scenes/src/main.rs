@@ -8,9 +8,9 @@
 //! ```
 //!
 //! A row has the number of runs, of runs that ended with an error and of those with NaN; microseconds of a
-//! step in time of the thread; the largest growth of the energy in a step as a part of the energy at the start;
-//! the deepest penetration as a part of the smallest size; steps that violate the contact conditions by more
-//! than 1e-6 m/s, and the largest violation.
+//! step in time of the thread; the largest growth of the energy in a step as a part of the energy at the
+//! start; the deepest penetration as a part of the smallest size; steps that violate the contact conditions
+//! by more than 1e-6 m/s, and the largest violation.
 
 use linkwork::contact::Contacts;
 use linkwork::prelude::*;
@@ -74,15 +74,30 @@ struct Balls {
     pose: [Free; 6],
     #[contact(ball[i].sphere(r * exp(taper * i)), ground.plane(z), friction = mu, restitution = e)]
     floor: [Contact; 6],
-    #[contact(ball[i].sphere(r * exp(taper * i)), ball[i + 1].sphere(r * exp(taper * (i + 1))), friction = mu, restitution = e)]
+    #[contact(
+        ball[i].sphere(r * exp(taper * i)), ball[i + 1].sphere(r * exp(taper * (i + 1))), friction = mu,
+        restitution = e
+    )]
     one: [Contact; 5],
-    #[contact(ball[i].sphere(r * exp(taper * i)), ball[i + 2].sphere(r * exp(taper * (i + 2))), friction = mu, restitution = e)]
+    #[contact(
+        ball[i].sphere(r * exp(taper * i)), ball[i + 2].sphere(r * exp(taper * (i + 2))), friction = mu,
+        restitution = e
+    )]
     two: [Contact; 4],
-    #[contact(ball[i].sphere(r * exp(taper * i)), ball[i + 3].sphere(r * exp(taper * (i + 3))), friction = mu, restitution = e)]
+    #[contact(
+        ball[i].sphere(r * exp(taper * i)), ball[i + 3].sphere(r * exp(taper * (i + 3))), friction = mu,
+        restitution = e
+    )]
     three: [Contact; 3],
-    #[contact(ball[i].sphere(r * exp(taper * i)), ball[i + 4].sphere(r * exp(taper * (i + 4))), friction = mu, restitution = e)]
+    #[contact(
+        ball[i].sphere(r * exp(taper * i)), ball[i + 4].sphere(r * exp(taper * (i + 4))), friction = mu,
+        restitution = e
+    )]
     four: [Contact; 2],
-    #[contact(ball[i].sphere(r * exp(taper * i)), ball[i + 5].sphere(r * exp(taper * (i + 5))), friction = mu, restitution = e)]
+    #[contact(
+        ball[i].sphere(r * exp(taper * i)), ball[i + 5].sphere(r * exp(taper * (i + 5))), friction = mu,
+        restitution = e
+    )]
     five: [Contact; 1],
 }
 
@@ -273,7 +288,8 @@ fn report(name: &str, mut tally: Tally) {
     let quantile = |part: f64| times.get((times.len() as f64 * part) as usize).copied().unwrap_or(0.0);
     let mean = times.iter().sum::<f64>() / times.len() as f64;
     println!(
-        "{name:10} runs {} errors {} NaN {} | steps {} mean {mean:.1} median {:.1} p99.9 {:.1} | gain {:.1e} depth {:.1e} | relaxed {} by {:.1e}",
+        "{name:10} runs {} errors {} NaN {} | steps {} mean {mean:.1} median {:.1} p99.9 {:.1} | gain {:.1e} \
+         depth {:.1e} | relaxed {} by {:.1e}",
         tally.runs,
         tally.errors,
         tally.nans,

@@ -116,7 +116,8 @@ fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
     };
     println!("profile: {profile}; operations: mul + add + div\n");
     println!(
-        "| mechanism | dof | expansion, ms | of that derivation | memory, MB | output, KB | nodes | mass matrix | inverse | forward | rustc, s | rustc, MB | goal |"
+        "| mechanism | dof | expansion, ms | of that derivation | memory, MB | output, KB | nodes | mass \
+         matrix | inverse | forward | rustc, s | rustc, MB | goal |"
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |");
     let program = std::env::current_exe()?;

@@ -7,8 +7,8 @@
 //!
 //! An argument chooses the robots whose name contains it.
 
-use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::Derivatives;
+use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork_benches::peers::clock::seconds;
 use linkwork_benches::random::Random;
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};

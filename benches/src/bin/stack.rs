@@ -23,7 +23,10 @@ const PAINT: u8 = 0xA5;
 #[mechanism(urdf = "../models/urdf/ur5.urdf", batch, derivatives)]
 struct Ur5;
 
-#[mechanism(urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch, derivatives)]
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch,
+    derivatives
+)]
 struct Panda;
 
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch, derivatives)]

@@ -137,7 +137,7 @@ fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
 
 fn number(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {
     let text = node.attribute(key).unwrap_or("0");
-    text.trim().parse().map_err(|_| format!("`{text}` is no number"))
+    text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
 }
 
 /// Reads three numbers, which are zero if the attribute is absent.

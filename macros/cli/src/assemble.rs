@@ -34,7 +34,7 @@ fn perturbation(attempt: u8, k: usize) -> f64 {
 impl Assembly<'_, '_> {
     /// Iterates over the ranges of configuration entries that change together, with their velocities: the
     /// entries of a rotation, or the position of a free body.
-    fn together(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+    fn coupled_ranges(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         self.model
             .charts
             .iter()
@@ -53,7 +53,7 @@ impl Assembly<'_, '_> {
     /// together with them.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
-        for (entries, velocities) in self.together() {
+        for (entries, velocities) in self.coupled_ranges() {
             moving[velocities].fill(marks[entries].contains(&true));
         }
         moving
@@ -62,7 +62,7 @@ impl Assembly<'_, '_> {
     /// Returns which entries of a configuration are changed by marked velocities of joints only.
     fn entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut found = vec![false; self.model.nq()];
-        for (entries, velocities) in self.together() {
+        for (entries, velocities) in self.coupled_ranges() {
             found[entries].fill(!marks[velocities].contains(&false));
         }
         found
@@ -169,16 +169,16 @@ impl Assembly<'_, '_> {
     /// Subtracts whole revolutions from angles that differ by more than half a revolution from the guess, if
     /// the constraints remain satisfied: from all angles together, or otherwise from each one separately.
     fn unwound(&self, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
-        let without = |mut q: Vec<f64>, k: usize| {
+        let unwind = |mut q: Vec<f64>, k: usize| {
             q[k] -= 2.0 * PI * ((q[k] - guess[k]) / (2.0 * PI)).round();
             q
         };
-        let all = self.angles().fold(q.clone(), without);
+        let all = self.angles().fold(q.clone(), unwind);
         if all == q || self.holds(&all) {
             return all;
         }
         self.angles().fold(q, |q, k| {
-            let next = without(q.clone(), k);
+            let next = unwind(q.clone(), k);
             if self.holds(&next) { next } else { q }
         })
     }

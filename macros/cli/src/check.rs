@@ -27,7 +27,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         if as_json {
             all.extend(cx.distinct().map(|one| message(&input.mistake(one))));
         } else if cx.is_empty() {
-            crate::say!("{}: `{}` is in order", input.file.display(), input.declaration.name);
+            crate::say!("{}: `{}` has no errors", input.file.display(), input.declaration.name);
         } else {
             input.report(cx);
         }

@@ -9,10 +9,12 @@ pub fn command() -> Command {
     Command::new("linkwork")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Checks, shows, simulates, draws and exports mechanisms")
-        .after_help("Exit status: 0 done, 1 the file has mistakes, 2 the command cannot be carried out.")
+        .after_help("Exit status: 0 success, 1 the file has errors, 2 the command failed.")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(with_input(Command::new("check").about("Lists every mistake with its place")).arg(json()))
+        .subcommand(
+            with_input(Command::new("check").about("Lists every error with its position")).arg(json()),
+        )
         .subcommand(
             with_input(
                 Command::new("show")
@@ -21,10 +23,10 @@ pub fn command() -> Command {
             .arg(json()),
         )
         .subcommand(
-            with_motion(with_input(
-                Command::new("simulate")
-                    .about("Simulates a motion and prints it as comma-separated values: t, q.…, v.…, u.… (with `--out NAME.mcap` as a log for robotics tools)"),
-            ))
+            with_motion(with_input(Command::new("simulate").about(
+                "Simulates a motion and prints it as comma-separated values: t, q.…, v.…, u.… (with `--out \
+                 NAME.mcap` as a log for robotics tools)",
+            )))
             .arg(out_file()),
         )
         .subcommand(view())
@@ -51,17 +53,23 @@ pub fn command() -> Command {
             .arg(out_file()),
         )
         .subcommand(
-            Command::new("new").about("Creates a project with a mechanism, a controller and a page").arg(
-                Arg::new("folder")
-                    .value_name("FOLDER")
-                    .help("Folder of the project; its last part is the package's name")
-                    .required(true)
+            Command::new("new")
+                .about("Creates a project with a mechanism, a controller and a page")
+                .arg(
+                    Arg::new("folder")
+                        .value_name("FOLDER")
+                        .help("Folder of the project; its last part is the package's name")
+                        .required(true)
+                        .value_parser(value_parser!(PathBuf)),
+                )
+                .arg(
+                    text(
+                        "linkwork",
+                        "FOLDER",
+                        "Sources of Linkwork for the build [default: those of this command, or its release]",
+                    )
                     .value_parser(value_parser!(PathBuf)),
-            )
-            .arg(
-                text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: those of this command, or its release]")
-                    .value_parser(value_parser!(PathBuf)),
-            ),
+                ),
         )
         .subcommand(
             Command::new("completions")
@@ -141,7 +149,7 @@ fn export() -> Command {
 }
 
 fn export_c() -> Command {
-    let command = Command::new("c").about("C99: a source file and a header that need libm alone");
+    let command = Command::new("c").about("C99: a source file and a header that need only libm");
     with_source_options(command, "Output folder of the two files")
         .arg(switch("casadi", "Writes a third file: the functions in the form that CasADi and acados call"))
         .arg(
@@ -196,7 +204,7 @@ fn export_library() -> Command {
     .arg(text(
         "linkwork",
         "FOLDER",
-        "The sources of Linkwork that it is built with [default: those of this command, or its release]",
+        "Sources of Linkwork for the build [default: those of this command, or its release]",
     ))
     .arg(switch(
         "expanded",
@@ -228,7 +236,9 @@ fn with_tables(command: Command) -> Command {
         text(
             "table",
             "NAME=FILE",
-            "Values of a table: a line for each grid point with its variables, then its value, separated by commas. `,smooth` after FILE interpolates by splines, `,extrapolated` continues the table beyond its grid",
+            "Values of a table: a line for each grid point with its variables, then its value, separated by \
+             commas. `,smooth` after FILE interpolates by splines, `,extrapolated` continues the table \
+             beyond its grid",
         )
         .action(ArgAction::Append),
     )
@@ -241,7 +251,8 @@ fn with_start(command: Command) -> Command {
             text(
                 "set",
                 "NAME=VALUE",
-                "Value of a parameter, of an initial coordinate q.NAME or velocity v.NAME, or of an input u.NAME",
+                "Value of a parameter, of an initial coordinate q.NAME or velocity v.NAME, or of an input \
+                 u.NAME",
             )
             .action(ArgAction::Append),
         )
@@ -249,7 +260,8 @@ fn with_start(command: Command) -> Command {
             text(
                 "guess",
                 "q.NAME=VALUE",
-                "Guess of an initial coordinate that constraints determine; selects the assembly mode of a loop",
+                "Guess of an initial coordinate that constraints determine; selects the assembly mode of a \
+                 loop",
             )
             .action(ArgAction::Append),
         )
@@ -272,7 +284,8 @@ fn with_motion(command: Command) -> Command {
             text(
                 "method",
                 "NAME",
-                "Method of integration [default: automatic: Dormand–Prince, from where it is stiff RODAS, with contacts time stepping]",
+                "Method of integration [default: automatic: Dormand–Prince, from where it is stiff RODAS, \
+                 with contacts time stepping]",
             )
             .value_parser(methods()),
         )
@@ -305,6 +318,6 @@ fn out_file() -> Arg {
 }
 
 /// Returns the value of a text option, if present.
-pub fn given<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
+pub fn text_option<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
     matches.get_one::<String>(name).map(String::as_str)
 }

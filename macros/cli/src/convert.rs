@@ -1,7 +1,7 @@
 //! `linkwork convert`: converts a robot file to a Rust struct for further editing.
 
 use crate::Stop;
-use crate::export::put;
+use crate::export::write_output;
 use crate::input::Input;
 use crate::names::Names;
 use crate::written::{self, Role, number, vector};
@@ -21,7 +21,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     if !input.is_robot {
         return Err(Stop::Failure(format!(
-            "{} is no robot file: there is nothing to convert",
+            "{} is not a robot file: there is nothing to convert",
             input.file.display()
         )));
     }
@@ -37,11 +37,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.read(cx);
     let source = input.checked(source, cx)?;
     if !source.mechanism.shell.file_fields.is_empty() {
-        return Err(Stop::Failure("`parameters` is for structs that go on naming the file".to_string()));
+        return Err(Stop::Failure("`parameters` is for structs that refer to the file".to_string()));
     }
     if source.mechanism.requests != Requests::default() {
         return Err(Stop::Failure(
-            "`convert` takes the options that say how the file is read: write those that ask for functions into the struct"
+            "`convert` takes the options for reading the file: write options that request functions in the \
+             struct"
                 .to_string(),
         ));
     }
@@ -50,7 +51,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let text = struct_of.text(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
     struct_of.tell_renamed();
-    put(matches, &text)
+    write_output(matches, &text)
 }
 
 struct Struct<'a> {
@@ -78,12 +79,14 @@ impl<'a> Struct<'a> {
         let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
         let constant = constant_lengths(description);
         let mut made = Struct { description, links, joints, others: taken, constant, fields, notes, renamed };
-        let links =
-            description.bodies.iter().map(|body| ("link", &body.name.text, made.links.of(&body.name.text)));
+        let links = description
+            .bodies
+            .iter()
+            .map(|body| ("link", &body.name.text, made.links.field_or_same(&body.name.text)));
         let joints = description
             .joints
             .iter()
-            .map(|joint| ("joint", &joint.name.text, made.joints.of(&joint.name.text)));
+            .map(|joint| ("joint", &joint.name.text, made.joints.field_or_same(&joint.name.text)));
         let all: Vec<_> = links.chain(joints).collect();
         all.into_iter().for_each(|(kind, name, field)| made.rename(kind, name, &field));
         made
@@ -105,7 +108,7 @@ impl<'a> Struct<'a> {
             more => format!(", and {more} more that the struct's documentation lists"),
         };
         if !shown.is_empty() {
-            crate::note!("linkwork: other names than in the file: {}{more}", shown.join(", "));
+            crate::note!("linkwork: names that differ from the file: {}{more}", shown.join(", "));
         }
     }
 
@@ -118,7 +121,7 @@ impl<'a> Struct<'a> {
         d.drives.iter().for_each(|drive| self.drive(drive));
         for (name, e) in &d.dissipations {
             let e = self.expression(e);
-            self.named(&format!("#[dissipation({e})]"), ("dissipation", &name.text), "Rayleigh");
+            self.declare(&format!("#[dissipation({e})]"), ("dissipation", &name.text), "Rayleigh");
         }
         for constraint in &d.constraints {
             let (value, other) = (self.expression(&constraint.value), constraint.other.as_ref());
@@ -126,11 +129,11 @@ impl<'a> Struct<'a> {
             let kind =
                 if constraint.kind == ConstraintKind::Holonomic { "Holonomic" } else { "Nonholonomic" };
             let named = ("constraint", constraint.name.text.as_str());
-            self.named(&format!("#[constraint({value}{other})]"), named, kind);
+            self.declare(&format!("#[constraint({value}{other})]"), named, kind);
         }
         d.limits.iter().for_each(|limit| self.limit(limit));
         if d.limits.iter().any(|limit| limit.arguments.get(Key::Restitution).is_some()) {
-            self.notes.push("limits are bounds here, and no stops".to_string());
+            self.notes.push("limits are bounds here, not stops".to_string());
         }
         if !d.contacts.is_empty() {
             self.notes.push(format!("contacts, which `#[contact]` declares: {}", d.contacts.len()));
@@ -149,13 +152,13 @@ impl<'a> Struct<'a> {
         let aside = d.left_out.iter().chain(&self.notes).cloned().chain(rounded);
         let aside: Vec<String> = aside.map(|line| line.replace('\n', " ")).collect();
         if !aside.is_empty() {
-            text.push_str("///\n/// What is different in the file, or left out:\n");
+            text.push_str("///\n/// Differences from the file:\n");
             aside.iter().for_each(|line| {
                 let _ = writeln!(text, "/// - {line}");
             });
         }
         if !self.renamed.is_empty() {
-            text.push_str("///\n/// Other names than in the file:\n");
+            text.push_str("///\n/// Names that differ from the file:\n");
             self.renamed.iter().for_each(|(what, field)| {
                 let _ = writeln!(text, "/// - {what} is `{field}`");
             });
@@ -179,7 +182,7 @@ impl<'a> Struct<'a> {
     }
 
     /// Adds a field for a named element of the file, and records its name if it differs.
-    fn named(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
+    fn declare(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
         let field = self.element(attribute, name, kind);
         self.rename(what, name, &field);
     }
@@ -196,7 +199,7 @@ impl<'a> Struct<'a> {
         } else {
             format!("#[body({})]", figures.join(", "))
         };
-        let name = self.links.of(&body.name.text);
+        let name = self.links.field_or_same(&body.name.text);
         self.field(&attribute, &name, "Body");
     }
 
@@ -213,12 +216,12 @@ impl<'a> Struct<'a> {
         for (word, e) in [("pitch", &joint.pitch), ("lead", &joint.lead)] {
             figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.expression(e))));
         }
-        let name = self.joints.of(&joint.name.text);
+        let name = self.joints.field_or_same(&joint.name.text);
         self.field(&format!("#[joint({})]", figures.join(", ")), &name, &format!("{:?}", joint.kind));
     }
 
     fn end(&self, end: &Endpoint) -> String {
-        let mut text = self.links.of(&end.body.text);
+        let mut text = self.links.field_or_same(&end.body.text);
         if let Some(at) = &end.at {
             let _ = write!(text, ".at({})", self.vector(at));
         }
@@ -231,7 +234,7 @@ impl<'a> Struct<'a> {
 
     /// Adds the elements that belong to a joint: damping, friction, and the constraint of a mimic joint.
     fn elements_of(&mut self, joint: &Joint) {
-        let on = self.joints.of(&joint.name.text);
+        let on = self.joints.field_or_same(&joint.name.text);
         if let Some(damping) = &joint.damping {
             let e = self.expression(damping);
             self.element(&format!("#[acts(on = {on}, damping = {e})]"), &format!("{on}_damping"), "Dashpot");
@@ -245,7 +248,7 @@ impl<'a> Struct<'a> {
             );
         }
         if let Some(mimic) = &joint.mimic {
-            let master = self.joints.of(&mimic.joint.text);
+            let master = self.joints.field_or_same(&mimic.joint.text);
             let mut rule = format!("{on} = {} * {master}", number(mimic.multiplier));
             if mimic.offset != 0.0 {
                 let _ = write!(rule, " + {}", number(mimic.offset));
@@ -260,7 +263,7 @@ impl<'a> Struct<'a> {
     /// Adds the inputs in the order of the file.
     fn inputs(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
-            let on = self.joints.of(&joint.name.text);
+            let on = self.joints.field_or_same(&joint.name.text);
             let attribute = format!("#[acts(on = {on})]");
             let motor = self.element(&attribute, &format!("{on}_motor"), push(joint.kind));
             self.rename("input", &joint.name.text, &motor);
@@ -268,11 +271,11 @@ impl<'a> Struct<'a> {
         let geared = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
         for drive in self.description.drives.iter().filter(geared) {
             if let [(joint, 1.0)] = drive.on.terms() {
-                let on = self.joints.of(&joint.text);
+                let on = self.joints.field_or_same(&joint.text);
                 let kind = push(self.kind(&joint.text));
-                self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
+                self.declare(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
             } else if let Some(on) = self.length(drive) {
-                self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), "Force");
+                self.declare(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), "Force");
             } else {
                 let name = self.others.fresh(&drive.name.text, "input");
                 self.rename("input", &drive.name.text, &name);
@@ -294,7 +297,7 @@ impl<'a> Struct<'a> {
             DriveOn::Sum(terms) => {
                 let terms = terms.iter().filter(|(_, weight)| *weight != 0.0);
                 let term = |(joint, weight): &(Name, f64)| {
-                    format!("{} * {}", number(*weight), self.joints.of(&joint.text))
+                    format!("{} * {}", number(*weight), self.joints.field_or_same(&joint.text))
                 };
                 terms.map(term).reduce(|sum, term| format!("{sum} + {term}"))
             }
@@ -327,12 +330,12 @@ impl<'a> Struct<'a> {
         if !rates.is_empty() {
             let rate = rates.join(" + ");
             let loss = format!("#[dissipation({} * pow({rate}, 2))]", number(damping / 2.0));
-            self.named(&loss, ("element", name), "Rayleigh");
+            self.declare(&loss, ("element", name), "Rayleigh");
         }
     }
 
-    /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body, or
-    /// on a body that is fixed to the ground, is omitted and noted.
+    /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body,
+    /// or on a body that is fixed to the ground, is omitted and noted.
     fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
@@ -349,8 +352,8 @@ impl<'a> Struct<'a> {
             self.notes.push(note);
             return None;
         }
-        let point = written::place(&wrench.on, &|name| self.links.known(name));
-        Some((point, self.links.of(body)))
+        let point = written::place(&wrench.on, &|name| self.links.field(name));
+        Some((point, self.links.field_or_same(body)))
     }
 
     /// Whether welds alone lead from the ground to a body.
@@ -390,9 +393,7 @@ impl<'a> Struct<'a> {
             return;
         }
         let Some(on) = self.length(drive) else {
-            return self
-                .notes
-                .push(format!("`{name}`, which acts on a length that does not change, is left out"));
+            return self.notes.push(format!("`{name}`, which acts on a constant length, is omitted"));
         };
         // The friction law is regularised in the velocity of the weighted sum, so that the weight cannot
         // become a factor.
@@ -400,7 +401,7 @@ impl<'a> Struct<'a> {
         if let [(joint, w)] = drive.on.terms()
             && (w.abs() == 1.0 || !is_scaled)
         {
-            let (on, w, kind) = (self.joints.of(&joint.text), *w, self.kind(&joint.text));
+            let (on, w, kind) = (self.joints.field_or_same(&joint.text), *w, self.kind(&joint.text));
             let (figures, element) = match drive.law {
                 DriveLaw::Slack { stiffness, range } => {
                     let range = range.map(|end| end / w);
@@ -423,7 +424,7 @@ impl<'a> Struct<'a> {
                 DriveLaw::Push(force) => (format!("value = {}", number(force * w)), push(kind)),
                 DriveLaw::Input(_) => return,
             };
-            return self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
+            return self.declare(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
         }
         self.on_length(&on, name, drive.law);
     }
@@ -441,7 +442,7 @@ impl<'a> Struct<'a> {
             DriveLaw::Push(force) => (format!("value = {}", number(force)), "Force"),
             DriveLaw::Input(_) => return,
         };
-        self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
+        self.declare(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
     }
 
     fn limit(&mut self, limit: &Limit) {
@@ -463,8 +464,8 @@ impl<'a> Struct<'a> {
 
     fn expression(&self, e: &Expr) -> String {
         written::expression(e, &|name, role| match role {
-            Role::Body => self.links.known(name),
-            Role::Coordinate => self.joints.known(name).or_else(|| self.links.known(name)),
+            Role::Body => self.links.field(name),
+            Role::Coordinate => self.joints.field(name).or_else(|| self.links.field(name)),
         })
     }
 }

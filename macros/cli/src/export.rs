@@ -1,8 +1,8 @@
-//! `linkwork export`: exports a mechanism's functions to C99, to a library with a C interface, and to readable
-//! Rust.
+//! `linkwork export`: exports a mechanism's functions to C99, to a library with a C interface, and to
+//! readable Rust.
 
 use crate::Stop;
-use crate::commands::given;
+use crate::commands::text_option;
 use crate::input::Input;
 use crate::library;
 use crate::motion::values;
@@ -20,7 +20,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.read(cx);
     let mut source = input.checked(source, cx)?;
     let single = prepare(&mut source, matches);
-    let prefix = given(matches, "prefix").unwrap_or_default().to_string();
+    let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
     let fixed = values("set", matches)?;
     let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
     let casadi = matches.get_flag("casadi").then(|| fixed.collect());
@@ -55,8 +55,8 @@ pub fn cuda(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Writes compute shaders in WGSL, and a module for Python that runs them.
 pub fn wgsl(matches: &ArgMatches) -> Result<(), Stop> {
-    if given(matches, "scalar") == Some("double") {
-        let why = "WGSL has no double precision: leave `--scalar double` out, or use `linkwork export cuda`";
+    if text_option(matches, "scalar") == Some("double") {
+        let why = "WGSL has no double precision: remove `--scalar double`, or use `linkwork export cuda`";
         return Err(Stop::Failure(why.to_string()));
     }
     let input = Input::one(matches)?;
@@ -77,7 +77,7 @@ pub fn wgsl(matches: &ArgMatches) -> Result<(), Stop> {
 /// Requests the derivatives unless an option excludes them. Returns true for single precision.
 fn prepare(source: &mut Source, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
-    let single = match given(matches, "scalar") {
+    let single = match text_option(matches, "scalar") {
         Some(scalar) => scalar == "float",
         None => description.scalar == ScalarType::F32,
     };
@@ -88,13 +88,13 @@ fn prepare(source: &mut Source, matches: &ArgMatches) -> bool {
 
 /// Returns the prefix of names. Rejects a prefix that is not an identifier of the target.
 pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
-    let prefix = given(matches, "prefix").unwrap_or_default().to_string();
+    let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
     let usable = c::prefix_identifier(&prefix);
     if prefix.is_empty() || usable == prefix {
         return Ok(prefix);
     }
     Err(Stop::Failure(format!(
-        "`--prefix {prefix}` is no identifier of {target} that is free; `--prefix {usable}` is one"
+        "`--prefix {prefix}` is not a free identifier of {target}; use `--prefix {usable}`"
     )))
 }
 
@@ -102,7 +102,7 @@ pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop
 fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> Result<(), Stop> {
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     std::fs::create_dir_all(&folder)
-        .map_err(|error| Stop::Failure(format!("cannot make the folder {}: {error}", folder.display())))?;
+        .map_err(|error| Stop::Failure(format!("cannot create the folder {}: {error}", folder.display())))?;
     for (end, text) in texts {
         let path = folder.join(format!("{prefix}{end}"));
         write(&path, text)?;
@@ -114,7 +114,7 @@ fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> R
 /// Writes a crate whose functions have an interface of plain arrays.
 pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
-    let given_prefix = given(matches, "prefix").map(ToString::to_string);
+    let given_prefix = text_option(matches, "prefix").map(ToString::to_string);
     let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.declaration.name)));
     let made = library::write(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
@@ -122,7 +122,7 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
         let path = folder.join(path.replace("NAME", &made.prefix));
         let parent = path.parent().unwrap_or(&folder);
         std::fs::create_dir_all(parent).map_err(|error| {
-            Stop::Failure(format!("cannot make the folder {}: {error}", parent.display()))
+            Stop::Failure(format!("cannot create the folder {}: {error}", parent.display()))
         })?;
         write(&path, text)?;
         crate::say!("{}", path.display());
@@ -144,11 +144,11 @@ pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
     let tokens = expand(input.declaration.arguments.clone(), input.declaration.item.clone(), &input.folder)
         .into_tokens()?;
     let text = prettyplease::unparse(&syn::parse2(tokens)?);
-    put(matches, &text)
+    write_output(matches, &text)
 }
 
 /// Writes a text to the file of `--out`, or to standard output.
-pub fn put(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
+pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
         Some(path) => write(path, text),
         None => {

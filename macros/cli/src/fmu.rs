@@ -1,7 +1,7 @@
 //! `linkwork export fmu`: an FMU of the Functional Mock-up Interface 3.0.
 
 use crate::Stop;
-use crate::commands::given;
+use crate::commands::text_option;
 use crate::export::checked_prefix;
 use crate::grid;
 use crate::input::Input;
@@ -39,7 +39,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         archive.add(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
-        match compile(&files, given(matches, "compiler"))? {
+        match compile(&files, text_option(matches, "compiler"))? {
             Some(binary) => archive.add(&binary_path(&files.identifier), &binary)?,
             None => crate::note!(
                 "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only"
@@ -71,7 +71,7 @@ fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Va
         return Err(Stop::Failure(format!("`{}` cannot be an FMU: {why}", loaded.model.name)));
     }
     let (q, v) = start.state()?;
-    let tables = grid::given(matches, &loaded.source.tables())?.into_iter().map(|grid| TableValues {
+    let tables = grid::table_options(matches, &loaded.source.tables())?.into_iter().map(|grid| TableValues {
         axes: grid.axes,
         values: grid.values,
         smooth: grid.smooth,

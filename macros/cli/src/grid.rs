@@ -49,7 +49,7 @@ impl Grid {
             };
             axes.iter_mut().zip(x).for_each(|(axis, x)| axis.push(*x + 0.0));
             if points.insert(x.iter().map(|x| (*x + 0.0).to_bits()).collect(), *value).is_some() {
-                return Err(format!("line {}: this point stands there twice", number + 1));
+                return Err(format!("line {}: this point is given twice", number + 1));
             }
         }
         for axis in &mut axes {
@@ -80,9 +80,9 @@ impl Grid {
 
     /// Returns the table for interpolation; its values are leaked and live as long as the process.
     pub fn looked(&self) -> Result<AnyTable, TableError> {
-        let kept = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
-        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| kept(axis)).collect();
-        let values = kept(&self.values);
+        let leaked = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
+        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| leaked(axis)).collect();
+        let values = leaked(&self.values);
         match axes[..] {
             [a] => Table::new([a], values).map(|table| self.shaped(table).into()),
             [a, b] => Table::new([a, b], values).map(|table| self.shaped(table).into()),
@@ -99,7 +99,7 @@ impl Grid {
 
 /// Returns the tables of the `--table` options, in the order of the mechanism's tables, which are given with
 /// the number of their variables.
-pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
+pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
     let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
     for given in matches.get_many::<String>("table").into_iter().flatten() {
         let fail = |why: String| Stop::Failure(format!("`--table {given}`: {why}"));
@@ -134,7 +134,7 @@ pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Gri
         .collect();
     match missing.is_empty() {
         true => Ok(found.into_iter().flatten().collect()),
-        false => Err(Stop::Failure(format!("tables without figures: {}", missing.join(" ")))),
+        false => Err(Stop::Failure(format!("tables without values: {}", missing.join(" ")))),
     }
 }
 
@@ -157,8 +157,8 @@ mod tests {
         for (text, part) in [
             ("", "fewer than two points"),
             ("0,1\n", "fewer than two points"),
-            ("0,1\n0,2\n", "line 2: this point stands there twice"),
-            ("0,1\n-0,2\n", "line 2: this point stands there twice"),
+            ("0,1\n0,2\n", "line 2: this point is given twice"),
+            ("0,1\n-0,2\n", "line 2: this point is given twice"),
             ("0,1,2\n", "line 1: expected 1 variable and a value, found 3 numbers"),
             ("0,1\nx,2\n", "line 2: expected numbers, found `x,2`"),
             ("0,1\n1,inf\n", "line 2: expected numbers"),

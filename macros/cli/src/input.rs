@@ -1,6 +1,6 @@
 //! Input files, converted to the arguments and the struct of the attribute.
 
-use crate::commands::given;
+use crate::commands::text_option;
 use crate::{Stop, syntax};
 use clap::ArgMatches;
 use linkwork_compiler::derive::Output;
@@ -68,13 +68,13 @@ impl Input {
     pub fn all(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
-        let more: TokenStream = given(matches, "with")
+        let more: TokenStream = text_option(matches, "with")
             .unwrap_or_default()
             .parse()
             .map_err(|error| Stop::Failure(format!("`--with`: {error}")))?;
         let is_rust = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
         let mut found = if is_rust { from_rust(file)? } else { vec![from_robot(file)?] };
-        if let Some(name) = given(matches, "struct") {
+        if let Some(name) = text_option(matches, "struct") {
             let names: Vec<String> = found.iter().map(|input| input.declaration.name.clone()).collect();
             found.retain(|input| input.declaration.name == name);
             if found.is_empty() {
@@ -270,7 +270,8 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
     let unknown = || {
         let (file, known) = (path.display(), ENDINGS.join("`, `."));
         Stop::Failure(format!(
-            "{file}: unknown type of file: expected a Rust file (`.rs`), or a robot file (`.{known}`) with an element `<robot>`, `<sdf>` or `<mujoco>`"
+            "{file}: unknown type of file: expected a Rust file (`.rs`), or a robot file (`.{known}`) with \
+             an element `<robot>`, `<sdf>` or `<mujoco>`"
         ))
     };
     let text = text_of(path).map_err(|stop| if is_known || !path.is_file() { stop } else { unknown() })?;

@@ -141,7 +141,7 @@ impl<'a, 'g> Start<'a, 'g> {
         if !missing.is_empty() {
             return Err(Stop::Failure(format!("parameters without a value: {}", missing.join(" "))));
         }
-        for ((name, _), grid) in source.tables().iter().zip(grid::given(matches, &source.tables())?) {
+        for ((name, _), grid) in source.tables().iter().zip(grid::table_options(matches, &source.tables())?) {
             robot.set_table(name, grid.looked()?)?;
         }
         let parameters: Vec<f64> = parameters.into_iter().flatten().collect();
@@ -182,7 +182,7 @@ impl<'a, 'g> Start<'a, 'g> {
     /// Evaluates an expression of the parameters.
     pub fn value(&self, e: Expr<'_>) -> f64 {
         let parameters = self.robot.parameter_values();
-        eval_one(e, &|symbol| match Quantity::of(symbol) {
+        eval_one(e, &|symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => parameters.get(k).copied().unwrap_or(f64::NAN),
             _ => f64::NAN,
         })
@@ -217,7 +217,7 @@ impl<'a, 'g> Start<'a, 'g> {
             )));
         }
         let setting = if has_step { step } else { Some(tolerance.unwrap_or(1e-8).max(1e-13)) };
-        Ok(Method::named(&name, setting)?)
+        Ok(Method::from_name(&name, setting)?)
     }
 
     /// Simulates the motion and returns its samples.
@@ -268,7 +268,8 @@ impl<'a, 'g> Start<'a, 'g> {
         }
         match ended {
             Ok(Some(t)) => crate::note!(
-                "linkwork: the motion is stiff: from {t:.3} s on it is integrated by an implicit method (RODAS)"
+                "linkwork: the motion is stiff: from {t:.3} s on it is integrated by an implicit method \
+                 (RODAS)"
             ),
             Ok(None) => {}
             Err(error) => {
@@ -325,7 +326,8 @@ impl<'a, 'g> Start<'a, 'g> {
         let has_inertia = self.robot.mass_matrix(&self.q)?.cholesky().is_some();
         if !has_inertia && !is_singular(&self.q) {
             return Err(Stop::Failure(format!(
-                "the mass matrix of `{name}` is singular at the beginning: with these parameters something that moves has no inertia"
+                "the mass matrix of `{name}` is singular at the beginning: with these parameters a moving \
+                 body has no inertia"
             )));
         }
         // Entries that no constraint affects remain unchanged.
@@ -342,14 +344,16 @@ impl<'a, 'g> Start<'a, 'g> {
         let q = held.or_else(|| m.assembled(&near, &self.q, &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
-                "`{name}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set` or `--guess q.NAME=VALUE`"
+                "`{name}` cannot be assembled: no configuration near the initial one satisfies the \
+                 constraints; give another by `--set` or `--guess q.NAME=VALUE`"
             ))
         })?;
         if is_singular(&q) {
             let names: Vec<String> =
                 self.model.configuration.iter().map(|name| format!("q.{name}")).collect();
             return Err(Stop::Failure(format!(
-                "the speeds of `{name}` are singular at the beginning: there they do not determine the rates of all coordinates; begin elsewhere (`--set` with {})",
+                "the speeds of `{name}` are singular at the beginning: there they do not determine the rates \
+                 of all coordinates; start elsewhere (`--set` with {})",
                 names.join(", ")
             )));
         }
@@ -365,19 +369,20 @@ impl<'a, 'g> Start<'a, 'g> {
         let is_far = |(is_given, (wanted, is)): (&bool, (&f64, &f64))| *is_given && (wanted - is).abs() > FAR;
         if !kept && given.into_iter().any(is_far) {
             return Err(Stop::Failure(format!(
-                "what is given does not fulfil the constraints: give less of it (`--guess q.NAME=VALUE` gives what is only about so), or what is nearest: {moves}"
+                "the given values do not satisfy the constraints: give fewer (`--guess q.NAME=VALUE` gives \
+                 an approximate value), or the nearest ones: {moves}"
             )));
         }
         let why = match (kept, some) {
-            (true, true) => "what is given is kept, and the constraints put the rest",
-            (false, _) => "what is given does not fulfil the constraints; the motion begins near it,",
-            (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
+            (true, true) => "the given values are kept, and the constraints determine the others",
+            (false, _) => "the given values do not satisfy the constraints; the motion begins near them,",
+            (true, false) => "zero does not satisfy the constraints; the motion begins near it,",
         };
         if !moves.is_empty() {
             let held = if kept { &moving } else { &apart };
             let mode = m.mode(&q, held).map_or(String::new(), |mode| {
                 format!(
-                    "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another begins there"
+                    "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another mode selects it"
                 )
             });
             crate::note!("linkwork: {why} at {moves}{mode}");

@@ -48,12 +48,12 @@ impl Names {
     }
 
     /// Returns the field name of a name in the file, or the name itself.
-    pub fn of(&self, name: &str) -> String {
-        self.known(name).unwrap_or_else(|| name.to_string())
+    pub fn field_or_same(&self, name: &str) -> String {
+        self.field(name).unwrap_or_else(|| name.to_string())
     }
 
     /// Returns the field name, if the name exists in the file.
-    pub fn known(&self, name: &str) -> Option<String> {
+    pub fn field(&self, name: &str) -> Option<String> {
         self.of.get(name).cloned()
     }
 }
@@ -67,7 +67,9 @@ mod tests {
         let mut taken = Names::default();
         let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
         let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");
-        let all = |names: &Names, list: &[&str]| list.iter().map(|name| names.of(name)).collect::<Vec<_>>();
+        let all = |names: &Names, list: &[&str]| {
+            list.iter().map(|name| names.field_or_same(name)).collect::<Vec<_>>()
+        };
         let of_links = all(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);
         assert_eq!(of_links, ["ground", "hand_left", "x_link", "link_2nd", "fn_link", "hand_left_link"]);
         assert_eq!(all(&joints, &["Hand-left", "é"]), ["hand_left_joint", "joint"]);

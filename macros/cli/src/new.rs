@@ -13,7 +13,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     check_name(&name)?;
     if folder.exists() {
-        return Err(Stop::Failure(format!("{} is there already", folder.display())));
+        return Err(Stop::Failure(format!("{} already exists", folder.display())));
     }
     let fail = |error: std::io::Error| Stop::Failure(format!("cannot make {}: {error}", folder.display()));
     std::fs::create_dir_all(folder.join("src")).map_err(fail)?;
@@ -34,7 +34,7 @@ fn check_name(name: &str) -> Result<(), Stop> {
     let is_word = syn::parse_str::<syn::Ident>(&name.replace('-', "_")).is_err();
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(is_known) || is_word {
         return Err(Stop::Failure(format!(
-            "`{name}` is no name of a package: expected letters, digits, `-` and `_`, a letter first"
+            "`{name}` is not a name of a package: expected letters, digits, `-` and `_`, a letter first"
         )));
     }
     if ["test", "core", "std", "alloc", "linkwork", "linkwork-view"].contains(&name) {
@@ -50,6 +50,7 @@ fn manifest(name: &str, sources: Option<&Path>) -> String {
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
          [dependencies]\n{linkwork}\n{view}\n\n\
-         # Most of the speed of a release build, with its checks on.\n[profile.dev]\nopt-level = 1\n\n[workspace]\n"
+         # Most of the speed of a release build, with its checks on.\n[profile.dev]\nopt-level = \
+             1\n\n[workspace]\n"
     )
 }

@@ -1,7 +1,7 @@
 //! `linkwork simulate`: writes a motion as comma-separated values, or as an MCAP log.
 
 use crate::Stop;
-use crate::export::put;
+use crate::export::write_output;
 use crate::input::Input;
 use crate::motion::{Sample, Start};
 use clap::ArgMatches;
@@ -21,7 +21,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             std::fs::write(path, log)
                 .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
         }
-        _ => put(matches, &csv(&start, &samples)),
+        _ => write_output(matches, &csv(&start, &samples)),
     }
 }
 

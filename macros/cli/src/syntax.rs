@@ -18,14 +18,18 @@ pub fn located(text: &str, error: &syn::Error) -> Mistake {
     Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
 }
 
-/// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its brackets
-/// do not match, or it has characters that begin no token.
+/// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its
+/// brackets do not match, or it has characters that begin no token.
 fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     let (before, found) = text.split_at(index(text, at));
     let found = found.chars().next();
     match found {
         Some(closing @ (')' | ']' | '}')) => match TokenStream::from_str(before) {
-            Ok(_) => (at, format!("unexpected closing delimiter: `{closing}` closes nothing"), Vec::new()),
+            Ok(_) => (
+                at,
+                format!("unexpected closing delimiter: `{closing}` has no opening delimiter"),
+                Vec::new(),
+            ),
             // The innermost bracket that is open before `at` does not match.
             Err(lexed) => {
                 let open = lexed.span().start();
@@ -139,8 +143,8 @@ fn index(text: &str, at: LineColumn) -> usize {
 mod tests {
     use super::located;
 
-    /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file: rustc
-    /// points at the end of the file and labels the bracket.
+    /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file:
+    /// rustc points at the end of the file and labels the bracket.
     #[test]
     fn errors_are_located_as_rustc_locates_them() {
         for (text, at, message) in [
@@ -152,7 +156,7 @@ mod tests {
                 (2, 30),
                 "expected `)`, found `]`",
             ),
-            ("struct S {\n    a: f64,\n}\n}\n", (4, 1), "`}` closes nothing"),
+            ("struct S {\n    a: f64,\n}\n}\n", (4, 1), "`}` has no opening delimiter"),
             ("// {\nstruct S {\n    a: f64, // }\n", (2, 10), "this is never closed: `}` is missing"),
             ("#[mechanism(gravity = (1, 2)\nstruct S {}\n", (1, 12), "this is never closed: `)` is missing"),
             ("mod a {\n    struct S {\n        a: f64,\n    fn f() {}\n}\n", (2, 14), "this is never closed"),

@@ -42,7 +42,7 @@ impl Table {
             }
             for (column, field) in columns.iter_mut().zip(&found) {
                 let value: Option<f64> = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
-                column.push(value.ok_or_else(|| format!("line {}: `{field}` is no number", number + 1))?);
+                column.push(value.ok_or_else(|| format!("line {}: `{field}` is not a number", number + 1))?);
             }
         }
         let mut columns: Vec<(String, Vec<f64>)> = head.into_iter().zip(columns).collect();
@@ -119,7 +119,7 @@ mod tests {
             ("", "no column `t`"),
             ("time;u.a\n0;1\n", "there is no column `t`, but `time;u.a`"),
             ("t,a\n", "no values"),
-            ("t,a\n0,x\n", "line 2: `x` is no number"),
+            ("t,a\n0,x\n", "line 2: `x` is not a number"),
             ("t,a\n0\n", "expected 2 values"),
             ("t\n1\n0\n", "decrease"),
             ("t,a,a\n0,1,2\n", "two columns `a`"),

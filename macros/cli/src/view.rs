@@ -109,7 +109,8 @@ fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Resul
     let missing = figure.missing_meshes();
     if !missing.is_empty() {
         crate::note!(
-            "linkwork: bodies are drawn by their mass properties where these meshes are not found (`--meshes FOLDER` says where they are): {}",
+            "linkwork: bodies are drawn by their mass properties where these meshes are not found (`--meshes \
+             FOLDER` says where they are): {}",
             missing.join(", ")
         );
     }

@@ -29,13 +29,16 @@ fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
         .expect("the command starts");
     assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
     let mut main = format!(
-        "#include <stdio.h>\n#include \"juggler.h\"\n\nint main(void) {{\n    const juggler self[] = {{{{0.7}}}};\n{given}"
+        "#include <stdio.h>\n#include \"juggler.h\"\n\nint main(void) {{\n    const juggler self[] = \
+         {{{{0.7}}}};\n{given}"
     );
     for (name, call, expected) in entries {
         let n = expected.len();
         let _ = writeln!(
             main,
-            "    {{\n        double r[{n}];\n        {call};\n        for (int k = 0; k < {n}; ++k) {{\n            printf(\"%.17g \", r[k]);\n        }}\n        printf(\"\\n\"); /* {name} */\n    }}"
+            "    {{\n        double r[{n}];\n        {call};\n        for (int k = 0; k < {n}; ++k) \
+             {{\n            printf(\"%.17g \", r[k]);\n        }}\n        printf(\"\\n\"); /* {name} \
+             */\n    }}"
         );
     }
     main.push_str("    return 0;\n}\n");
@@ -130,7 +133,8 @@ fn speeds_are_the_same_in_c() {
     entries.push(("semi_implicit_euler_transition", call, transition(euler)));
 
     let mut given = String::from(
-        "    enum { N = JUGGLER_NV, NQ = JUGGLER_NQ, HAND = JUGGLER_FRAME_HAND };\n    double next[NQ + N], by_h[2 * N];\n    (void)(next);\n    (void)(by_h);\n",
+        "    enum { N = JUGGLER_NV, NQ = JUGGLER_NQ, HAND = JUGGLER_FRAME_HAND };\n    double next[NQ + N], \
+         by_h[2 * N];\n    (void)(next);\n    (void)(by_h);\n",
     );
     let arrays = [("v", v), ("a", a), ("tau", tau), ("dv", dv)];
     arrays.iter().for_each(|(name, numbers)| given.push_str(&array(name, numbers.as_slice())));

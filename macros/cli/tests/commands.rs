@@ -33,7 +33,7 @@ fn good_mechanisms_are_in_order() {
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
     assert_eq!(
         linkwork(&here, &["check", "pendulum.rs"]),
-        (0, "pendulum.rs: `Pendulum` is in order\n".to_string(), String::new())
+        (0, "pendulum.rs: `Pendulum` has no errors\n".to_string(), String::new())
     );
     let (status, shown, _) = linkwork(&here, &["show", "pendulum.rs"]);
     assert!(status == 0 && shown.contains("theta") && shown.contains("sin(theta)"), "{shown}");
@@ -72,7 +72,7 @@ fn a_derive_above_the_attribute_is_an_error() {
     std::fs::write(here.join("above.rs"), &above).unwrap();
     let (status, _, stderr) = linkwork(&here, &["check", "above.rs"]);
     assert_eq!(status, 1);
-    assert!(stderr.contains("above.rs:2:1: error: `#[derive(…)]` stands above `#[mechanism]`"), "{stderr}");
+    assert!(stderr.contains("above.rs:2:1: error: `#[derive(…)]` is above `#[mechanism]`"), "{stderr}");
     assert!(stderr.contains("= help: write it below"), "{stderr}");
     std::fs::write(here.join("below.rs"), PENDULUM.replace("pub struct", &format!("{derive}pub struct")))
         .unwrap();
@@ -135,16 +135,16 @@ fn what_cannot_be_done_is_said() {
             "`q.theta` is given by `--set` and by `--guess`",
         ),
         (&["view", "pendulum.rs", "--motion", "log.csv", "--every", "0.1"], 2, "cannot be used with"),
-        (&["export", "cuda", "loop.rs"], 1, "kernels are for trees, and this mechanism has constraints"),
+        (&["export", "cuda", "loop.rs"], 1, "kernels support only trees, and this mechanism has constraints"),
         (
             &["export", "wgsl", "loop.rs"],
             1,
             "`linkwork export library` writes all functions with constraints",
         ),
         (&["export", "wgsl", "pendulum.rs", "--scalar", "double"], 2, "WGSL has no double precision"),
-        (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "`--prefix x2x` is one"),
-        (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "`--prefix class_` is one"),
-        (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write those that ask for functions"),
+        (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "use `--prefix x2x`"),
+        (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "use `--prefix class_`"),
+        (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write options that request functions"),
     ] {
         let (found, _, error) = linkwork(&here, arguments);
         assert!(found == status && error.contains(stderr), "{arguments:?}: {found}, {error}");
@@ -239,7 +239,8 @@ fn syntax_errors_are_mistakes_among_others() {
 #[test]
 fn documentation_is_for_other_readers_too() {
     let here = folder("documented");
-    let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - `theta`, rad\n/// - `length`, m\n";
+    let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - \
+                 `theta`, rad\n/// - `length`, m\n";
     std::fs::write(here.join("pendulum.rs"), format!("{about}{}", PENDULUM.trim_start())).unwrap();
     let (status, _, stderr) =
         linkwork(&here, &["view", "pendulum.rs", "--set", "length=1", "--duration", "0.1"]);
@@ -421,7 +422,7 @@ fn libraries_that_cannot_be_are_reported() {
     let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
     for (arguments, words) in [
-        (&["export", "library", fighter, "--struct", "Fighter"][..], "tables without figures: --table"),
+        (&["export", "library", fighter, "--struct", "Fighter"][..], "tables without values: --table"),
         (
             &["export", "library", own, "--struct", "Balloon", "--linkwork", "/nowhere"][..],
             "/nowhere has no sources of Linkwork",

@@ -30,7 +30,7 @@ fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
     };
     let find = |name: &str| output.functions.iter().find(|f| f.name == name);
     let run = |name: &str, passive: &[f64]| {
-        find(name).unwrap().program.run(&|symbol| match Quantity::of(symbol) {
+        find(name).unwrap().program.run(&|symbol| match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => q(k),
             Quantity::Velocity(k) => value(k, 0.9),
             Quantity::Acceleration(k) => value(k, 1.3),
@@ -76,7 +76,7 @@ fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, stderr) = converted(file, with);
     let (arguments, item) = parts(&code);
     let is_expected = |line: &str| {
-        line.starts_with("linkwork: other names than in the file: ")
+        line.starts_with("linkwork: names that differ from the file: ")
             || notes.iter().any(|note| line.contains(note))
     };
     assert!(stderr.lines().all(is_expected), "{}: {stderr}", file.display());
@@ -269,18 +269,21 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
     <position name="lazy" joint="j" kp="0"/><motor name="thruster" site="fixed" gear="0 0 1 0 1 0"/>
   </actuator></mujoco>"#,
     );
-    let notes = ["acts on a length that does not change", "acts on a body that is fixed to the ground"];
+    let notes = ["acts on a constant length", "acts on a body that is fixed to the ground"];
     check_beside("mjcf", &file, "", &notes);
     let inertia = |xx: &str, xy: &str| {
         format!(
-            "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/></inertial>"
+            "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/>\
+             </inertial>"
         )
     };
     for (name, inertia) in [("diagonal.urdf", inertia("-0.1", "0")), ("full.urdf", inertia("-0.1", "-0.2"))] {
         let file = written(
             name,
             &format!(
-                "<robot name='r'><link name='a'/><link name='b'>{inertia}</link><joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 1 1'/></joint></robot>"
+                "<robot name='r'><link name='a'/><link name='b'>{inertia}</link>\
+                 <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 1 1'/>\
+                 </joint></robot>"
             ),
         );
         check("urdf", &file, "inertia = trust");
@@ -297,11 +300,13 @@ fn other_names_than_in_the_file_are_reported() {
         "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let joint = |name: &str, parent: &str, child: &str| {
         format!(
-            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/></joint>"
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/>\
+             <axis xyz='0 0 1'/></joint>"
         )
     };
     let arm = format!(
-        "<robot name='arm'><link name='world'/><link name='Upper-arm'>{inertial}</link><link name='hand'>{inertial}</link>{}{}</robot>",
+        "<robot name='arm'><link name='world'/><link name='Upper-arm'>{inertial}</link>\
+         <link name='hand'>{inertial}</link>{}{}</robot>",
         joint("shoulder", "world", "Upper-arm"),
         joint("hand", "Upper-arm", "hand")
     );
@@ -320,7 +325,7 @@ fn other_names_than_in_the_file_are_reported() {
     }
     let shown: Vec<String> = all[..4].iter().map(|(what, field)| format!("{what} is `{field}`")).collect();
     let expected = format!(
-        "linkwork: other names than in the file: {}, and 1 more that the struct's documentation lists\n",
+        "linkwork: names that differ from the file: {}, and 1 more that the struct's documentation lists\n",
         shown.join(", ")
     );
     assert_eq!(stderr, expected);

@@ -330,7 +330,7 @@ fn command_rejects_what_an_fmu_cannot_have() {
         (vec![file, "--struct", "BouncingBall"], "parameters without a value: --set bounce=…"),
         (
             vec![file, "--struct", "BouncingBall", "--set", "bounce=1", "--prefix", "2 balls"],
-            "`--prefix 2 balls` is no identifier of FMI that is free; `--prefix x2_balls` is one",
+            "`--prefix 2 balls` is not a free identifier of FMI; use `--prefix x2_balls`",
         ),
         (
             vec![file, "--struct", "BouncingBall", "--set", "bounce=1", "--compiler", "no-such-compiler"],

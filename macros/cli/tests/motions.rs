@@ -439,8 +439,8 @@ fn loops_stay_closed() {
     .concat();
     let (status, log, stderr) = linkwork(&here, &arguments);
     // The given angles close the loop only up to their digits, which is reported.
-    assert!(status == 0 && stderr.contains("what is given does not fulfil the constraints"), "{stderr}");
-    assert!(stderr.contains("the motion begins near it, at q."), "{stderr}");
+    assert!(status == 0 && stderr.contains("the given values do not satisfy the constraints"), "{stderr}");
+    assert!(stderr.contains("the motion begins near them, at q."), "{stderr}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
@@ -468,7 +468,9 @@ fn loops_stay_closed() {
     let (status, log, stderr) = linkwork(&here, &one);
     assert!(
         status == 0
-            && stderr.contains("what is given is kept, and the constraints put the rest at q.elbow = "),
+            && stderr.contains(
+                "the given values are kept, and the constraints determine the others at q.elbow = "
+            ),
         "{stderr}"
     );
     assert!(
@@ -481,18 +483,18 @@ fn loops_stay_closed() {
     // The same angle in the other assembly mode.
     let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
     let (status, log, stderr) = linkwork(&here, &guessed);
-    assert!(status == 0 && stderr.contains("what is given is kept"), "{stderr}");
+    assert!(status == 0 && stderr.contains("the given values are kept"), "{stderr}");
     let (other, _) = state(&self::rows(&log)[0]);
     assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
     assert!(m.constraint_residuals(&other).norm() < 1e-11);
     // Angles that contradict the constraints are rejected.
     let wrong = ["simulate", "closed.rs", "--set", "q.input=1.2", "--set", "q.output=1.9"];
     let (status, log, stderr) = linkwork(&here, &wrong);
-    assert!(status == 2 && log.is_empty() && stderr.contains("what is nearest: q.input = "), "{stderr}");
+    assert!(status == 2 && log.is_empty() && stderr.contains("or the nearest ones: q.input = "), "{stderr}");
     // The singular stretched configuration is replaced by a nearby one, which is reported; the page shows the
     // motion.
     let (status, _, stderr) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
-    assert!(status == 0 && stderr.contains("the motion begins near it, at q."), "{stderr}");
+    assert!(status == 0 && stderr.contains("the motion begins near them, at q."), "{stderr}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
 }
 
@@ -534,7 +536,7 @@ fn beginnings_move_what_constraints_reach() {
         let given = format!("q.left_hook={angle}");
         let (status, log, stderr) =
             linkwork(&here, &[&short[..], &["--set", "child=25", "--set", &given]].concat());
-        assert!(status == 0 && stderr.contains("what is given is kept"), "{stderr}");
+        assert!(status == 0 && stderr.contains("the given values are kept"), "{stderr}");
         let begin = &rows(&log)[0];
         let angle: f64 = angle.parse().unwrap();
         let off = begin[1..5].iter().zip([angle, angle, -angle, 0.0]).map(|(is, wanted)| (is - wanted).abs());
@@ -612,7 +614,7 @@ pub struct Slider {
         assert!((row[1] - (2.0 * row[0]).cos()).abs() < 1e-8, "{row:?}");
     }
     for (table, part) in [
-        (None, "tables without figures: --table potential=FILE"),
+        (None, "tables without values: --table potential=FILE"),
         (Some("potentail=spring.csv"), "there is no table `potentail`, but potential"),
         (Some("potential=none.csv"), "cannot read none.csv"),
         (Some("potential=slider.rs"), "slider.rs: line 3: expected numbers"),

@@ -61,9 +61,12 @@ fn projects_are_made_once() {
     let (status, _, stderr) = linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
     assert!(status == 2 && stderr.contains("`--linkwork`: "), "{stderr}");
 
-    for (name, part) in
-        [("my-arm", "is there already"), ("2d", "no name of a package"), ("fn", "no name"), ("std", "hide")]
-    {
+    for (name, part) in [
+        ("my-arm", "already exists"),
+        ("2d", "is not a name of a package"),
+        ("fn", "is not a name"),
+        ("std", "hide"),
+    ] {
         let (status, _, stderr) = linkwork(&here, &["new", name]);
         assert!(status == 2 && stderr.contains(part), "{name}: {stderr}");
     }

@@ -17,13 +17,13 @@ impl Random {
         self.0 >> 33
     }
 
-    fn below(&mut self, n: u64) -> u64 {
+    fn index_below(&mut self, n: u64) -> u64 {
         self.bits() % n
     }
 
     /// Returns a number between bounds, rounded to three decimals.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        let x = low + (high - low) * self.below(10_000) as f64 / 1e4;
+    fn number_between(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.index_below(10_000) as f64 / 1e4;
         (x * 1e3).round() / 1e3
     }
 }
@@ -70,8 +70,8 @@ fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str])
 /// Returns a chain of bodies on pins and sleeves with springs, or a slider-crank, with its coordinates.
 fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
     let mut text = String::new();
-    if random.below(4) == 0 {
-        let (r, l) = (random.between(0.2, 0.5), random.between(0.9, 1.5));
+    if random.index_below(4) == 0 {
+        let (r, l) = (random.number_between(0.2, 0.5), random.number_between(0.9, 1.5));
         let _ = write!(
             text,
             "    #[body(mass = 1.2, com = {r} / 2 * x, inertia = rod(1.2, {r}, x))]\n    crank: Body,
@@ -84,19 +84,19 @@ fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
         );
         return (text, (0..3).map(|k| format!("j{k}")).collect(), true);
     }
-    let n = 1 + random.below(3);
+    let n = 1 + random.index_below(3);
     for k in 0..n {
-        let (mass, length) = (random.between(0.5, 3.0), random.between(0.3, 1.2));
+        let (mass, length) = (random.number_between(0.5, 3.0), random.number_between(0.3, 1.2));
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(-0.4 * y)", k - 1) };
-        let (how, kind) =
-            [("about = z", "Pin"), ("about = x", "Pin"), ("along = x", "Sleeve")][random.below(3) as usize];
+        let (how, kind) = [("about = z", "Pin"), ("about = x", "Pin"), ("along = x", "Sleeve")]
+            [random.index_below(3) as usize];
         let _ = write!(
             text,
             "    #[body(mass = {mass}, com = -{length} / 2 * y + 0.1 * z, inertia = cuboid({mass}, 0.2, {length}, 0.3))]\n    b{k}: Body,
     #[joint({parent} -> b{k}, {how})]\n    j{k}: {kind},
     #[acts(on = j{k}, stiffness = {})]\n    s{k}: Spring,\n    #[acts(on = j{k}, damping = {})]\n    d{k}: Dashpot,\n",
-            random.between(5.0, 40.0),
-            random.between(0.0, 1.0)
+            random.number_between(5.0, 40.0),
+            random.number_between(0.0, 1.0)
         );
     }
     (text, (0..n).map(|k| format!("j{k}")).collect(), false)
@@ -117,13 +117,13 @@ fn declared_speeds_lead_to_the_same_motion() {
         let (mut begin, mut of_speeds, mut of_rates) = (Vec::new(), Vec::new(), Vec::new());
         // A loop starts in its assembled configuration; one velocity is free.
         let q: Vec<f64> =
-            joints.iter().map(|_| if loops { 0.0 } else { random.between(-0.5, 0.5) }).collect();
-        let v: Vec<f64> = joints.iter().map(|_| random.between(-1.0, 1.0)).collect();
+            joints.iter().map(|_| if loops { 0.0 } else { random.number_between(-0.5, 0.5) }).collect();
+        let v: Vec<f64> = joints.iter().map(|_| random.number_between(-1.0, 1.0)).collect();
         for (k, joint) in joints.iter().enumerate() {
-            let (own, other) = (random.between(0.5, 3.0), random.between(-1.0, 1.0));
+            let (own, other) = (random.number_between(0.5, 3.0), random.number_between(-1.0, 1.0));
             let (mut value, mut speed) = (format!("{own} * rate({joint})"), own * v[k]);
             // Triangular, hence invertible everywhere.
-            if k > 0 && random.below(2) == 0 {
+            if k > 0 && random.index_below(2) == 0 {
                 let before = &joints[k - 1];
                 let _ = write!(value, " + {other} * cos({joint}) * rate({before})");
                 speed += other * q[k].cos() * v[k - 1];
@@ -162,12 +162,12 @@ fn states_move_as_velocities_do() {
         // Parameters have inferred units.
         let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
         let values = [
-            random.between(0.5, 20.0),
-            random.between(-0.5, 0.5),
-            random.between(0.0, 0.5),
-            random.between(-0.5, 0.5),
-            random.between(0.2, 2.0),
-            random.between(-8.0, 8.0),
+            random.number_between(0.5, 20.0),
+            random.number_between(-0.5, 0.5),
+            random.number_between(0.0, 0.5),
+            random.number_between(-0.5, 0.5),
+            random.number_between(0.2, 2.0),
+            random.number_between(-8.0, 8.0),
         ];
         let rate = |x: &str| {
             format!(
@@ -177,7 +177,8 @@ fn states_move_as_velocities_do() {
         let declared: String = parameters.iter().map(|name| format!("    pub {name}: f64,\n")).collect();
         let force = |x: &str| {
             format!(
-                "{declared}    pub share: f64,\n    drive: Input,\n    #[acts(on = {j}, value = gain * tanh(share * {x}))]\n    f: Force,\n"
+                "{declared}    pub share: f64,\n    drive: Input,\n    #[acts(on = {j}, value = gain * \
+                 tanh(share * {x}))]\n    f: Force,\n"
             )
         };
         let is_pin = linkage.contains("j0: Pin");
@@ -190,8 +191,8 @@ fn states_move_as_velocities_do() {
             force("rate(rail)"),
             rate("rate(rail)")
         );
-        let (level, drive) = (random.between(-1.0, 1.0), random.between(-2.0, 2.0));
-        let begin = if loops { vec![] } else { vec![format!("q.{j}={}", random.between(-0.5, 0.5))] };
+        let (level, drive) = (random.number_between(-1.0, 1.0), random.number_between(-2.0, 2.0));
+        let begin = if loops { vec![] } else { vec![format!("q.{j}={}", random.number_between(-0.5, 0.5))] };
         let set = |name: &str| {
             let values = parameters.iter().zip(values).map(|(name, value)| format!("{name}={value}"));
             let own = ["share=0.7".to_string(), format!("{name}={level}"), format!("u.drive={drive}")];
@@ -214,19 +215,20 @@ fn states_move_as_velocities_do() {
 fn inputs_are_followed_exactly() {
     let here = folder("random_inputs");
     let cart = mechanism(
-        "    #[body(mass = 1)]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,\n    #[acts(on = rail)]\n    push: Force,\n",
+        "    #[body(mass = 1)]\n    cart: Body,\n    \
+         #[joint(ground -> cart, along = x)]\n    rail: Sleeve,\n    #[acts(on = rail)]\n    push: Force,\n",
     );
     for case in 0..cases() {
         let random = &mut Random(3 * case + 5);
-        let mut rows = vec![(0.0, random.between(-5.0, 5.0))];
+        let mut rows = vec![(0.0, random.number_between(-5.0, 5.0))];
         while rows.len() < 12 {
             let last = rows[rows.len() - 1].0;
-            let t = match random.below(4) {
+            let t = match random.index_below(4) {
                 0 => last,
                 1 => last + 0.001,
-                _ => last + random.between(0.05, 0.6),
+                _ => last + random.number_between(0.05, 0.6),
             };
-            rows.push((t, random.between(-50.0, 50.0)));
+            rows.push((t, random.number_between(-50.0, 50.0)));
         }
         let table: String = rows.iter().map(|(t, u)| format!("{t},{u}\r\n")).collect();
         std::fs::write(here.join("push.csv"), format!("\u{feff}t,u.push\r\n{table}")).unwrap();
@@ -254,16 +256,16 @@ fn stiff_springs_are_integrated() {
     let here = folder("random_stiff");
     for case in 0..cases() {
         let random = &mut Random(5 * case + 7);
-        let (mass, push) = (random.between(0.5, 2.0), random.between(-50.0, 50.0));
-        let fast = 10_f64.powf(random.between(3.0, 6.0)).round();
-        let slow = random.between(0.5, 20.0);
+        let (mass, push) = (random.number_between(0.5, 2.0), random.number_between(-50.0, 50.0));
+        let fast = 10_f64.powf(random.number_between(3.0, 6.0)).round();
+        let slow = random.number_between(0.5, 20.0);
         // m x″ + m (fast + slow) x′ + m fast slow x = push.
         let (c, k) = (mass * (fast + slow), mass * fast * slow);
         let cart = mechanism(&format!(
             "    #[body(mass = {mass})]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,
     #[acts(on = rail, stiffness = {k})]\n    spring: Spring,\n    #[acts(on = rail, damping = {c})]\n    damper: Dashpot,\n    #[acts(on = rail)]\n    push: Force,\n"
         ));
-        let begin = random.between(-1.0, 1.0);
+        let begin = random.number_between(-1.0, 1.0);
         let set = [format!("q.rail={begin}"), format!("u.push={push}")];
         let log = simulated(&here, "stiff", &cart, &set, &["--duration", "2"]);
         let rest = push / k;

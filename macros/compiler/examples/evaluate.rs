@@ -69,7 +69,7 @@ fn run() -> Result<(), Failure> {
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
         let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
         let values = |name: &str, passive: &[f64]| {
-            let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+            let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
                 Quantity::Configuration(k) => number(k),
                 Quantity::Velocity(k) => number(nq + k),
                 Quantity::Input(k) => number(nq + nv + k),

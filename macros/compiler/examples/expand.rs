@@ -193,7 +193,8 @@ fn counts(input: &Input) -> Result<(), Failure> {
     let output = compile(&source, &graph, cx);
     let (model, output) = checked(output, cx)?;
     println!(
-        "{}: {} configuration numbers, {} velocities, {} inputs, {} links, {} frames; {} nodes in the graph\n",
+        "{}: {} configuration numbers, {} velocities, {} inputs, {} links, {} frames; {} nodes in the \
+         graph\n",
         model.name,
         model.nq(),
         model.nv(),
@@ -273,7 +274,7 @@ fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure>
 
 /// Returns the name of a symbol: `q0`, `v1`, `p2` for a parameter, …
 fn symbol_name(symbol: Symbol) -> String {
-    match Quantity::of(symbol) {
+    match Quantity::from_symbol(symbol) {
         Quantity::Time => "t".to_string(),
         Quantity::Parameter(k) => format!("p{k}"),
         Quantity::Configuration(k) => format!("q{k}"),

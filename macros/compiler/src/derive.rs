@@ -81,13 +81,15 @@ pub fn derive_with<'g>(
         return None;
     }
     if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
-        cx.error(force.place.clone(), format!("a force that depends on accelerations leaves no {what}"))
-            .help("leave the word out that asks for them, or these terms of the force");
+        cx.error(force.place.clone(), format!("a force that depends on accelerations excludes {what}"))
+            .help("remove the option that requests them, or these terms of the force");
         return None;
     }
     if let Some(what) = too_long(model, requests) {
-        cx.error(model.place.clone(), format!("{what} would be too long"))
-            .help("code without loops has a line for each of them: ask for it of a smaller mechanism");
+        cx.error(model.place.clone(), format!("{what} would be too long")).help(
+            "the generated code has no loops, and a line for each of them: request it for a smaller \
+             mechanism",
+        );
         return None;
     }
     let cyclic = cyclic(model, requests, &joints, cx)?;
@@ -108,8 +110,10 @@ pub fn derive_with<'g>(
     let all = |specialisation| functions(own, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
     if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
-        cx.error(model.place.clone(), "the constraints of this mechanism depend on each other too much")
-            .help("code without loops would be too long: hold the bodies by shorter chains of joints");
+        cx.error(model.place.clone(), "too many constraints of this mechanism are coupled").help(
+            "the generated code has no loops and would be too long: connect the bodies by shorter chains of \
+             joints",
+        );
         return None;
     }
     let functions = all(Specialisation::None);
@@ -170,26 +174,26 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
 /// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.all_functions().all(|f| f.program.is_finite()) {
-        cx.error(model.place.clone(), "the figures of this mechanism are too large")
+        cx.error(model.place.clone(), "the values of this mechanism are too large")
             .help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
     if let Some(what) = output.undefined() {
         cx.error(
             model.place.clone(),
-            format!("the equations of this mechanism contain `{what}`, which is no number"),
+            format!("the equations of this mechanism contain `{what}`, which is not a number"),
         )
-        .help("something is divided by zero, or is the root of a negative number, wherever the mechanism is");
+        .help(
+            "an expression divides by zero, or takes the root of a negative number, in every configuration",
+        );
         return None;
     }
     if let Some(name) = output.misfit() {
         cx.error(
             model.place.clone(),
-            format!(
-                "Linkwork made a mistake: the program of `{name}` does not fit its arguments or its result"
-            ),
+            format!("internal error: the program of `{name}` does not match its arguments or its result"),
         )
-        .help("this is no mistake of yours: please report it with the declaration of the mechanism");
+        .help("this is an error of the compiler: please report it with the declaration of the mechanism");
         return None;
     }
     Some(output)
@@ -233,10 +237,10 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
         + model.inertances.len()
         + model.dissipations.len();
     if requests.sensitivities && squared * model.parameters.len() > MOST_DERIVATIVES {
-        return Some("the derivatives by so many parameters");
+        return Some("the code of the derivatives with respect to this many parameters");
     }
     (requests.derivatives && squared * elements > MOST_DERIVATIVES)
-        .then_some("the derivatives of so many elements")
+        .then_some("the code of the derivatives of this many elements")
 }
 
 /// Data that optional functions need in addition to the model.
@@ -267,12 +271,13 @@ fn cyclic<'g>(
     }
     let (what, help) = match routh::cyclic(model, joints) {
         _ if !model.constraints.is_empty() => (
-            "Routh's equations are those of mechanisms without constraints",
-            "remove the word; `conserved` finds what constraints leave of momenta",
+            "Routh's equations require a mechanism without constraints",
+            "remove the option; `conserved` finds the momenta that the constraints conserve",
         ),
         found if found.is_empty() => (
             "no coordinate of this mechanism is cyclic",
-            "Routh's equations eliminate plain coordinates on which the Lagrangian does not depend and which nothing dampens: remove the word",
+            "Routh's equations eliminate plain coordinates on which the Lagrangian does not depend and on \
+             which no damping acts: remove the option",
         ),
         found => return Some(Some(found)),
     };
@@ -379,7 +384,7 @@ fn printed<'g>(
         Printed::Readable => Some(written((model, speeds), joints, mass)),
         Printed::Structure => Some(Written::default()),
         Printed::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
-            "the equations of a contact that slips hold its normal force, a multiplier",
+            "the equations of a slipping contact contain its normal force, which is a multiplier",
             "write `equations = lagrange`",
         ),
         Printed::Kane if !model.constraints.is_empty() => {
@@ -387,12 +392,14 @@ fn printed<'g>(
             match kane::kane(model, joints, speeds) {
                 Ok(found) => Some(kane::written_kane(named, &found)),
                 Err(kane::KaneFailure::Choice) => refuse(
-                    "no velocities of this mechanism follow from the others by its constraints everywhere",
+                    "no velocities of this mechanism are determined by the others through its constraints in \
+                     every configuration",
                     "write `equations = lagrange`, which keeps all constraints with multipliers",
                 ),
                 Err(kane::KaneFailure::Length) => refuse(
                     "Kane's equations of this mechanism have thousands of terms",
-                    "write `equations = lagrange`, which keeps the constraints with multipliers, or declare generalized speeds in which they are short",
+                    "write `equations = lagrange`, which keeps the constraints with multipliers, or declare \
+                     generalized speeds in which the equations are shorter",
                 ),
             }
         }
@@ -402,8 +409,10 @@ fn printed<'g>(
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::written(named, &e)).or_else(|| {
                 refuse(
-                    "the equations of this mechanism have thousands of terms, or more symbols and functions than are multiplied out",
-                    "`equations = structure` says how they are made up; the generated functions do not multiply them out",
+                    "the equations of this mechanism have thousands of terms, or more symbols and functions \
+                     than are expanded",
+                    "`equations = structure` prints their structure; the generated functions do not expand \
+                     them",
                 )
             })
         }
@@ -411,25 +420,31 @@ fn printed<'g>(
             let reduced = cyclic.and_then(|cyclic| reduced::reduced(model, joints, mass, cyclic));
             reduced.map(|r| reduced::written_reduced(model, &r)).or_else(|| {
                 refuse(
-                    "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by inertia, or thousands of terms",
-                    "the word `routh` gives them as functions; `equations = lagrange` prints others",
+                    "Routh's equations of this mechanism are too long: more than three cyclic coordinates \
+                     are coupled by inertia, or thousands of terms",
+                    "the option `routh` generates them as functions; `equations = lagrange` prints \
+                     Lagrange's equations",
                 )
             })
         }
         Printed::Hamilton if !model.constraints.is_empty() => refuse(
-            "Hamilton's equations are printed for mechanisms without constraints",
-            "write `equations = lagrange`; the word `hamilton` gives the functions under constraints, too",
+            "Hamilton's equations are printed only for mechanisms without constraints",
+            "write `equations = lagrange`; the option `hamilton` generates the functions with constraints as \
+             well",
         ),
         Printed::Hamilton if speeds.is_some() => refuse(
             "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
-            "write `equations = lagrange`, which prints Kane's equations in speeds; the word `hamilton` gives the functions in speeds, too",
+            "write `equations = lagrange`, which prints Kane's equations in speeds; the option `hamilton` \
+             generates the functions in speeds as well",
         ),
         Printed::Hamilton => {
             let canonical = equations::canonical(model, joints, mass);
             canonical.map(|c| equations::written_canonical(model, &c)).or_else(|| {
                 refuse(
-                    "Hamilton's equations of this mechanism are too long: more than three velocities are coupled by inertia, or thousands of terms",
-                    "the word `hamilton` gives them as functions; `equations = lagrange` prints others",
+                    "Hamilton's equations of this mechanism are too long: more than three velocities are \
+                     coupled by inertia, or thousands of terms",
+                    "the option `hamilton` generates them as functions; `equations = lagrange` prints \
+                     Lagrange's equations",
                 )
             })
         }

@@ -83,8 +83,8 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
 
 /// Returns the error for a `#[derive(…)]` above the attribute; `attribute` is the span of `#[mechanism]`.
 pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
-    let mut error = Diagnostic::new(attribute, "`#[derive(…)]` stands above `#[mechanism]`");
-    error.help("write it below: there it sees the struct without its elements, which do not stay");
+    let mut error = Diagnostic::new(attribute, "`#[derive(…)]` is above `#[mechanism]`");
+    error.help("write it below, where it sees the struct without the elements");
     error
 }
 
@@ -180,9 +180,10 @@ fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Di
         (_, false) => "contacts",
         _ => return Some(()),
     };
-    cx.error(model.place.clone(), format!("kernels are for trees, and this mechanism has {what}")).help(
+    cx.error(model.place.clone(), format!("kernels support only trees, and this mechanism has {what}")).help(
         format!(
-            "`linkwork export library` writes all functions with {what} for processors, `linkwork export c` those that need no solver; without the {what} there are kernels of all functions"
+            "`linkwork export library` writes all functions with {what} for CPUs, `linkwork export c` those \
+             that need no solver; without the {what} there are kernels of all functions"
         ),
     );
     None
@@ -215,7 +216,8 @@ fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut 
         ),
         export::c::Unfit::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),
-            "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the rates of coordinates: leave `#[speed(…)]` out, or export plain C"
+            "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the \
+             rates of coordinates: remove `#[speed(…)]`, or export plain C"
                 .to_string(),
         ),
         export::c::Unfit::Missing => (
@@ -263,8 +265,14 @@ pub fn compile_with<'g>(
     if graph.is_full() {
         // The other errors result from truncated expressions.
         *cx = Diagnostics::new();
-        cx.error(source.mechanism.description.name.place.clone(), "the equations of this mechanism would be too long")
-            .help("code without loops has a line for each of millions of operations: leave words out that ask for derivatives, or hold the bodies by shorter chains of joints and fewer elements");
+        cx.error(
+            source.mechanism.description.name.place.clone(),
+            "the equations of this mechanism would be too long",
+        )
+        .help(
+            "the generated code has no loops and would have millions of operations: remove options that \
+             request derivatives, or use shorter chains of joints and fewer elements",
+        );
         return None;
     }
     compiled
@@ -375,7 +383,7 @@ fn check_outputs(
         } else if !can_be_a_function(text) {
             cx.error(name.place.clone(), format!("a function of a mechanism cannot be called `{text}`"))
                 .help(
-                    "keywords, names of its constants and names with two underscores before them are taken",
+                    "keywords, names of its constants and names that begin with two underscores are reserved",
                 );
         } else if is_taken(text) {
             cx.error(

@@ -68,7 +68,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     for field in &fields {
         if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
             cx.error(own.place.clone(), format!("the name `{}` is used twice", own.text)).help(format!(
-                "the field that holds figures of `{}` has this name: choose another",
+                "the field for the inertial parameters of `{}` has this name: choose another",
                 field.of
             ));
         }
@@ -84,13 +84,13 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     let own_joints = std::mem::replace(&mut description.joints, joints);
     for own in &own_bodies {
         if description.bodies.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text))
+            cx.error(own.name.place.clone(), format!("the file already has a link `{}`", own.name.text))
                 .help("choose another name, or use the link by its name without declaring it");
         }
     }
     for own in &own_joints {
         if description.joints.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file has a joint `{}` already", own.name.text))
+            cx.error(own.name.place.clone(), format!("the file already has a joint `{}`", own.name.text))
                 .help("choose another name, or use the joint by its name without declaring it");
         }
     }

@@ -20,7 +20,8 @@ const NONE: [String; 0] = [];
 
 #[test]
 fn a_field_is_there_always() {
-    let help = "= help: put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
+    let help = "= help: put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for \
+                each case";
     let used = "#[body(mass = m)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
     for attribute in ["cfg(unix)", "cfg_attr(unix, unit(kg))", "cfg_attr(unix, cfg(test))"] {
         let told = messages("", &format!("#[{attribute}] m: f64, {used}"));

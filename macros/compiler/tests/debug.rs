@@ -6,7 +6,8 @@ use std::path::Path;
 /// Returns the generated code of a floating body with arms of six joints, with these options of the
 /// attribute.
 fn code(words: &str, names: &[&str]) -> String {
-    let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,"
+    let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, \
+                    #[joint(ground -> trunk)] base: Free,"
         .to_string();
     for name in names {
         let mut parent = "trunk".to_string();

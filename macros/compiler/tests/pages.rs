@@ -76,7 +76,7 @@ fn words_are_listed() {
         &[
             ("macros/src/lib.rs", "/// | `NAME` |"),
             ("runtime/guide/functions.md", "| `NAME` |"),
-            ("runtime/src/absent.rs", "does not ask for `NAME`"),
+            ("runtime/src/absent.rs", "this needs the option `NAME`"),
             ("macros/compiler/tests/mechanisms/mod.rs", "NAME"),
         ],
     );

@@ -12,7 +12,8 @@ use syn::{ImplItem, Item, ItemImpl, Type};
 /// Error that affects no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
-const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing";
+const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
+                     regressor, sensitivities, packed, prepare, batch, drawing";
 
 const CART_POLE: &str = "
     m: f64, l: f64,

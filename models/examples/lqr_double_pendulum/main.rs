@@ -66,7 +66,8 @@ fn three_starts(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Resu
 fn basin(regulator: &Regulator) -> Result<[[bool; 13]; 13], Error> {
     let mut caught = [[false; 13]; 13];
     println!(
-        "\nfrom where it catches the poles (+): lower pole from −0.6 to 0.6 rad to the right, upper one upwards"
+        "\nfrom where it catches the poles (+): lower pole from −0.6 to 0.6 rad to the right, upper one \
+         upwards"
     );
     for (i, row) in caught.iter_mut().enumerate().rev() {
         for (j, caught) in row.iter_mut().enumerate() {

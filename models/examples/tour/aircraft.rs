@@ -33,8 +33,8 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         .output("airspeed", TRANSPORT.cruise)
         .find()?;
     let system = flight::linear_system(&TRANSPORT, &trim.q, &trim.v, &trim.u)?;
-    let modes = FlightModes::of(&system)?;
-    let named = modes.named();
+    let modes = FlightModes::from_system(&system)?;
+    let named = modes.named_modes();
     let rows = named.iter().map(|(name, mode)| row(name, mode));
     let table = Table {
         head: vec!["mode", "eigenvalue, 1/s", "published", "period, s", "damping ratio", "half or double, s"],
@@ -71,8 +71,10 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: "A transport is trimmed, disturbed and taken apart into its modes".into(),
         text: format!(
-            "The Boeing 747 at Mach 0.8 in 40 000 ft by its published derivatives, those by the rate of the angle of attack \
-             among them. Newton's method finds level flight at {} m/s; generated derivatives give the linear motion about \
+            "The Boeing 747 at Mach 0.8 in 40 000 ft by its published derivatives, those by the rate of the \
+             angle of attack \
+             among them. Newton's method finds level flight at {} m/s; generated derivatives give the linear \
+                 motion about \
              it, and its modes come by their names.",
             TRANSPORT.cruise
         ),

@@ -113,8 +113,10 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: "A seven-axis arm draws a figure eight".into(),
         text: format!(
-            "Franka's Panda from its URDF file under computed torque at {:.0} kHz, the hand pointing down. The controller's \
-             model is the bare arm; the arm carries {LOAD} kg. Without a force sensor, a momentum observer built on the \
+            "Franka's Panda from its URDF file under computed torque at {:.0} kHz, the hand pointing down. \
+             The controller's \
+             model is the bare arm; the arm carries {LOAD} kg. Without a force sensor, a momentum observer \
+                 built on the \
              generated momentum and its rate feels the load, cancels it and weighs it.",
             1e-3 / PERIOD
         ),

@@ -87,8 +87,10 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: "A cart-pole swings itself up".into(),
         text: format!(
-            "It hangs down; a digital controller at {:.0} Hz pumps energy into the pole, catches it upright with a \
-             linear–quadratic regulator (Riccati's equation on the linearised generated equations) and holds it against a shove.",
+            "It hangs down; a digital controller at {:.0} Hz pumps energy into the pole, catches it upright \
+             with a \
+             linear–quadratic regulator (Riccati's equation on the linearised generated equations) and holds \
+                 it against a shove.",
             1.0 / PERIOD
         ),
         declaration: declaration(include_str!("../../src/cart_pole.rs"), "CartPole"),

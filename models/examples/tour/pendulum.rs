@@ -70,7 +70,8 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: format!("A pendulum swings for {DURATION} s"),
         text: format!(
-            "Released at rest {:.0}° from the vertical, without friction. Its exact motion is an elliptic function, so \
+            "Released at rest {:.0}° from the vertical, without friction. Its exact motion is an elliptic \
+             function, so \
              that both energy and angle can be held against the truth.",
             START.to_degrees()
         ),

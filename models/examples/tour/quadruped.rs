@@ -74,8 +74,10 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: "A quadruped turns a somersault".into(),
         text: format!(
-            "Solo 12 from its URDF file, floating base, 18 degrees of freedom, {FLIGHT:.2} s in the air. Joint controllers \
-             draw the legs in and stretch them out, not quite evenly; like a skater it spins faster when small. Newton's \
+            "Solo 12 from its URDF file, floating base, 18 degrees of freedom, {FLIGHT:.2} s in the air. \
+             Joint controllers \
+             draw the legs in and stretch them out, not quite evenly; like a skater it spins faster when \
+                 small. Newton's \
              method has found the take-off spin ({}) rad/s for which it lands level.",
             spin.iter().map(|w| format!("{w:.2}").replace('-', "−")).collect::<Vec<_>>().join(", ")
         ),

@@ -93,7 +93,8 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     Ok(Section {
         title: "A heavy top precesses and nutates".into(),
         text: format!(
-            "On a ball joint (a quaternion, no Euler angles), spinning at {} rad/s. Steady precession is followed for \
+            "On a ball joint (a quaternion, no Euler angles), spinning at {} rad/s. Steady precession is \
+             followed for \
              {TURNS} turns; then the top is let go with its axis at rest and draws cusps.",
             figure(SPIN)
         ),

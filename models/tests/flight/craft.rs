@@ -74,7 +74,7 @@ fn a_glider_glides_by_its_polar() {
 
 fn modes(glider: &Glider, lift: f64) -> FlightModes {
     let found = glide(glider, lift);
-    FlightModes::of(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
+    FlightModes::from_system(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
 
 /// With a constant angle of attack, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`. About the glide
@@ -92,7 +92,7 @@ fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     // Distance of the neutral point behind the centre of mass, in chords; pitch is much faster.
     let derivatives = {
         let SteadyState { q, v, u, .. } = glide(&GLIDER, lift);
-        Derivatives::of(&GLIDER, &q, &v, &u).unwrap().in_stability_axes()
+        Derivatives::at_state(&GLIDER, &q, &v, &u).unwrap().in_stability_axes()
     };
     let drag = GLIDER.cd_0 + GLIDER.cd_induced * lift * lift;
     close(

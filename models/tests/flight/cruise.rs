@@ -96,7 +96,7 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
 /// The modes have the published eigenvalues, and those of an independent computation.
 #[test]
 fn a_transport_has_the_modes_of_etkin_and_reid() {
-    let modes = FlightModes::of(&system(&TRANSPORT)).unwrap();
+    let modes = FlightModes::from_system(&system(&TRANSPORT)).unwrap();
     is_at(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
     is_at(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
     is_at(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
@@ -110,13 +110,14 @@ fn a_transport_has_the_modes_of_etkin_and_reid() {
     // Height is the remaining state: nothing depends on it in air of uniform density.
     let [height] = &modes.others[..] else { panic!("{:?}", modes.others) };
     assert!(height.frequency() < 1e-9);
-    assert_eq!(modes.named().len(), 5);
+    assert_eq!(modes.named_modes().len(), 5);
 }
 
 /// Without its `α̇` derivatives the short period has seven eighths of its damping.
 #[test]
 fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
-    let damping = |craft| FlightModes::of(&system(&craft)).unwrap().short_period.unwrap().damping_ratio();
+    let damping =
+        |craft| FlightModes::from_system(&system(&craft)).unwrap().short_period.unwrap().damping_ratio();
     let without = CruisingAircraft { cz_alpha_rate: 0.0, cm_alpha_rate: 0.0, ..TRANSPORT };
     let ratio = damping(without) / damping(TRANSPORT);
     assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
@@ -127,7 +128,7 @@ fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
 fn derivatives_without_dimension_are_those_declared() {
     let craft = TRANSPORT;
     let (q, v, u) = level(&craft);
-    let found = Derivatives::of(&craft, &q, &v, &u).unwrap();
+    let found = Derivatives::at_state(&craft, &q, &v, &u).unwrap();
     let reference =
         Reference { density: craft.density, area: craft.area, chord: craft.chord, span: craft.span };
     let declared = [
@@ -173,7 +174,7 @@ fn derivatives_without_dimension_are_those_declared() {
 /// 5).
 #[test]
 fn a_light_aircraft_has_the_modes_of_nelson() {
-    let modes = FlightModes::of(&system(&CruisingAircraft::NAVION)).unwrap();
+    let modes = FlightModes::from_system(&system(&CruisingAircraft::NAVION)).unwrap();
     is_at(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
     is_at(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
     is_at(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
@@ -203,7 +204,7 @@ fn an_airliner_has_the_modes_of_cook() {
         cn_r: by_rate(-0.257, izz),
         ..base
     };
-    let modes = FlightModes::of(&system(&craft)).unwrap();
+    let modes = FlightModes::from_system(&system(&craft)).unwrap();
     let dutch_roll = modes.dutch_roll.unwrap();
     close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
     close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
@@ -226,7 +227,7 @@ fn modes_of_printed_matrices_are_named() {
     );
     let system = StateSpace::new(a, DMatrix::zeros(4, 0), DMatrix::identity(4, 4), DMatrix::zeros(4, 0));
     let states = [("u", "ft/s"), ("w", "ft/s"), ("q", "rad/s"), ("theta", "rad")];
-    let modes = FlightModes::of(&system.unwrap().with_states(states).unwrap()).unwrap();
+    let modes = FlightModes::from_system(&system.unwrap().with_states(states).unwrap()).unwrap();
     for (mode, damping, stiffness, digits) in
         [(modes.phugoid.unwrap(), 0.033, 0.020, 0.02), (modes.short_period.unwrap(), 0.902, 2.666, 1e-3)]
     {

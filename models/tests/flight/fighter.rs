@@ -231,7 +231,7 @@ fn linear_motion_is_that_of_the_book() {
 fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let modes = |place| {
         let fighter = Fighter { place, ..Fighter::F16 };
-        FlightModes::of(&linear(&fighter, &level(&fighter, 502.0))).unwrap()
+        FlightModes::from_system(&linear(&fighter, &level(&fighter, 502.0))).unwrap()
     };
     let (stable, unstable) = (modes(0.3), modes(0.38));
     assert!(stable.short_period.is_some_and(|mode| mode.exponent.re < -1.0));
@@ -250,7 +250,7 @@ fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let [beta, p, r] = ACROSS;
     let bank = [0.0, 1.0, trim.v[2] / trim.v[0], 0.0];
     let published = DMatrix::from_fn(4, 4, |i, j| [beta, p, r, bank][i][j]).complex_eigenvalues();
-    let found = FlightModes::of(&linear(&Fighter::F16, &trim)).unwrap();
+    let found = FlightModes::from_system(&linear(&Fighter::F16, &trim)).unwrap();
     let real =
         |from: f64, to: f64| published.iter().find(|e| e.im == 0.0 && from < e.re && e.re < to).unwrap();
     let wave = published.iter().find(|e| e.im > 0.0).unwrap();

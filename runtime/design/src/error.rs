@@ -192,49 +192,52 @@ impl fmt::Display for Error {
                 }
                 write!(f, "; there are {}", known.join(", "))
             }
-            Self::Repeated { kind, name } => write!(f, "the {kind} `{name}` is asked for twice"),
+            Self::Repeated { kind, name } => write!(f, "the {kind} `{name}` is requested twice"),
             Self::Count { what, expected, found } => write!(f, "expected {expected} {what}, found {found}"),
             Self::Period { period } => write!(f, "expected a positive period, found {period} s"),
             Self::Time { periods: [one, other] } => {
-                write!(f, "{} and {} do not go together", TimeName(*one), TimeName(*other))
+                write!(f, "{} and {} are incompatible", TimeName(*one), TimeName(*other))
             }
             Self::Improper { numerator, denominator } => {
                 write!(f, "improper: degree {numerator} over degree {denominator}")
             }
             Self::Unstable { pole } => write!(f, "not stable: the pole {pole}"),
-            Self::Unstabilizable { mode } => write!(f, "no input moves the mode {mode}"),
-            Self::Undetectable { mode } => write!(f, "no output shows the mode {mode}"),
+            Self::Unstabilizable { mode } => write!(f, "no input controls the mode {mode}"),
+            Self::Undetectable { mode } => write!(f, "no output observes the mode {mode}"),
             Self::Unpaired { pole } => {
-                write!(f, "the pole {pole} is not finite, or comes without its conjugate")
+                write!(f, "the pole {pole} is not finite, or lacks its conjugate")
             }
             Self::Singular { what } => write!(f, "{what} is singular"),
             Self::Indefinite { matrix } => write!(f, "{matrix} is not symmetric and positive"),
             Self::AlgebraicLoop => {
-                write!(f, "the direct ways through both systems form a loop without a solution")
+                write!(f, "the direct feedthrough of both systems forms an algebraic loop without a solution")
             }
             Self::NotConverged { what } => write!(f, "{what} did not converge"),
             Self::Infinite { what } => write!(f, "{what} is infinite"),
-            Self::Range { what, value } => write!(f, "{what} of {value} has no meaning"),
+            Self::Range { what, value } => write!(f, "{what} of {value} is not allowed"),
             Self::Constraint(error) => error.fmt(f),
             Self::NoSteadyState { condition, residual, conditions, unknowns, place } => write!(
                 f,
-                "no steady state near the guess: {} for {}, and `{condition}` is left at {residual:.3e}, at {}",
+                "no steady state near the guess: {} for {}, and `{condition}` is left at {residual:.3e}, at \
+                 {}",
                 Counted(*unknowns, "unknown"),
                 Counted(*conditions, "condition"),
                 Listed(place)
             ),
             Self::Undetermined { unknowns, place } => write!(
                 f,
-                "the conditions leave {} open at {}: fix or hold one of them, add a condition, or take the nearest",
+                "the conditions do not determine {} at {}: fix or prescribe one of them, add a condition, or \
+                 take the nearest",
                 unknowns.join(", "),
                 Listed(place)
             ),
             Self::NotSteady { what, rate } => {
-                write!(f, "not steady: `{what}` is off by {rate:.3e}")
+                write!(f, "not steady: `{what}` has a residual of {rate:.3e}")
             }
             Self::NoSecondOrderForm { coordinate } => write!(
                 f,
-                "no second-order form: forces depend on `{coordinate}`, which has no independent speed of its own"
+                "no second-order form: forces depend on `{coordinate}`, which has no independent speed of \
+                 its own"
             ),
             Self::NoPotential { why } => write!(f, "no stability by energy: {why}; modes decide"),
             Self::Picture(error) => write!(f, "no picture: {error}"),

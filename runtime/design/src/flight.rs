@@ -48,10 +48,10 @@
 //!     .inputs(["elevon", "thrust"]);
 //! let found = level.nearest().find()?;
 //! let system = flight::linear_system(&Wing {}, &found.q, &found.v, &found.u)?;
-//! let modes = FlightModes::of(&system)?;
+//! let modes = FlightModes::from_system(&system)?;
 //! assert!(modes.short_period.unwrap().frequency() > 10.0 * modes.phugoid.unwrap().frequency());
 //! // Slope of the moment divided by the slope of the force, −0.5 / −5, in m.
-//! let margin = Derivatives::of(&Wing {}, &found.q, &found.v, &found.u)?.static_margin(1.0)?;
+//! let margin = Derivatives::at_state(&Wing {}, &found.q, &found.v, &found.u)?.static_margin(1.0)?;
 //! assert!((margin - 0.1).abs() < 1e-3);
 //! # Ok::<(), linkwork_design::Error>(())
 //! ```

@@ -25,7 +25,7 @@ impl StateSpace {
         let w = self.controllability_gramian()?;
         let direct = self.d.norm_squared();
         if self.period.is_none() && direct > 0.0 {
-            return Err(Error::Infinite { what: "the H₂ norm, with a direct way from inputs to outputs," });
+            return Err(Error::Infinite { what: "the H₂ norm, with direct feedthrough," });
         }
         let square = (&self.c * w * self.c.transpose()).trace();
         Ok((square.max(0.0) + if self.period.is_some() { direct } else { 0.0 }).sqrt())

@@ -62,7 +62,7 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
 pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     let mut sizes: Vec<f64> = response.values.iter().map(|x| x.norm()).filter(|x| x.is_finite()).collect();
     if sizes.is_empty() {
-        return Err(Error::Picture("nothing to draw that is finite".into()));
+        return Err(Error::Picture("no finite values to draw".into()));
     }
     sizes.sort_by(f64::total_cmp);
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);

@@ -252,7 +252,7 @@ impl TransferFunction {
     /// # Errors
     ///
     /// [`Error::Time`] for different periods, [`Error::Singular`] if the divisor is zero.
-    pub fn over(&self, other: &Self) -> Result<Self, Error> {
+    pub fn divide(&self, other: &Self) -> Result<Self, Error> {
         let period = self.common_period(other)?;
         let numerator = &self.numerator * &other.denominator;
         Ok(Self { period, ..Self::quotient(&numerator, &(&self.denominator * &other.numerator))? })

@@ -87,30 +87,30 @@ fn periods_and_instants_are_positive() {
         says(&text, stable.lqr_held(&Cost::diagonal(&[1.0, 1.0], &[1.0]), bad));
         says(&text, lag.clone().with_period(bad));
         says(&text, lag.factored().unwrap().matched(bad));
-        says(&format!("an end of {bad} has no meaning"), stable.times(bad, 10));
+        says(&format!("an end of {bad} is not allowed"), stable.times(bad, 10));
         says(
-            &format!("a distance of instants of {bad} has no meaning"),
+            &format!("a distance of instants of {bad} is not allowed"),
             stable.step_response(0, &[0.0, bad]),
         );
-        says(&format!("a frequency of {bad} has no meaning"), logarithmic(bad, 10.0, 5));
+        says(&format!("a frequency of {bad} is not allowed"), logarithmic(bad, 10.0, 5));
         says(
-            &format!("a frequency for prewarping of {bad} has no meaning"),
+            &format!("a frequency for prewarping of {bad} is not allowed"),
             stable.discretize(0.1, Hold::Prewarped(bad)),
         );
     }
-    says("an unequally spaced instant of 2 has no meaning", stable.step_response(0, &[0.0, 2.0, 1.0]));
+    says("an unequally spaced instant of 2 is not allowed", stable.step_response(0, &[0.0, 2.0, 1.0]));
     for bad in [f64::NAN, f64::INFINITY] {
-        let text = format!("a frequency of {bad} has no meaning");
+        let text = format!("a frequency of {bad} is not allowed");
         says(&text, stable.frequency_response(0, 0, &[1.0, bad]));
         says(&text, stable.frequency_map().unwrap().response(bad));
         says(&text, stable.at(Complex::new(0.0, bad)));
     }
     let held = stable.discretize(0.1, Hold::Zero).unwrap();
-    says("a period of 0.1 s and continuous time do not go together", held.discretize(0.1, Hold::Zero));
-    says("continuous time and discrete time do not go together", stable.undiscretize(Hold::Zero));
-    says("continuous time and a period of 0.1 s do not go together", stable.series(&held));
+    says("a period of 0.1 s and continuous time are incompatible", held.discretize(0.1, Hold::Zero));
+    says("continuous time and discrete time are incompatible", stable.undiscretize(Hold::Zero));
+    says("continuous time and a period of 0.1 s are incompatible", stable.series(&held));
     let dead = system(dmatrix![0.0], dmatrix![1.0], dmatrix![1.0]).with_period(0.1).unwrap();
-    says("the logarithm of an eigenvalue of 0 has no meaning", dead.undiscretize(Hold::Zero));
+    says("the logarithm of an eigenvalue of 0 is not allowed", dead.undiscretize(Hold::Zero));
     let fast = system(dmatrix![20.0], dmatrix![1.0], dmatrix![1.0]);
     says("I − A / s of Tustin's rule is singular", fast.discretize(0.1, Hold::Tustin));
 }
@@ -130,7 +130,7 @@ fn what_needs_stability_names_the_pole() {
     says("s I − A, at a pole, is singular", integrator().frequency_response(0, 0, &[1.0, 0.0]));
     says("s I − A, at a pole, is singular", stable().at(real(-1.0)));
     let direct = stable().parallel(&gain(1.0)).unwrap();
-    says("the H₂ norm, with a direct way from inputs to outputs, is infinite", direct.h2_norm());
+    says("the H₂ norm, with direct feedthrough, is infinite", direct.h2_norm());
     let cancel = "the equation, whose eigenvalues cancel, is singular";
     says(cancel, matrices::lyapunov(&dmatrix![1.0, 0.0; 0.0, -1.0], &DMatrix::identity(2, 2)));
     says(cancel, matrices::lyapunov(&dmatrix![0.0], &dmatrix![1.0]));
@@ -138,7 +138,7 @@ fn what_needs_stability_names_the_pole() {
     says("expected 1 input, found 2", two_inputs().step_figures());
     says("expected 1 input, found 2", two_inputs().margins());
     let limits = StepLimits { settling: -0.02, ..StepLimits::default() };
-    says("a band of -0.02 has no meaning", stable().step_figures_within(limits));
+    says("a band of -0.02 is not allowed", stable().step_figures_within(limits));
 }
 
 /// Checks the Lyapunov solvers for unsymmetric `Q`.
@@ -177,13 +177,13 @@ fn margins_that_do_not_exist_are_none() {
 fn regulators_that_do_not_exist_name_the_mode() {
     let cost = |q: &[f64], r: f64| Cost::diagonal(q, &[r]);
     let stuck = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 0.0], dmatrix![1.0, 1.0]);
-    says("no input moves the mode 2+0i", stuck.lqr(&cost(&[1.0, 1.0], 1.0)));
-    says("no input moves the mode 2+0i", stuck.place(&[real(-1.0), real(-3.0)]));
+    says("no input controls the mode 2+0i", stuck.lqr(&cost(&[1.0, 1.0], 1.0)));
+    says("no input controls the mode 2+0i", stuck.place(&[real(-1.0), real(-3.0)]));
     let error = stuck.lqr_held(&cost(&[1.0, 1.0], 1.0), 0.1).unwrap_err();
     let Error::Unstabilizable { mode } = error else { panic!("{error}") };
     assert!((mode.re - 0.2_f64.exp()).abs() < 1e-12);
     let double = double_integrator();
-    says("no output shows the mode 0+0i", double.lqr(&cost(&[0.0, 0.0], 1.0)));
+    says("no output observes the mode 0+0i", double.lqr(&cost(&[0.0, 0.0], 1.0)));
     says("R is singular", double.lqr(&cost(&[1.0, 1.0], 0.0)));
     says("R is not symmetric and positive", double.lqr(&cost(&[1.0, 1.0], -1.0)));
     says(
@@ -194,13 +194,13 @@ fn regulators_that_do_not_exist_name_the_mode() {
     says("Q has an entry that is not finite", double.lqr(&cost(&[f64::NAN, 1.0], 1.0)));
     let mute = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 0.0]);
     let noise = |v: f64| Noise { states: DMatrix::identity(2, 2), outputs: dmatrix![v] };
-    says("no output shows the mode 2+0i", mute.kalman(&noise(1.0)));
+    says("no output observes the mode 2+0i", mute.kalman(&noise(1.0)));
     says("the outputs' noise is singular", unstable().kalman(&noise(0.0)));
     says("the outputs' noise is not symmetric and positive", unstable().kalman(&noise(-1.0)));
     says("expected 2 poles, found 1", double.place(&[real(-1.0)]));
-    let unpaired = "the pole -1+1i is not finite, or comes without its conjugate";
+    let unpaired = "the pole -1+1i is not finite, or lacks its conjugate";
     says(unpaired, double.place(&[Complex::new(-1.0, 1.0), Complex::new(-1.0, 1.0)]));
-    let infinite = "the pole NaN+0i is not finite, or comes without its conjugate";
+    let infinite = "the pole NaN+0i is not finite, or lacks its conjugate";
     says(infinite, double.place(&[real(f64::NAN), real(-1.0)]));
 }
 
@@ -214,19 +214,19 @@ fn improper_and_impossible_transfer_functions() {
     says(text, improper.margins());
     says(text, improper.factored().unwrap().matched(0.1));
     says("improper: degree 1 over degree 0", TransferFunction::s().state_space());
-    says("a denominator of 0 has no meaning", transfer(&[1.0], &[0.0]));
-    says("a denominator of 0 has no meaning", transfer(&[1.0], &[]));
+    says("a denominator of 0 is not allowed", transfer(&[1.0], &[0.0]));
+    says("a denominator of 0 is not allowed", transfer(&[1.0], &[]));
     says(
-        "a denominator of 0 has no meaning",
-        transfer(&[1.0], &[1.0]).unwrap().over(&transfer(&[0.0], &[1.0]).unwrap()),
+        "a denominator of 0 is not allowed",
+        transfer(&[1.0], &[1.0]).unwrap().divide(&transfer(&[0.0], &[1.0]).unwrap()),
     );
     says("the numerator has an entry that is not finite", transfer(&[f64::NAN], &[1.0]));
     says("the denominator has an entry that is not finite", transfer(&[1.0], &[1.0, f64::INFINITY]));
     let [one, minus] = [1.0, -1.0].map(TransferFunction::constant);
-    let text = "the direct ways through both systems form a loop without a solution";
+    let text = "the direct feedthrough of both systems forms an algebraic loop without a solution";
     says(text, one.feedback(&minus));
     says(text, gain(1.0).feedback_gain(&dmatrix![-1.0]));
-    says("a table of the polynomial of 0 has no meaning", Polynomial::new([0.0]).routh());
+    says("a table of the polynomial of 0 is not allowed", Polynomial::new([0.0]).routh());
     says("the polynomial has an entry that is not finite", Polynomial::new([1.0, f64::NAN]).routh());
     says("the polynomial has an entry that is not finite", Polynomial::new([1.0, f64::NAN]).roots());
 }
@@ -253,13 +253,13 @@ fn repeated_poles_have_their_results() {
 fn wrong_names_have_a_nearest() {
     let named = stable().with_states([("alpha", "rad"), ("q", "rad/s")]).unwrap();
     says("no state `alhpa`, perhaps `alpha`; there are alpha, q", named.of_states(&["alhpa"]));
-    says("the state `q` is asked for twice", named.of_states(&["q", "alpha", "q"]));
+    says("the state `q` is requested twice", named.of_states(&["q", "alpha", "q"]));
     says("no output `y2`, perhaps `y1`; there are y1", named.channel("y2", "u1"));
     says("no input `elevator`; there are u1", named.step_response("elevator", &[0.0]));
     says("no input `3`; there are u1", named.step_response(3, &[0.0]));
     says("expected 2 states, found 3", named.clone().with_states([("a", ""), ("b", ""), ("c", "")]));
     // Without the states of an aircraft, no mode has a name.
-    assert!(FlightModes::of(&named).unwrap().named().is_empty());
+    assert!(FlightModes::from_system(&named).unwrap().named_modes().is_empty());
 }
 
 /// Checks systems without states, inputs or outputs: results are empty, zero or an error, never a panic.
@@ -282,7 +282,7 @@ fn systems_without_states_inputs_or_outputs() {
 
 #[test]
 fn pictures_of_nothing() {
-    let text = "no picture: nothing to draw that is finite";
+    let text = "no picture: no finite values to draw";
     let nothing = stable().frequency_response(0, 0, &[]).unwrap();
     says(text, picture::bode(&nothing));
     says(text, picture::nyquist(&nothing));
@@ -320,16 +320,16 @@ fn linear_motions_off_a_steady_state_say_by_how_much() {
     // g / l sin 0.1 = 1.9587 rad/s².
     let mut beside = hanging.clone();
     beside.q[0] = 0.1;
-    let text = "not steady: `hinge''` is off by -1.959e0";
+    let text = "not steady: `hinge''` has a residual of -1.959e0";
     says(text, rest.linear_system(&beside));
     says(text, rest.measured_system(&beside));
     says("expected 0 states of first order, found 1", rest.second_order_form(&hanging));
     let mut late = hanging.clone();
     (late.q[0], late.v[1], late.u[0]) = (0.0, 0.0, 0.3);
-    says("not steady: `torque'` is off by 1.500e0", rest.linear_system(&late));
+    says("not steady: `torque'` has a residual of 1.500e0", rest.linear_system(&late));
     let tilted = equilibrium(&whole).inputs(["command"]).output("angle", 0.2);
     assert!(tilted.linear_system(&tilted.find().unwrap()).is_ok());
-    says("not steady: `angle` is off by -2.000e-1", tilted.linear_system(&hanging));
+    says("not steady: `angle` has a residual of -2.000e-1", tilted.linear_system(&hanging));
 }
 
 /// Checks the errors of wrongly posed trims: unknown names, repeated names, too few and too many unknowns.
@@ -349,17 +349,18 @@ fn problems_that_are_posed_wrongly_are_named() {
     let output_at_rest = || rest().inputs(["command"]).output("angle", 0.2);
     let angel = rest().inputs(["command"]).output("angel", 0.2);
     says("no output `angel`, perhaps `angle`; there are angle", angel.find());
-    says("the coordinate `hinge` is asked for twice", rest().coordinates(["hinge", "hinge"]).find());
-    says("the coordinate `hinge` is asked for twice", rest().hold(["hinge"]).hold(["hinge"]).find());
-    says("the input `command` is asked for twice", output_at_rest().inputs(["command"]).find());
-    says("the output `angle` is asked for twice", output_at_rest().output("angle", 0.3).find());
+    says("the coordinate `hinge` is requested twice", rest().coordinates(["hinge", "hinge"]).find());
+    says("the coordinate `hinge` is requested twice", rest().hold(["hinge"]).hold(["hinge"]).find());
+    says("the input `command` is requested twice", output_at_rest().inputs(["command"]).find());
+    says("the output `angle` is requested twice", output_at_rest().output("angle", 0.3).find());
     says(
-        "the velocity `hinge` is asked for twice",
+        "the velocity `hinge` is requested twice",
         rest().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
     );
     // Too many unknowns.
     says(
-        "the conditions leave hinge, torque', command open at hinge 0.000000, torque' 0.000000, command 0.000000: fix or hold one of them, add a condition, or take the nearest",
+        "the conditions do not determine hinge, torque', command at hinge 0.000000, torque' 0.000000, \
+         command 0.000000: fix or prescribe one of them, add a condition, or take the nearest",
         rest().inputs(["command"]).find(),
     );
     // Too few unknowns, and equal numbers of unknowns and conditions without a solution.

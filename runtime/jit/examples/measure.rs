@@ -1,7 +1,7 @@
 //! Times of loading and of calls.
 //!
-//! `cargo run --release -p linkwork-jit --example measure -- FILE [OPTIONS [NAME]]` prints how long loading and
-//! the code of each function take, how long a call takes, and how far the results are from those of the
+//! `cargo run --release -p linkwork-jit --example measure -- FILE [OPTIONS [NAME]]` prints how long loading
+//! and the code of each function take, how long a call takes, and how far the results are from those of the
 //! interpreter, relative to the largest one.
 
 use linkwork_jit::{Error, Loader, Robot};

@@ -79,8 +79,8 @@ impl Robot {
         Ok((DVector::from_vec(found), mode))
     }
 
-    /// Returns a configuration near `q` (`nq` entries) that satisfies the constraints; coordinates whose joint
-    /// velocities have the indices `held` do not change, see [`Constrained::assemble`].
+    /// Returns a configuration near `q` (`nq` entries) that satisfies the constraints; coordinates whose
+    /// joint velocities have the indices `held` do not change, see [`Constrained::assemble`].
     ///
     /// # Errors
     ///
@@ -137,8 +137,8 @@ impl Robot {
         Ok(self.ask(Question::Mode, q, held)?.1)
     }
 
-    /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric of
-    /// the kinetic energy.
+    /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric
+    /// of the kinetic energy.
     ///
     /// # Errors
     ///
@@ -147,8 +147,8 @@ impl Robot {
         Ok(self.ask(Question::Project, q, &[])?.0)
     }
 
-    /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the metric
-    /// of the kinetic energy.
+    /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the
+    /// metric of the kinetic energy.
     ///
     /// # Errors
     ///

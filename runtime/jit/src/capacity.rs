@@ -45,7 +45,8 @@ impl Robot {
     fn too_large(&self, what: &str, count: usize, most: usize) -> Error {
         let name = self.name();
         Error::Value(format!(
-            "`{name}` has {count} {what}, but loaded mechanisms move with at most {most}: compile it in a program of Rust, or export a library"
+            "`{name}` has {count} {what}, but loaded mechanisms move with at most {most}: compile it in a \
+             program of Rust, or export a library"
         ))
     }
 

@@ -36,7 +36,8 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
         (
             ConstrainedFunction::Accelerations,
             "forward_dynamics",
-            "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where friction jams.",
+            "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where \
+             friction jams.",
             vec![matrix("result", nv, 1)],
         ),
         (

@@ -71,7 +71,7 @@ impl Drawing {
 
 fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
     let symbol = |symbol: Symbol| {
-        let value = match Quantity::of(symbol) {
+        let value = match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => robot.parameter_values().get(k),
             Quantity::Given(Supplied::Position, k) => given.get(k),
             _ => None,
@@ -85,8 +85,8 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
     program.run_with(&symbol, &table)
 }
 
-/// Returns a piece of the compiler's drawing as one of the runtime's, whose numbers begin at the index `first`.
-/// Its texts live as long as the process.
+/// Returns a piece of the compiler's drawing as one of the runtime's, whose numbers begin at the index
+/// `first`. Its texts live as long as the process.
 pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
         name: interned(&piece.name),

@@ -35,17 +35,21 @@ impl Access {
     fn documentation(self, frame: &str) -> String {
         match self {
             Access::Placement => format!(
-                "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to those of the ground, and the position of the origin, m."
+                "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to \
+                 those of the ground, and the position of the origin, m."
             ),
             Access::Velocity => format!(
-                "Velocity of `{frame}` relative to the ground, in ground axes: of the origin, m/s, then angular, rad/s."
+                "Velocity of `{frame}` relative to the ground, in ground axes: of the origin, m/s, then \
+                 angular, rad/s."
             ),
             Access::Acceleration => format!(
-                "Acceleration of `{frame}` relative to the ground, in ground axes, without gravity: of the origin, m/s², then angular, rad/s²."
+                "Acceleration of `{frame}` relative to the ground, in ground axes, without gravity: of the \
+                 origin, m/s², then angular, rad/s²."
             ),
             Access::Jacobian => {
                 format!(
-                    "Jacobian of `{frame}`: its product with `v` is the velocity of the frame, but for motions prescribed in time."
+                    "Jacobian of `{frame}`: its product with `v` is the velocity of the frame, but for \
+                     motions prescribed in time."
                 )
             }
         }

@@ -382,7 +382,9 @@ impl Maker<'_, '_> {
     pub fn whole(&self, program: &Program) -> Program {
         let symbols = program.symbols();
         let takes = |called: Called| {
-            symbols.iter().any(|symbol| Argument::Called(called).index(Quantity::of(*symbol)).is_some())
+            symbols
+                .iter()
+                .any(|symbol| Argument::Called(called).index(Quantity::from_symbol(*symbol)).is_some())
         };
         let mut merged = Merged::default();
         for (called, id, quantity) in [

@@ -4,8 +4,8 @@ use crate::kernels::{self, Kernel, add_multiple};
 use linkwork_compiler::catalogue::InverseForm;
 use std::cmp::Ordering;
 
-/// Assembly of an inverse mass matrix from the outputs of a program: columns, then a row of further values for
-/// each velocity.
+/// Assembly of an inverse mass matrix from the outputs of a program: columns, then a row of further values
+/// for each velocity.
 pub(crate) struct Inverse {
     n: usize,
     trunk: Vec<usize>,
@@ -190,8 +190,8 @@ fn invert(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy
 mod tests {
     use super::*;
 
-    /// An arrow of a trunk of one velocity and two limbs of one: the columns of the limbs have the inverses of
-    /// their blocks, the borders the row of the trunk.
+    /// An arrow of a trunk of one velocity and two limbs of one: the columns of the limbs have the inverses
+    /// of their blocks, the borders the row of the trunk.
     #[test]
     fn arrows_are_inverted() {
         let form = InverseForm::BlockArrow { trunk: vec![0], limbs: vec![vec![1], vec![2]] };

@@ -25,7 +25,7 @@ impl Layout {
 
     /// Returns the input and the index in it of a symbol; `None` if no input contains it.
     pub fn locate(&self, symbol: Symbol) -> Option<(usize, usize)> {
-        match Quantity::of(symbol) {
+        match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some((0, k)),
             Quantity::Time => {
                 let at = self.arguments.iter().position(|argument| *argument == Argument::T)?;

@@ -118,7 +118,8 @@ macro_rules! methods {
                     methods!(@body $kind self $name state)
                 }
 
-                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") without allocation, matrices by columns one after the other.")]
+                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") \
+                    without allocation, matrices by columns one after the other.")]
                 ///
                 /// # Errors
                 ///
@@ -195,7 +196,8 @@ macro_rules! others {
                     self.vector(Method::$name, $state)
                 }
 
-                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") without allocation.")]
+                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") \
+                    without allocation.")]
                 ///
                 /// # Errors
                 ///

@@ -117,17 +117,17 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         &q.as_slice()[..self.robot().nq()]
     }
 
-    fn own<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
+    fn velocity<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
         &v.as_slice()[..self.robot().nv()]
     }
 
-    fn at<'a>(&self, t: f64, q: &'a SVector<f64, NQ>) -> State<'a> {
+    fn instant<'a>(&self, t: f64, q: &'a SVector<f64, NQ>) -> State<'a> {
         State { t: Some(t), q: self.configuration(q), ..State::default() }
     }
 
     fn state<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
         let [n, all] = self.velocities();
-        State { v: self.own(v), x: &v.as_slice()[n..all], ..self.at(t, q) }
+        State { v: self.velocity(v), x: &v.as_slice()[n..all], ..self.instant(t, q) }
     }
 
     /// Whether the robot has a function.
@@ -170,7 +170,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             let mut found = SMatrix::<f64, N, M>::zeros();
             let found = &mut found.as_mut_slice()[..rows * columns];
             self.call(f, state, found);
-            put(&mut all, rows, found);
+            write_block(&mut all, rows, found);
         }
         all
     }
@@ -202,7 +202,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 }
 
 /// Writes the columns of a block with these rows to the first rows and columns of a matrix.
-fn put<const N: usize, const M: usize>(all: &mut SMatrix<f64, N, M>, rows: usize, block: &[f64]) {
+fn write_block<const N: usize, const M: usize>(all: &mut SMatrix<f64, N, M>, rows: usize, block: &[f64]) {
     for (j, column) in block.chunks_exact(rows.max(1)).enumerate() {
         all.as_mut_slice()[j * N..j * N + rows].copy_from_slice(column);
     }
@@ -281,14 +281,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let n = self.robot().nv();
         let at = State { q: self.configuration(q), ..State::default() };
         let rates = |state: State<'_>, v: &SVector<f64, NV>| {
-            self.vector(Internal::RatesOfSpeeds, State { v: self.own(v), ..state }, n, *v)
+            self.vector(Internal::RatesOfSpeeds, State { v: self.velocity(v), ..state }, n, *v)
         };
         let way = rates(at, dv);
         let mut there = *q;
         crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
         crate::space::carry(charts, way.as_slice(), rates(at, v).as_slice(), out.as_mut_slice());
         let at = State { q: self.configuration(&there), ..State::default() };
-        self.vector(Internal::SpeedsOfRates, State { v: self.own(&out), ..at }, n, out)
+        self.vector(Internal::SpeedsOfRates, State { v: self.velocity(&out), ..at }, n, out)
     }
 }
 
@@ -318,8 +318,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         }
         let state = State {
             q: self.configuration(q),
-            v: self.own(dv),
-            other: [self.own(dv), &[], &[]],
+            v: self.velocity(dv),
+            other: [self.velocity(dv), &[], &[]],
             ..State::default()
         };
         self.vector(Internal::Integrate, state, nq, all)
@@ -358,8 +358,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         }
         let state = State {
             q: self.configuration(q),
-            v: self.own(v),
-            other: [self.own(dv), &[], &[]],
+            v: self.velocity(v),
+            other: [self.velocity(dv), &[], &[]],
             ..State::default()
         };
         self.vector(Internal::DisplacementRate, state, self.robot().nv(), *v)
@@ -367,7 +367,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 
     fn mass_matrix(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot().nv();
-        self.matrix(Internal::MassMatrix, self.at(t, q), (n, n), SMatrix::identity())
+        self.matrix(Internal::MassMatrix, self.instant(t, q), (n, n), SMatrix::identity())
     }
 
     fn bias_forces(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
@@ -384,7 +384,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        let state = State { a: self.own(a), ..self.state(t, q, v) };
+        let state = State { a: self.velocity(a), ..self.state(t, q, v) };
         let mut all = self.vector(Internal::InverseDynamics, state, self.robot().nv(), *a);
         self.add_free_rates(state, -1.0, &mut all);
         all
@@ -400,7 +400,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         if self.is_constrained() {
             return Constrained::<NQ, NV, NU, NV, NV>::constrained_dynamics(self, t, q, v, tau).0;
         }
-        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
         let mut all = self.vector(Internal::ForwardDynamics, state, self.robot().nv(), *tau);
         self.add_free_rates(state, 1.0, &mut all);
         all
@@ -448,7 +448,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 
     fn potential_energy(&self, t: f64, q: &SVector<f64, NQ>) -> f64 {
         let mut energy = [f64::NAN];
-        self.call(Internal::PotentialEnergy, self.at(t, q), &mut energy);
+        self.call(Internal::PotentialEnergy, self.instant(t, q), &mut energy);
         energy[0]
     }
 

@@ -111,7 +111,8 @@ impl Space {
         add(
             Kind::Integrate,
             "integrate",
-            "Configuration that is reached from `q` in one unit of time with the constant velocity `dv`; quaternions are normalised.",
+            "Configuration that is reached from `q` in one unit of time with the constant velocity `dv`; \
+             quaternions are normalised.",
             vec![Argument::Q, dv],
             nq,
         );

@@ -10,7 +10,7 @@ use crate::shared::Quantity;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, InQ, InV};
-use module::Module;
+use module::BinaryModule;
 use std::fmt::Write;
 
 /// State and inputs at the start of a simulation.
@@ -51,7 +51,7 @@ const SLIPPING: &str = "__constrained_dynamics";
 /// A module with the signatures of its functions as JSON.
 #[derive(Default)]
 struct WebModule {
-    module: Module,
+    module: BinaryModule,
     signatures: Vec<String>,
 }
 

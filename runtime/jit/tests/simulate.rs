@@ -159,7 +159,7 @@ fn contacts_agree_with_generated_rust() -> Result<(), Error> {
     close(&end.v, steps.v.as_slice(), 1e-9);
     let method = TimeStepping::step(2e-3).leapfrog();
     let steps = own.clone().method(method).finish().expect("it moves");
-    let end = run(Method::named("time_stepping_leapfrog", Some(2e-3))?).finish()?;
+    let end = run(Method::from_name("time_stepping_leapfrog", Some(2e-3))?).finish()?;
     close(&end.q, steps.q.as_slice(), 1e-9);
     close(&end.v, steps.v.as_slice(), 1e-9);
     let events = own.method(EventDriven::new().tolerance(1e-9, 1e-9)).finish().expect("it moves");

@@ -17,7 +17,7 @@ pub struct Failure(pub String);
 
 impl Failure {
     /// Creates a failure with the message of an error.
-    pub fn of(error: impl Display) -> Failure {
+    pub fn new(error: impl Display) -> Failure {
         Failure(error.to_string())
     }
 
@@ -25,7 +25,7 @@ impl Failure {
     pub(crate) fn of_panic(panic: &(dyn Any + Send)) -> Failure {
         let text = panic.downcast_ref::<&str>().copied();
         let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-        Failure(format!("Linkwork made a mistake: {}", text.unwrap_or("a panic")))
+        Failure(format!("internal error: {}", text.unwrap_or("a panic")))
     }
 }
 
@@ -74,7 +74,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
     let fit = arguments.len() == f.arguments.len() && results.len() == f.results.len();
     let fit = fit && f.arguments.len() <= MAX_ARGUMENTS && f.results.len() <= MAX_ARGUMENTS;
     if !fit || lengths.into_iter().any(|(one, all)| one.checked_mul(states) != Some(all)) {
-        return Err(Failure::of("the arrays do not have the lengths that the function needs"));
+        return Err(Failure::new("the arrays do not have the lengths that the function needs"));
     }
     if states == 1 {
         let (arguments, mut results) = (arguments, results);

@@ -26,7 +26,7 @@ pub trait Library: Sized + Sync + 'static {
     const FUNCTIONS: &'static [Function<Self>];
 
     /// Creates the mechanism with these parameters, in the order of the description.
-    fn with(parameters: &[Self::Number]) -> Self;
+    fn from_parameters(parameters: &[Self::Number]) -> Self;
 
     /// Checks whether the parameters are admissible.
     ///

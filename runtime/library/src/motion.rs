@@ -93,7 +93,7 @@ where
         | Way::TimeStepping(_)
         | Way::TimeSteppingMidpoint(_)
         | Way::TimeSteppingLeapfrog(_) => {
-            Err(Failure::of("the mechanism has no contacts: choose a method for smooth motions"))
+            Err(Failure::new("the mechanism has no contacts: choose a method for smooth motions"))
         }
     }
 }
@@ -116,7 +116,7 @@ where
         Way::TimeStepping(h) => go(m, motion, TimeStepping::step(h)),
         Way::TimeSteppingMidpoint(h) => go(m, motion, TimeStepping::step(h).midpoint()),
         Way::TimeSteppingLeapfrog(h) => go(m, motion, TimeStepping::step(h).leapfrog()),
-        _ => Err(Failure::of(
+        _ => Err(Failure::new(
             "the mechanism has contacts: choose `event_driven` or a method whose name begins with `time_stepping`",
         )),
     }
@@ -180,7 +180,7 @@ where
 {
     let rows = samples.chunks_exact_mut(1 + NQ + NV + NU);
     for (row, sample) in rows.zip(run) {
-        let sample = sample.map_err(Failure::of)?;
+        let sample = sample.map_err(Failure::new)?;
         let numbers = sample.q.iter().chain(&sample.v).chain(&sample.u);
         let numbers = std::iter::once(&sample.t).chain(numbers);
         row.iter_mut().zip(numbers).for_each(|(place, number)| *place = *number);

@@ -287,13 +287,13 @@ tuples! {
 
 impl<N, A: Results<N>, E: Display> Results<N> for Result<A, E> {
     fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.map_err(Failure::of)?.give(to)
+        self.map_err(Failure::new)?.give(to)
     }
 }
 
 impl<N, A: Results<N>> Results<N> for Option<A> {
     fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.ok_or_else(|| Failure::of("there is no frame with this number"))?.give(to)
+        self.ok_or_else(|| Failure::new("there is no frame with this number"))?.give(to)
     }
 }
 

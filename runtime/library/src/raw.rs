@@ -72,11 +72,11 @@ pub unsafe fn call<M: Library>(
 ) -> c_int {
     ended(catch_unwind(AssertUnwindSafe(|| {
         let Some(f) = M::FUNCTIONS.get(function) else {
-            return Err(Failure::of("there is no function with this number"));
+            return Err(Failure::new("there is no function with this number"));
         };
         let fits = |one: &usize| one.checked_mul(states).is_some_and(|all| all < isize::MAX as usize / 8);
         if !f.arguments.iter().chain(f.results).all(fits) {
-            return Err(Failure::of("there are too many states"));
+            return Err(Failure::new("there are too many states"));
         }
         // SAFETY: guaranteed by the caller.
         let (m, arguments, results) = unsafe {
@@ -84,7 +84,7 @@ pub unsafe fn call<M: Library>(
             let given = f.arguments.iter().zip(own).map(|(one, from)| numbers(*from, one * states));
             let own = numbers(results, f.results.len());
             let wanted = f.results.iter().zip(own).map(|(one, to)| places(*to, one * states));
-            (M::with(numbers(parameters, M::PARAMETERS)), given.collect(), wanted.collect())
+            (M::from_parameters(numbers(parameters, M::PARAMETERS)), given.collect(), wanted.collect())
         };
         crate::call(&m, f, Batch { arguments, results, states, threads })
     })))
@@ -98,7 +98,7 @@ pub unsafe fn call<M: Library>(
 pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
     ended(catch_unwind(AssertUnwindSafe(|| {
         // SAFETY: guaranteed by the caller.
-        M::with(unsafe { numbers(parameters, M::PARAMETERS) }).check()
+        M::from_parameters(unsafe { numbers(parameters, M::PARAMETERS) }).check()
     })))
 }
 
@@ -163,7 +163,7 @@ pub unsafe fn simulate<M: Library>(
         *count = 0;
         let width = 1 + nq + nv + nu;
         (
-            M::with(numbers(parameters, M::PARAMETERS)),
+            M::from_parameters(numbers(parameters, M::PARAMETERS)),
             settings,
             numbers(q, nq),
             numbers(v, nv),
@@ -181,7 +181,7 @@ pub unsafe fn simulate<M: Library>(
             // SAFETY: guaranteed by the caller.
             match unsafe { control(settings.user, t, q.as_ptr(), v.as_ptr(), u.as_mut_ptr()) } {
                 0 => Ok(()),
-                _ => Err(Failure::of("the controller ended the run")),
+                _ => Err(Failure::new("the controller ended the run")),
             }
         };
         let mut motion = Motion {
@@ -243,7 +243,7 @@ pub unsafe fn roll_out<M: Library>(
         let most = isize::MAX as usize / 8;
         let Some(rows) = rows.filter(|rows| rows.checked_mul(nq.max(nv).max(nu)).is_some_and(|n| n < most))
         else {
-            return Err(Failure::of("there are too many states and steps"));
+            return Err(Failure::new("there are too many states and steps"));
         };
         let length = match inputs_of {
             1 => steps * nu,
@@ -253,7 +253,7 @@ pub unsafe fn roll_out<M: Library>(
         // SAFETY: guaranteed by the caller.
         let (m, q, v, inputs) = unsafe {
             (
-                M::with(numbers(parameters, M::PARAMETERS)),
+                M::from_parameters(numbers(parameters, M::PARAMETERS)),
                 places(q, rows * nq),
                 places(v, rows * nv),
                 numbers(inputs, length),
@@ -276,7 +276,7 @@ fn way<N>(method: &CStr, setting: N) -> Result<Way<N>, Failure> {
         "time_stepping_leapfrog" => Way::TimeSteppingLeapfrog(setting),
         other => {
             return Err(Failure(format!(
-                "there is no method `{other}`, but dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping, time_stepping_midpoint, time_stepping_leapfrog"
+                "there is no method `{other}`; the methods are dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping, time_stepping_midpoint, time_stepping_leapfrog"
             )));
         }
     })

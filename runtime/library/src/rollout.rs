@@ -124,7 +124,7 @@ fn shared_out<N: Number>(
         (_, false) => of_u,
     };
     if q.len() != states * of_q || v.len() != states * of_v || inputs.len() != needed {
-        return Err(Failure::of("the arrays do not have the lengths that the rollout needs"));
+        return Err(Failure::new("the arrays do not have the lengths that the rollout needs"));
     }
     let own_inputs = own_inputs && !inputs.is_empty();
     let plan = Plan { own_inputs, ..plan };
@@ -185,7 +185,7 @@ where
             match discrete::step(m, &method, time(&plan, step), &q, &v, &u) {
                 Ok(end) => (q, v) = end,
                 Err(error) => {
-                    failed.get_or_insert((part.first + state, Failure::of(error)));
+                    failed.get_or_insert((part.first + state, Failure::new(error)));
                     all_q[(step + 1) * NQ..].fill(N::NAN);
                     all_v[(step + 1) * NV..].fill(N::NAN);
                     break;
@@ -223,8 +223,8 @@ where
         let one = batch::Rollout::new(Rk4::step(plan.step), 1).from_time(time(&plan, step));
         if let Err(error) = lanes.roll_out(&one, &mut q, &mut v, |_, _, _, _| u, unwatched) {
             let (state, why) = match error {
-                batch::Error::Motion { state, source, .. } => (state, Failure::of(source)),
-                other => (0, Failure::of(other)),
+                batch::Error::Motion { state, source, .. } => (state, Failure::new(source)),
+                other => (0, Failure::new(other)),
             };
             failed.get_or_insert((part.first + state, why));
         }

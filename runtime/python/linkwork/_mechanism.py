@@ -347,7 +347,7 @@ class Mechanism(metaclass=_Kind):
         if control is not None and not self.nu:
             raise TypeError(f"{self.name} has no inputs that `control` could give")
         if period is not None and control is None:
-            raise TypeError("`period` is the time between calls of `control`, and there is none; samples stand `every` so often")
+            raise TypeError("`period` is the time between calls of `control`, and there is none; `every` is the time between samples")
         method, setting = self._method(method, tolerance, step)
         constant = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
 
@@ -502,7 +502,7 @@ class Mechanism(metaclass=_Kind):
             if "constraint_residuals" in self._functions:
                 off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
                 if not off <= 1e-6:
-                    raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
+                    raise Error(f"the configuration violates the constraints by {off:.3g} (m, rad): `assemble` projects it onto them")
             if at_v.any():
                 raise Error("linear systems of mechanisms with constraints are about states at rest")
             a, b, coordinates, speeds = at_rest(self, time, at_q, u)

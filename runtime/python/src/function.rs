@@ -104,19 +104,23 @@ pub struct BoundFunction {
 const FRAMES: [(&str, &str); 4] = [
     (
         "frame_placement",
-        "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, m.",
+        "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, \
+         m.",
     ),
     (
         "frame_velocity",
-        "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground axes.",
+        "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground \
+         axes.",
     ),
     (
         "frame_acceleration",
-        "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in ground axes; without gravity.",
+        "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in \
+         ground axes; without gravity.",
     ),
     (
         "frame_jacobian",
-        "Jacobian of a frame: its product with `v` is the velocity of the frame, except for motions prescribed in time.",
+        "Jacobian of a frame: its product with `v` is the velocity of the frame, except for motions \
+         prescribed in time.",
     ),
 ];
 
@@ -248,7 +252,8 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
     }
     let step = Function::new(
         "step",
-        "One step of the classical Runge–Kutta method, `h` seconds long, under inputs `u` that are constant: the state after it.",
+        "One step of the classical Runge–Kutta method, `h` seconds long, under inputs `u` that are constant: \
+         the state after it.",
         arguments.clone(),
         state,
         Kind::Step,
@@ -256,7 +261,9 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
     let transition = || {
         Function::new(
             "transition",
-            "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration and velocity after the step by those before it and by the inputs. Changes of configurations are displacements, as `integrate` takes them.",
+            "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration \
+             and velocity after the step by those before it and by the inputs. Changes of configurations are \
+             displacements, as `integrate` takes them.",
             arguments,
             jacobians,
             Kind::Transition,
@@ -276,14 +283,16 @@ fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
     [
         Function::new(
             "assemble",
-            "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do not change.",
+            "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do \
+             not change.",
             list(&[&q, &held]),
             result(nq),
             Kind::Constraint(OnConstraints::Assemble),
         ),
         Function::new(
             "project_configuration",
-            "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic energy.",
+            "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic \
+             energy.",
             list(&[&q]),
             result(nq),
             Kind::Constraint(OnConstraints::ProjectConfiguration),
@@ -442,7 +451,8 @@ impl Function {
     #[pyo3(signature = (*_given, **_named))]
     fn __call__(&self, _given: &Bound<'_, PyTuple>, _named: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         Err(pyo3::exceptions::PyTypeError::new_err(format!(
-            "{} is a function of a mechanism, not of its class: make one first, with values of its parameters",
+            "{} is a function of a mechanism, not of its class: make one first, with values of its \
+             parameters",
             self.signature.name
         )))
     }

@@ -29,7 +29,7 @@ pub fn simulate<'py>(
     control: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, Option<String>, Option<PyErr>)> {
     let robot = &robot.robot;
-    let method = Method::named(method, Some(setting)).map_err(|error| exception(py, &error, None))?;
+    let method = Method::from_name(method, Some(setting)).map_err(|error| exception(py, &error, None))?;
     let overlaps = match method {
         Method::TimeStepping(_) | Method::TimeSteppingMidpoint(_) | Method::TimeSteppingLeapfrog(_) => {
             Overlaps::Keep

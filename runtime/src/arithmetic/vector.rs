@@ -33,13 +33,13 @@ impl<A, T, const N: usize> Vector<A, T, N> {
 
 impl<A, T: Copy, const N: usize> Vector<A, T, N> {
     #[inline(always)]
-    pub(crate) fn of(numbers: [T; N]) -> Self {
+    pub(crate) fn from_array(numbers: [T; N]) -> Self {
         Self(Lanes(numbers), PhantomData)
     }
 
     #[inline]
     pub(crate) fn splat(x: T) -> Self {
-        Self::of([x; N])
+        Self::from_array([x; N])
     }
 
     #[inline(always)]
@@ -57,7 +57,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
     /// every copy needs stack.
     #[inline(always)]
     pub fn lane<const K: usize>(&self) -> T {
-        const { assert!(K < N, "there are not so many lanes") };
+        const { assert!(K < N, "there are fewer lanes") };
         self.0.0[K]
     }
 
@@ -73,7 +73,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         for (x, place) in b.numbers().iter().zip(places) {
             *place = *x;
         }
-        Vector::of(numbers)
+        Vector::from_array(numbers)
     }
 
     /// Returns the first `M` lanes. Does not compile if there are fewer.
@@ -122,7 +122,7 @@ macro_rules! operators {
             #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn $function(self, other: Self) -> Self {
-                Self::of(A::$function(self.numbers(), other.numbers()))
+                Self::from_array(A::$function(self.numbers(), other.numbers()))
             }
         }
     )+};
@@ -141,6 +141,6 @@ impl<A: Registers, T: Real, const N: usize> Neg for Vector<A, T, N> {
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
-        Self::of(A::neg(self.numbers()))
+        Self::from_array(A::neg(self.numbers()))
     }
 }

@@ -99,7 +99,7 @@ where
 
     #[inline(always)]
     fn features(&self) -> Features {
-        Features::of::<Self, Lanes<M::Scalar, L>, NQ, NV, NU>()
+        Features::of_mechanism::<Self, Lanes<M::Scalar, L>, NQ, NV, NU>()
     }
 
     /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.

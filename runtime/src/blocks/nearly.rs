@@ -16,7 +16,7 @@ pub struct NearlyIdentity<'a, T, const N: usize> {
 
 impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Finds the range of columns in which a matrix differs from the identity.
-    pub fn of(matrix: &'a SMatrix<T, N, N>) -> Self {
+    pub fn new(matrix: &'a SMatrix<T, N, N>) -> Self {
         let (mut first, mut end) = (N, 0);
         for (j, column) in matrix.data.0.iter().enumerate() {
             // Comparing without early exit lets a column be compared at once.
@@ -35,7 +35,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     }
 
     /// Returns the matrix with a known range in which it differs from the identity.
-    pub fn known(matrix: &'a SMatrix<T, N, N>, (first, end): (usize, usize)) -> Self {
+    pub fn with_range(matrix: &'a SMatrix<T, N, N>, (first, end): (usize, usize)) -> Self {
         Self { matrix, first, end }
     }
 

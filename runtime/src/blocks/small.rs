@@ -2,7 +2,7 @@
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
-use crate::multiplication::{part, put};
+use crate::multiplication::{part, write_entries};
 
 /// Maximum number of rows and columns of a small matrix: it occupies half of 32 registers of four numbers.
 pub(super) const MOST: usize = 8;
@@ -38,7 +38,7 @@ fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usiz
             }
         }
         for (v, entry) in entries.iter().enumerate() {
-            put(entry, column, 4 * v);
+            write_entries(entry, column, 4 * v);
         }
     }
 }

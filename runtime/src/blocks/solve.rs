@@ -4,7 +4,7 @@ use super::{transposed, zeros};
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled};
-use crate::multiplication::{part, put, registers_of_eight, registers_of_four};
+use crate::multiplication::{part, registers_of_eight, registers_of_four, write_entries};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Returns `L` (below the diagonal) and `1/D` of the factorisation `H + r = L D Lᵀ`, with ones on the
@@ -121,7 +121,7 @@ impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
             }
         }
         for (column, x) in out.iter_mut().zip(&x) {
-            put(x, column, from);
+            write_entries(x, column, from);
         }
     }
 }

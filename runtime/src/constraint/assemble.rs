@@ -1,6 +1,6 @@
 //! Assembly: search for a configuration that satisfies the constraints, and its assembly mode.
 
-use super::{ConstraintError, complete, largest, near, off};
+use super::{ConstraintError, complete, is_acceptable, largest, off};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -119,7 +119,7 @@ fn unwind<
     guess: &SVector<T, NQ>,
     q: SVector<T, NQ>,
 ) -> SVector<T, NQ> {
-    let without = |mut q: SVector<T, NQ>, angles: &[usize]| {
+    let unwind = |mut q: SVector<T, NQ>, angles: &[usize]| {
         for k in angles {
             let whole = turns(guess, &q, *k).round();
             if let Some(angle) = q.get_mut(*k) {
@@ -128,14 +128,15 @@ fn unwind<
         }
         q
     };
-    let holds =
-        |q: &SVector<T, NQ>| largest(&(loops.residuals)(q)).is_ok_and(|(_, residual)| near(residual, q));
-    let all = without(q, loops.angles);
+    let holds = |q: &SVector<T, NQ>| {
+        largest(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_acceptable(residual, q))
+    };
+    let all = unwind(q, loops.angles);
     if all == q || holds(&all) {
         return all;
     }
     loops.angles.chunks(1).fold(q, |q, angle| {
-        let next = without(q, angle);
+        let next = unwind(q, angle);
         if holds(&next) { next } else { q }
     })
 }
@@ -157,7 +158,7 @@ fn descend<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let q = least_violation(loops, q, held)?;
     let (worst, size) = largest(&(loops.residuals)(&q))?;
-    near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+    is_acceptable(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
 }
 
 /// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
@@ -203,7 +204,7 @@ pub fn least_violation<
                 damping *= constant(0.1);
             }
             // Only rounding errors remain.
-            None if near(size, &q) => break,
+            None if is_acceptable(size, &q) => break,
             None => damping *= constant(10.0),
         }
         if damping > constant(1e12) {

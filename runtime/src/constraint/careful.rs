@@ -3,7 +3,7 @@
 
 mod passing;
 
-use super::span::{Metric, Span, at, dot, norm, orthogonal, rounding};
+use super::span::{Metric, Span, dot, entry_or_zero, norm, orthogonal, rounding};
 use super::{Constrained, Solution};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -50,7 +50,7 @@ pub fn careful_dynamics<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    let system = System::of(mechanism, t, (q, v), tau);
+    let system = System::at_state(mechanism, t, (q, v), tau);
     let (least, regular) = system.solve(structure, zone(), Weak::Dropped);
     if regular {
         return least;
@@ -116,12 +116,14 @@ where
     let left = mechanism.constraint_residuals(t, q);
     // Whether the bias is the residual of the configuration, which is to be projected, and not that of a
     // rate.
-    let apart = (0..NH).fold(T::zero(), |most, k| most.max((at(&left.data.0[0], k) - at(bias, k)).abs()));
+    let apart = (0..NH).fold(T::zero(), |most, k| {
+        most.max((entry_or_zero(&left.data.0[0], k) - entry_or_zero(bias, k)).abs())
+    });
     let is_place = size(&left) > T::zero() && apart <= size(&left) * constant(0.5);
     // If positions have the error ε, a row of relative magnitude σ has a direction error of ε / σ².
     let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
     let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
-    let turned = if is_place && gap > root { T::zero() } else { turned(&left) };
+    let turned = if is_place && gap > root { T::zero() } else { minimum_magnitude(&left) };
     let rounded = if is_place || gap > root { T::zero() } else { known / gap };
     let least = root.max(rounded).max(turned);
     let weak = if least < zone() { Weak::Down(least) } else { Weak::Dropped };
@@ -138,7 +140,7 @@ where
 /// Returns the minimum relative magnitude near a singular configuration of rows with known directions, for
 /// the residuals `left`. With a residual `r`, the configuration is off its branch by `r` / σ. Directions
 /// rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
-pub(super) fn turned<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
+pub(super) fn minimum_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
 }
 
@@ -166,10 +168,11 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let still = System { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
-    let metric = Metric::of(&still.loaded(structure).0);
+    let metric = Metric::new(&still.loaded(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
-    let length =
-        |j: &SMatrix<T, NC, NV>, k: usize| norm(&metric.half(core::array::from_fn(|i| at(&j.data.0[i], k))));
+    let length = |j: &SMatrix<T, NC, NV>, k: usize| {
+        norm(&metric.half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
+    };
     // A configuration is nearly singular if a few such steps would rotate the constraints more than they
     // differ from dependent ones. The rotation is bounded, because a step that rotates all constraints is
     // merely long.
@@ -180,16 +183,16 @@ where
         if own > T::zero() { most.max(length(&change, k) / own) } else { most }
     });
     // In single precision, rows of this magnitude are dropped anyway.
-    let least = far::<T>().min(constant(0.07));
+    let least = safe_distance::<T>().min(constant(0.07));
     let clear = (turn * steps).min(most).max(least);
-    let mut span = Span::of(&metric, &jacobian, &structure.groups);
+    let mut span = Span::new(&metric, &jacobian, &structure.groups);
     span.extend(clear, structure.rank);
     span.rank < structure.rank
 }
 
 /// Returns the distance from a singular configuration, m or rad, at which the errors of rounding and of
 /// interpolation are about equal.
-fn far<T: Real>() -> T {
+fn safe_distance<T: Real>() -> T {
     constant::<T>(6.0) * zone()
 }
 
@@ -224,7 +227,7 @@ struct System<T, const NV: usize, const NC: usize> {
 
 impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
     /// Returns the equations of a mechanism at a state.
-    fn of<M, const NQ: usize, const NU: usize, const NH: usize>(
+    fn at_state<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -233,12 +236,12 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        Self::under(mechanism, t, (q, v), (tau - mechanism.bias_forces(t, q, v)).data.0[0])
+        Self::with_force(mechanism, t, (q, v), (tau - mechanism.bias_forces(t, q, v)).data.0[0])
     }
 
     /// Returns the equations of a mechanism at a state with the total force `force`, which replaces the bias
     /// forces.
-    fn under<M, const NQ: usize, const NU: usize, const NH: usize>(
+    fn with_force<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -273,8 +276,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         weak: Weak<T, NV>,
     ) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded(structure);
-        let metric = Metric::of(&mass);
-        let mut span = Span::of(&metric, &self.jacobian, &structure.groups);
+        let metric = Metric::new(&mass);
+        let mut span = Span::new(&metric, &self.jacobian, &structure.groups);
         span.extend(clear, structure.rank);
         let regular = span.rank >= structure.rank;
         match weak {
@@ -294,7 +297,7 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             ),
             _ => (free, self.bias),
         };
-        let triangle = Triangle::of(&span);
+        let triangle = Triangle::new(&span);
         let known = triangle.particular(&span, &bias);
         let mut lacking = [T::zero(); NC];
         for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
@@ -318,10 +321,10 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
         {
             for i in 0..NV {
-                let heavy = at(&self.jacobian.data.0[i], row) * weight;
+                let heavy = entry_or_zero(&self.jacobian.data.0[i], row) * weight;
                 force[i] -= heavy * *bias;
                 for j in 0..NV {
-                    mass[j][i] += heavy * at(&self.jacobian.data.0[j], row);
+                    mass[j][i] += heavy * entry_or_zero(&self.jacobian.data.0[j], row);
                 }
             }
         }
@@ -339,13 +342,13 @@ struct Triangle<T, const NC: usize> {
 }
 
 impl<T: Real, const NC: usize> Triangle<T, NC> {
-    fn of<const NV: usize>(span: &Span<T, NV, NC>) -> Self {
+    fn new<const NV: usize>(span: &Span<T, NV, NC>) -> Self {
         let rank = span.rank;
         let full = span.columns.iter().all(|column| column.length == T::zero() || column.step.is_some());
         if full {
             return Self { full, base: [[T::zero(); NC]; NC], upper: [[T::zero(); NC]; NC] };
         }
-        let mut base = core::array::from_fn(|j| span.columns.map(|c| at(&c.x, j) * c.length));
+        let mut base = core::array::from_fn(|j| span.columns.map(|c| entry_or_zero(&c.x, j) * c.length));
         let upper = orthogonal(&mut base, rank);
         Self { full, base, upper }
     }
@@ -362,7 +365,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
                 let sum = -dot(&self.base[j], bias);
                 z[j] = (j + 1..NC)
                     .filter(|i| *i < rank)
-                    .fold(sum, |sum, i| sum - at(&self.upper[j], i) * at(&z, i))
+                    .fold(sum, |sum, i| sum - entry_or_zero(&self.upper[j], i) * entry_or_zero(&z, i))
                     / self.upper[j][j];
             }
             return z;
@@ -370,9 +373,9 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         for step in 0..NC {
             let Some((k, pivot)) = span.pivot(step) else { continue };
             let sum = pivot.x.iter().zip(&z).take(step);
-            let rest = sum.fold(-at(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
+            let rest = sum.fold(-entry_or_zero(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
             if let Some(slot) = z.get_mut(step) {
-                *slot = rest / at(&pivot.x, step);
+                *slot = rest / entry_or_zero(&pivot.x, step);
             }
         }
         z
@@ -402,7 +405,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         }
         for step in (0..NC).rev() {
             let Some((k, pivot)) = span.pivot(step) else { continue };
-            let share = at(&rest, step) / at(&pivot.x, step);
+            let share = entry_or_zero(&rest, step) / entry_or_zero(&pivot.x, step);
             rest.iter_mut().zip(&pivot.x).take(step).for_each(|(rest, x)| *rest -= share * *x);
             if let Some(slot) = lambda.get_mut(k) {
                 *slot = share / pivot.length;

@@ -1,7 +1,7 @@
 //! Completion of velocities and accelerations: some entries are prescribed, and the others follow from the
 //! constraints. Also the drive forces for such a motion.
 
-use super::{Constrained, ConstraintError, farthest, largest, near, reach, rounding};
+use super::{Constrained, ConstraintError, farthest, is_acceptable, largest, reach, rounding};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
@@ -15,8 +15,9 @@ pub(super) fn check<const NV: usize>(held: &[usize]) -> Result<(), ConstraintErr
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
 
-/// Corrects the entries of `x` that are not `held` until the `gap` of the constraints is exact, with the least
-/// change in the metric of the mass matrix. Returns `x`, and the index and magnitude of its largest gap.
+/// Corrects the entries of `x` that are not `held` until the `gap` of the constraints is exact, with the
+/// least change in the metric of the mass matrix. Returns `x`, and the index and magnitude of its largest
+/// gap.
 fn corrected<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
@@ -60,10 +61,13 @@ where
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let rates = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
     let (v, (worst, size)) = corrected(&mass, &jacobian, held, *v, rates, |size, v| size <= rounding(v))?;
-    if near(size, &v) {
+    if is_acceptable(size, &v) {
         return Ok(v);
     }
-    Err(ConstraintError::Velocity { constraint: named::<M, NQ, NV, NU, NH, NC>(worst), rate: to_f64(size) })
+    Err(ConstraintError::Velocity {
+        constraint: constraint_name::<M, NQ, NV, NU, NH, NC>(worst),
+        rate: to_f64(size),
+    })
 }
 
 /// Returns the acceleration with the entries `held` of `a` that fulfils the constraints.
@@ -96,12 +100,12 @@ where
     if size <= epsilon::<T>().sqrt() * scale(&a) {
         return Ok(a);
     }
-    let constraint = named::<M, NQ, NV, NU, NH, NC>(worst);
+    let constraint = constraint_name::<M, NQ, NV, NU, NH, NC>(worst);
     Err(ConstraintError::Acceleration { constraint, acceleration: to_f64(size) })
 }
 
 /// Returns the name of a constraint.
-fn named<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn constraint_name<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     index: usize,
 ) -> &'static str
 where
@@ -132,14 +136,14 @@ where
 {
     check::<NV>(driven)?;
     let (worst, rate) = largest(&mechanism.constraint_rates(t, q, v))?;
-    let named = named::<M, NQ, NV, NU, NH, NC>;
-    if !near(rate, v) {
-        return Err(ConstraintError::Velocity { constraint: named(worst), rate: to_f64(rate) });
+    let name = constraint_name::<M, NQ, NV, NU, NH, NC>;
+    if !is_acceptable(rate, v) {
+        return Err(ConstraintError::Velocity { constraint: name(worst), rate: to_f64(rate) });
     }
     let (jacobian, bias) = (mechanism.constraint_jacobian(t, q), mechanism.constraint_bias(t, q, v));
     let (worst, left) = largest(&(jacobian * a + bias))?;
     if left > epsilon::<T>().sqrt() * reach(&bias).max(reach(a) * farthest(&jacobian)) {
-        return Err(ConstraintError::Acceleration { constraint: named(worst), acceleration: to_f64(left) });
+        return Err(ConstraintError::Acceleration { constraint: name(worst), acceleration: to_f64(left) });
     }
     let forces = mechanism.inverse_dynamics(t, q, v, a);
     let is_driven = |i: usize| driven.contains(&i);
@@ -291,7 +295,7 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
     let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
     // A = L D Lᵀ. Motions without inertia keep their value.
     let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
-    let over = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
+    let quotient = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
     for i in 0..N {
         for j in 0..=i {
             let own = dot(&heavy[i], &basis[j]);
@@ -299,13 +303,13 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
             if i == j {
                 pivots[i] = left;
             } else {
-                lower[i][j] = over(left, pivots[j]);
+                lower[i][j] = quotient(left, pivots[j]);
             }
         }
         rest[i] = (0..i).fold(rest[i], |sum, k| sum - lower[i][k] * rest[k]);
     }
     for i in (0..N).rev() {
-        rest[i] = (i + 1..N).fold(over(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
+        rest[i] = (i + 1..N).fold(quotient(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
         add(y, rest[i], &basis[i]);
     }
 }

@@ -19,7 +19,8 @@ pub type MultiplierDerivatives<T, const NV: usize, const NC: usize> =
 /// is as in [`Constrained`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives of constrained motion",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
+    note = "enable them with the option: `#[mechanism(…, derivatives)]`; mechanisms without constraints and \
+            those with contacts that slip have none"
 )]
 pub trait ConstrainedDerivatives<
     const NQ: usize,
@@ -121,7 +122,7 @@ where
     let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
     let parts = m.equation_derivatives(t, q, v, &a, &lambda);
     let mass = m.mass_matrix(t, q);
-    let of = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
+    let columns = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
         let (mut changes, mut multipliers) = (zeros(), zeros());
         for j in 0..NV {
             let p = -column(forces, j);
@@ -134,9 +135,9 @@ where
         (changes, multipliers)
     };
     let by = [
-        of(&parts.forces_by_q, &parts.accelerations_by_q),
-        of(&parts.forces_by_v, &parts.accelerations_by_v),
-        of(&-SMatrix::identity(), &SMatrix::zeros()),
+        columns(&parts.forces_by_q, &parts.accelerations_by_q),
+        columns(&parts.forces_by_v, &parts.accelerations_by_v),
+        columns(&-SMatrix::identity(), &SMatrix::zeros()),
     ];
     Solved { a, lambda, by }
 }

@@ -76,7 +76,7 @@ pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
 
 impl<T: Real, const NV: usize, const NC: usize> MotionDerivatives<T, NV, NC> {
     /// Returns the derivatives with the inputs' forces included; these forces may depend on the state.
-    pub fn under<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
+    pub fn with_inputs<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
         let subtract = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
             for (entry, other) in from.iter_mut().flatten().zip(what.iter().flatten()) {
                 *entry -= *other;

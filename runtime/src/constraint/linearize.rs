@@ -98,8 +98,8 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         for k in self.holonomic..NC {
             scale_row(&mut on_configurations, k, T::zero());
         }
-        let positions = Dependence::of(on_configurations, zero, self.preferred);
-        let speeds = Dependence::of(self.jacobian, -self.rates_by_q, self.preferred);
+        let positions = Dependence::new(on_configurations, zero, self.preferred);
+        let speeds = Dependence::new(self.jacobian, -self.rates_by_q, self.preferred);
         let (coordinates, shape) = positions.free::<NP>()?;
         let (free, gamma) = speeds.free::<NS>()?;
         let carried = speeds.particular() * shape;
@@ -139,7 +139,7 @@ struct Dependence<T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
-    fn of(mut left: SMatrix<T, NC, NV>, mut right: SMatrix<T, NC, NV>, preferred: &[usize]) -> Self {
+    fn new(mut left: SMatrix<T, NC, NV>, mut right: SMatrix<T, NC, NV>, preferred: &[usize]) -> Self {
         let mut pivots = [None; NC];
         let small = constant::<T>(1e6) * epsilon() * left.amax();
         for _ in 0..NC {

@@ -15,7 +15,8 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 /// [`Constrained`](super::Constrained).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives of constrained motion",
-    note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
+    note = "enable them with the option: `#[mechanism(…, second_derivatives)]`; mechanisms without \
+            constraints and those with contacts that slip have none"
 )]
 pub trait ConstrainedSecondDerivatives<
     const NQ: usize,
@@ -125,12 +126,12 @@ where
     let (w, z) = adjoint(m, t, q, factors);
     let none = SVector::zeros();
     let found = m.equation_second_derivatives(t, q, v, &solved.a, &solved.lambda, &-w, &-z, &none);
-    let along = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {
+    let mixed_terms = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {
         let mut sum = product(&found.qa, a);
         add_product(&mut sum, &found.q_lambda, lambda);
         sum
     };
-    let [by_q, by_v, by_tau] = solved.by.each_ref().map(along);
+    let [by_q, by_v, by_tau] = solved.by.each_ref().map(mixed_terms);
     (with_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
 }
 

@@ -21,8 +21,8 @@ fn noise<T: Real>() -> T {
 
 /// Returns the sum over the group of a constraint.
 fn of_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl Fn(usize) -> T) -> T {
-    let own = |i: &usize| groups.get(*i) == groups.get(k);
-    (0..NC).filter(own).fold(T::zero(), |sum, i| sum + each(i))
+    let is_in_group = |i: &usize| groups.get(*i) == groups.get(k);
+    (0..NC).filter(is_in_group).fold(T::zero(), |sum, i| sum + each(i))
 }
 
 /// Splits the result of an elimination into accelerations and multipliers. Returns `None` if a pivot is too
@@ -46,8 +46,8 @@ impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
     /// range.
     #[inline]
     fn pivot(&self, k: usize) -> (T, T) {
-        let of = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
-        (of(&self.pivots), of(&self.before))
+        let entry = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
+        (entry(&self.pivots), entry(&self.before))
     }
 }
 

@@ -17,7 +17,7 @@ use nalgebra::SMatrix;
 const ROUNDINGS: f64 = 64.0;
 
 /// Returns an entry, or zero if the index is out of range. Bounds checks could panic.
-pub(super) fn at<T: Real>(x: &[T], k: usize) -> T {
+pub(super) fn entry_or_zero<T: Real>(x: &[T], k: usize) -> T {
     x.get(k).copied().unwrap_or(T::zero())
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Metric<T, const N: usize> {
 impl<T: Real, const N: usize> Metric<T, N> {
     /// Factorises a mass matrix. Pivots that are zero or negative due to rounding are replaced by the
     /// magnitude of rounding errors.
-    pub fn of(mass: &[[T; N]; N]) -> Self {
+    pub fn new(mass: &[[T; N]; N]) -> Self {
         let (mut lower, mut inverse) = ([[T::zero(); N]; N], [T::zero(); N]);
         for i in 0..N {
             let mut scaled = [T::zero(); N];
@@ -112,7 +112,7 @@ pub(super) struct Column<T, const N: usize> {
 impl<T: Real, const N: usize> Column<T, N> {
     /// Returns the length of the column without its first entries, and the largest ratio of its entries to
     /// the numbers that they were computed from.
-    fn left(&self, first: usize) -> (T, T) {
+    fn remainder(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
             let share = if *size > T::zero() { x.abs() / *size } else { T::zero() };
@@ -148,17 +148,17 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     /// Prepares the rows of a Jacobian. The magnitude that an entry was computed from is estimated by the
     /// other components of the same vector, in the units of the entry. Entries below the corresponding
     /// rounding error become zero.
-    pub fn of(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
+    pub fn new(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
         let rows: [[T; NV]; NC] =
-            core::array::from_fn(|k| core::array::from_fn(|i| at(&jacobian.data.0[i], k)));
+            core::array::from_fn(|k| core::array::from_fn(|i| entry_or_zero(&jacobian.data.0[i], k)));
         let halves = rows.map(|row| metric.half(row));
         let of_group = |k: usize, each: &[[T; NV]; NC]| {
             let group = each.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
         };
-        let beside = |k: usize, i: usize| {
+        let row_magnitude = |k: usize, i: usize| {
             let group = rows.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
-            group.fold(T::zero(), |most, (row, _)| most.max(at(row, i).abs()))
+            group.fold(T::zero(), |most, (row, _)| most.max(entry_or_zero(row, i).abs()))
         };
         let columns: [Column<T, NV>; NC] = core::array::from_fn(|k| {
             let (entry, half) = (of_group(k, &rows), of_group(k, &halves));
@@ -168,7 +168,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             for (i, ((x, size), bound)) in row.iter_mut().zip(&mut sizes).zip(&bound).enumerate() {
                 // Zeros are exact, unless the corresponding entries of the other components are also
                 // negligible.
-                let most = beside(k, i);
+                let most = row_magnitude(k, i);
                 let alike = most <= *bound * rounding() || most > *bound * epsilon::<T>().sqrt();
                 if alike && x.abs() <= *bound * rounding() {
                     (*x, *size) = (T::zero(), T::zero());
@@ -186,7 +186,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
 
     /// Returns the entries in the order of the columns.
     fn arranged(&self, x: &[T; NV]) -> [T; NV] {
-        self.order.map(|i| at(x, i))
+        self.order.map(|i| entry_or_zero(x, i))
     }
 
     /// Adds columns to the basis, the longest first. A column must have an entry of at least `least` relative
@@ -195,7 +195,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
-                let (length, share) = column.left(self.rank);
+                let (length, share) = column.remainder(self.rank);
                 // Of columns with equal length up to rounding errors, the first is used, so that the choice
                 // does not depend on rounding.
                 if length > best.1 * constant(1.01) && share > least {
@@ -221,7 +221,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         self.exchange(first, most.0);
         exchange(&mut x, first, most.0);
         x.iter_mut().take(first).for_each(|x| *x = T::zero());
-        let (length, own) = (norm(&x), at(&x, first));
+        let (length, own) = (norm(&x), entry_or_zero(&x, first));
         let scale = T::one() / (length * (length + own.abs())).sqrt();
         let mut normal = x.map(|x| x * scale);
         if let Some(n) = normal.get_mut(first) {

@@ -109,12 +109,12 @@ where
     for (mut row, of_rate) in gap_by_q.row_iter_mut().zip(gap_by_v.row_iter()).take(NH) {
         row += of_rate * (rate * constant(0.5));
     }
-    let of = |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
+    let responses = |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
         each_column(|j| m.constraint_response(t, q, &-column(forces, j), &column(gaps, j)))
     };
-    let by_q = of(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
-    let by_v = of(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
-    (a, (by_q, by_v, of(&-SMatrix::identity(), &SMatrix::zeros())))
+    let by_q = responses(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
+    let by_v = responses(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
+    (a, (by_q, by_v, responses(&-SMatrix::identity(), &SMatrix::zeros())))
 }
 
 /// Implements [`Constrained::stabilized_derivatives`] for mechanisms with derivatives.

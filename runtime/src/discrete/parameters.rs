@@ -60,11 +60,12 @@ where
     const {
         assert!(
             !M::CONSTRAINED,
-            "a step with derivatives by parameters is one of a mechanism without constraints"
+            "a step with derivatives with respect to parameters needs a mechanism without constraints"
         );
         assert!(
             !M::CONTACTING,
-            "a step with derivatives by parameters is one of a mechanism whose contacts do not open and close"
+            "a step with derivatives with respect to parameters needs a mechanism without contacts that open \
+             and close"
         );
     }
     method.check()?;

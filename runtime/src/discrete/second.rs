@@ -66,11 +66,13 @@ where
     const {
         assert!(
             !M::SPEEDS,
-            "a step with second derivatives is one in the velocities of joints: the displacements of declared speeds have first derivatives alone; declare no speeds, or take `transition`"
+            "a step with second derivatives needs joint velocities: displacements of declared speeds have \
+             only first derivatives; declare no speeds, or take `transition`"
         );
         assert!(
             !M::CONTACTING,
-            "a step with second derivatives is one of a mechanism whose contacts do not open and close: leave them out by `contact::apart`"
+            "a step with second derivatives needs a mechanism without contacts that open and close: ignore \
+             them by `contact::apart`"
         );
         assert!(
             !M::CONSTRAINED || S::UNDER_CONSTRAINTS,

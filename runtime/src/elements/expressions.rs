@@ -130,8 +130,8 @@ pub enum Matrix {}
 /// [`Free`](super::Free) joint transmits no force. An element that acts at one point is applied there; other
 /// elements are applied at the centre of mass, with their torque about it. Particles and bodies fixed to the
 /// body by `at` are part of it; a body attached by a joint, including a [`Weld`](super::Weld), is separate.
-/// A body that is placed by `at` or `frame` instead of a joint has an action `NAME.place`: the force and torque
-/// of what places it.
+/// A body that is placed by `at` or `frame` instead of a joint has an action `NAME.place`: the force and
+/// torque of what places it.
 pub enum FreeBody {}
 
 derivable! { Coordinate Frame Point State Equilibrium Speed Scalar Vector Matrix FreeBody }

@@ -1,7 +1,7 @@
 //! Derivatives of mechanisms with first-order states among their velocities.
 
 use super::FirstOrderDerivatives;
-use super::extended::{Extended, apart, with_diagonal};
+use super::extended::{Extended, split, with_diagonal};
 use crate::derivatives::{ByMotion, unknown};
 use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
@@ -32,7 +32,7 @@ where
         &self,
         dv: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&apart::<_, NV, NX, NE>(dv).0);
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives(&split::<_, NV, NX, NE>(dv).0);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
         (with_diagonal::<_, NV, NX, NE>(&by_q, one), with_diagonal::<_, NV, NX, NE>(&by_dv, zero))
     }
@@ -42,7 +42,7 @@ where
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        let (dv, v) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v).0);
+        let (dv, v) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v).0);
         let (by_dv, by_v) = self.mechanism.tangent_rate_derivatives(&dv, &v);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
         (with_diagonal::<_, NV, NX, NE>(&by_dv, zero), with_diagonal::<_, NV, NX, NE>(&by_v, one))
@@ -53,7 +53,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         dv: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &apart::<_, NV, NX, NE>(dv).0);
+        let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &split::<_, NV, NX, NE>(dv).0);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
         (with_diagonal::<_, NV, NX, NE>(&by_q, one), with_diagonal::<_, NV, NX, NE>(&by_dv, zero))
     }
@@ -64,7 +64,7 @@ where
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> crate::ByMotion<M::Scalar, NE, NE> {
-        let (dv, v) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v).0);
+        let (dv, v) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v).0);
         let (by_q, by_dv, by_v) = self.mechanism.displacement_rate_derivatives(q, &dv, &v);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
         let square = |m, diagonal| with_diagonal::<_, NV, NX, NE>(&m, diagonal);
@@ -72,7 +72,7 @@ where
     }
 
     fn turning(&self, q: &SVector<M::Scalar, NQ>, v: &SVector<M::Scalar, NE>) -> SMatrix<M::Scalar, NE, NE> {
-        let v = apart::<_, NV, NX, NE>(v).0;
+        let v = split::<_, NV, NX, NE>(v).0;
         with_diagonal::<_, NV, NX, NE>(&self.mechanism.turning(q, &v), nalgebra::zero())
     }
 
@@ -82,7 +82,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SMatrix<M::Scalar, NE, NE> {
-        let (m, v) = self.at(v);
+        let (m, v) = self.with_states(v);
         with_diagonal::<_, NV, NX, NE>(&m.coriolis_matrix(t, q, &v), nalgebra::zero())
     }
 
@@ -93,7 +93,7 @@ where
         v: &SVector<M::Scalar, NE>,
         a: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
         let (by_q, by_v) = m.inverse_dynamics_derivatives(t, q, &v, &a);
         let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
         let by_x = m.inverse_dynamics_by_states(t, q, &v, &a);
@@ -108,7 +108,7 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> ByMotion<M::Scalar, NE, NE> {
-        let ((m, v), tau) = (self.at(v), apart::<_, NV, NX, NE>(tau).0);
+        let ((m, v), tau) = (self.with_states(v), split::<_, NV, NX, NE>(tau).0);
         let (by_q, by_v, by_force) = m.forward_dynamics_derivatives(t, q, &v, &tau);
         let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
         let by_x = m.forward_dynamics_by_states(t, q, &v, &tau);
@@ -141,7 +141,7 @@ where
         v: &SVector<M::Scalar, NE>,
         u: &SVector<M::Scalar, NU>,
     ) -> ByMotion<M::Scalar, NE, NU> {
-        let (m, v) = self.at(v);
+        let (m, v) = self.with_states(v);
         let (by_q, by_v, by_u) = m.generalized_forces_derivatives(t, q, &v, u);
         let rates = m.state_rate_derivatives(t, q, &v, u);
         let alone = m.state_rate_derivatives(t, q, &v, &SVector::zeros());

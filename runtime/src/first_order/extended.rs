@@ -22,15 +22,15 @@ pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
 }
 
 /// Splits a vector into velocities and states.
-pub fn apart<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+pub fn split<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     all: &SVector<T, NE>,
 ) -> (SVector<T, NV>, SVector<T, NX>) {
-    let at = |k: usize| all.get(k).copied().unwrap_or(T::zero());
-    (SVector::from_fn(|k, _| at(k)), SVector::from_fn(|k, _| at(NV + k)))
+    let value = |k: usize| all.get(k).copied().unwrap_or(T::zero());
+    (SVector::from_fn(|k, _| value(k)), SVector::from_fn(|k, _| value(NV + k)))
 }
 
 /// Joins velocities and states to one vector.
-pub fn together<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+pub fn join<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     v: &SVector<T, NV>,
     x: &SVector<T, NX>,
 ) -> SVector<T, NE> {
@@ -66,19 +66,19 @@ const fn names<const NV: usize, const NX: usize, const NE: usize>(
 }
 
 impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, NV, NX, NE> {
-    pub(super) fn of(mechanism: &'m M) -> Self {
+    pub(super) fn new(mechanism: &'m M) -> Self {
         Extended { mechanism }
     }
 
     /// Returns the mechanism with the states contained in `all`, and the velocities of `all`.
-    pub(super) fn at<T: Real, const NQ: usize, const NU: usize>(
+    pub(super) fn with_states<T: Real, const NQ: usize, const NU: usize>(
         &self,
         all: &SVector<T, NE>,
     ) -> (M, SVector<T, NV>)
     where
         M: FirstOrder<NQ, NV, NU, NX, NE, Scalar = T>,
     {
-        let (v, x) = apart(all);
+        let (v, x) = split(all);
         (self.mechanism.with_states(&x), v)
     }
 }
@@ -101,7 +101,7 @@ where
     }
 
     fn integrate(&self, q: &SVector<M::Scalar, NQ>, dv: &SVector<M::Scalar, NE>) -> SVector<M::Scalar, NQ> {
-        self.mechanism.integrate(q, &apart::<_, NV, NX, NE>(dv).0)
+        self.mechanism.integrate(q, &split::<_, NV, NX, NE>(dv).0)
     }
 
     fn difference(
@@ -109,7 +109,7 @@ where
         from: &SVector<M::Scalar, NQ>,
         to: &SVector<M::Scalar, NQ>,
     ) -> SVector<M::Scalar, NE> {
-        together(&self.mechanism.difference(from, to), &SVector::<M::Scalar, NX>::zeros())
+        join(&self.mechanism.difference(from, to), &SVector::<M::Scalar, NX>::zeros())
     }
 
     fn tangent_rate(
@@ -117,8 +117,8 @@ where
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
-        together(&self.mechanism.tangent_rate(&dv, &v), &x)
+        let (dv, (v, x)) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v));
+        join(&self.mechanism.tangent_rate(&dv, &v), &x)
     }
 
     fn displacement_rate(
@@ -127,8 +127,8 @@ where
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
-        together(&self.mechanism.displacement_rate(q, &dv, &v), &x)
+        let (dv, (v, x)) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v));
+        join(&self.mechanism.displacement_rate(q, &dv, &v), &x)
     }
 
     /// Returns the mass matrix; masses that depend on states use the values stored in the struct.
@@ -142,8 +142,8 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.at(v);
-        together(&m.bias_forces(t, q, &v), &-m.state_rates(t, q, &v, &SVector::zeros()))
+        let (m, v) = self.with_states(v);
+        join(&m.bias_forces(t, q, &v), &-m.state_rates(t, q, &v, &SVector::zeros()))
     }
 
     fn inverse_dynamics(
@@ -153,9 +153,9 @@ where
         v: &SVector<M::Scalar, NE>,
         a: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (a, rates)) = (self.at(v), apart::<_, NV, NX, NE>(a));
+        let ((m, v), (a, rates)) = (self.with_states(v), split::<_, NV, NX, NE>(a));
         let own = rates - m.state_rates(t, q, &v, &SVector::zeros());
-        together(&m.inverse_dynamics(t, q, &v, &a), &own)
+        join(&m.inverse_dynamics(t, q, &v, &a), &own)
     }
 
     fn forward_dynamics(
@@ -165,9 +165,9 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (tau, given)) = (self.at(v), apart::<_, NV, NX, NE>(tau));
+        let ((m, v), (tau, given)) = (self.with_states(v), split::<_, NV, NX, NE>(tau));
         let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
-        together(&m.forward_dynamics(t, q, &v, &tau), &rates)
+        join(&m.forward_dynamics(t, q, &v, &tau), &rates)
     }
 
     fn try_forward_dynamics(
@@ -177,9 +177,9 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> Result<SVector<M::Scalar, NE>, ConstraintError> {
-        let ((m, v), (tau, given)) = (self.at(v), apart::<_, NV, NX, NE>(tau));
+        let ((m, v), (tau, given)) = (self.with_states(v), split::<_, NV, NX, NE>(tau));
         let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
-        Ok(together(&m.try_forward_dynamics(t, q, &v, &tau)?, &rates))
+        Ok(join(&m.try_forward_dynamics(t, q, &v, &tau)?, &rates))
     }
 
     fn generalized_forces(
@@ -189,9 +189,9 @@ where
         v: &SVector<M::Scalar, NE>,
         u: &SVector<M::Scalar, NU>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.at(v);
+        let (m, v) = self.with_states(v);
         let by_inputs = m.state_rates(t, q, &v, u) - m.state_rates(t, q, &v, &SVector::zeros());
-        together(&m.generalized_forces(t, q, &v, u), &by_inputs)
+        join(&m.generalized_forces(t, q, &v, u), &by_inputs)
     }
 
     fn kinetic_energy(
@@ -200,7 +200,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> M::Scalar {
-        let (m, v) = self.at(v);
+        let (m, v) = self.with_states(v);
         m.kinetic_energy(t, q, &v)
     }
 
@@ -215,9 +215,9 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let x = apart::<_, NV, NX, NE>(v).1;
-        let (m, v) = self.at(v);
-        together(&m.generalized_momentum(t, q, &v), &x)
+        let x = split::<_, NV, NX, NE>(v).1;
+        let (m, v) = self.with_states(v);
+        join(&m.generalized_momentum(t, q, &v), &x)
     }
 
     fn momentum_rate(
@@ -226,8 +226,8 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.at(v);
-        together(&m.momentum_rate(t, q, &v), &m.state_rates(t, q, &v, &SVector::zeros()))
+        let (m, v) = self.with_states(v);
+        join(&m.momentum_rate(t, q, &v), &m.state_rates(t, q, &v, &SVector::zeros()))
     }
 }
 
@@ -258,10 +258,10 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> Result<Projected<M::Scalar, NQ, NE>, ConstraintError> {
-        let x = apart::<_, NV, NX, NE>(v).1;
-        let (m, v) = self.at(v);
+        let x = split::<_, NV, NX, NE>(v).1;
+        let (m, v) = self.with_states(v);
         let (q, v) = m.project(t, q, &v)?;
-        Ok((q, together(&v, &x)))
+        Ok((q, join(&v, &x)))
     }
 
     fn impulse(
@@ -272,8 +272,8 @@ where
         h: M::Scalar,
         p: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (p, given)) = (self.at(v), apart::<_, NV, NX, NE>(p));
-        together(&m.impulse(t, q, &v, h, &p), &given)
+        let ((m, v), (p, given)) = (self.with_states(v), split::<_, NV, NX, NE>(p));
+        join(&m.impulse(t, q, &v, h, &p), &given)
     }
 
     fn is_nearly_singular(
@@ -282,7 +282,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         dv: &SVector<M::Scalar, NE>,
     ) -> bool {
-        self.mechanism.is_nearly_singular(t, q, &apart::<_, NV, NX, NE>(dv).0)
+        self.mechanism.is_nearly_singular(t, q, &split::<_, NV, NX, NE>(dv).0)
     }
 
     fn acceleration_derivatives(
@@ -302,8 +302,8 @@ where
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
-        together(&self.mechanism.carry(t, q, &dv, &v), &x)
+        let (dv, (v, x)) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v));
+        join(&self.mechanism.carry(t, q, &dv, &v), &x)
     }
 
     fn contact_start(
@@ -323,14 +323,14 @@ where
         (given, impulses): Assumed<'_, M::Scalar, NE>,
         h: M::Scalar,
     ) -> Result<Touched<M::Scalar, NQ, NE>, ConstraintError> {
-        let ((m, v), (free, x)) = (self.at(v), apart::<_, NV, NX, NE>(free));
-        let (given, added) = apart::<_, NV, NX, NE>(given);
-        let impulses = impulses.map(|list| apart::<_, NV, NX, NE>(list).0);
+        let ((m, v), (free, x)) = (self.with_states(v), split::<_, NV, NX, NE>(free));
+        let (given, added) = split::<_, NV, NX, NE>(given);
+        let impulses = impulses.map(|list| split::<_, NV, NX, NE>(list).0);
         let touched = m.contact_step(t, (q, &v), (end, &free), (&given, &impulses), h)?;
-        let padded = |list: &SVector<_, NV>| together(list, &SVector::<_, NX>::zeros());
+        let padded = |list: &SVector<_, NV>| join(list, &SVector::<_, NX>::zeros());
         let (held, impulses) = (padded(&touched.held), touched.impulses.map(padded));
         let Touched { q, v, violation, .. } = touched;
-        Ok(Touched { q, v: together(&v, &(x + added)), held, impulses, violation })
+        Ok(Touched { q, v: join(&v, &(x + added)), held, impulses, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

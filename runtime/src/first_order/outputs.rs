@@ -1,7 +1,7 @@
 //! Outputs of mechanisms with first-order states.
 
 use super::FirstOrder;
-use super::extended::{Extended, apart};
+use super::extended::{Extended, split};
 use crate::{OutputDerivatives, OutputJacobians, Outputs, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -9,7 +9,8 @@ use nalgebra::{SMatrix, SVector};
 /// the trait for mechanisms with such states and [`Outputs`], without constraints.
 #[diagnostic::on_unimplemented(
     message = "the outputs of `{Self}` have no derivatives by states of first order",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms with constraints have none"
+    note = "enable them with the option: `#[mechanism(…, derivatives)]`; mechanisms with constraints have \
+            none"
 )]
 pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NY: usize>:
     OutputDerivatives<NQ, NV, NU, NY>
@@ -52,7 +53,7 @@ where
         a: &SVector<T, NE>,
         u: &SVector<T, NU>,
     ) -> SVector<T, NY> {
-        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
         m.outputs(t, q, &v, &a, u)
     }
 }
@@ -79,20 +80,20 @@ where
         a: &SVector<T, NE>,
         u: &SVector<T, NU>,
     ) -> OutputJacobians<T, NY, NE, NU> {
-        let ((m, v), a) = (self.at(v), apart::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
         let own = m.output_derivatives(t, q, &v, &a, u);
         let (by_x, none) = (m.outputs_by_states(t, q, &v, &a, u), SMatrix::<T, NY, NX>::zeros());
         OutputJacobians {
-            by_q: beside(&own.by_q, &none),
-            by_v: beside(&own.by_v, &by_x),
-            by_a: beside(&own.by_a, &none),
+            by_q: join_columns(&own.by_q, &none),
+            by_v: join_columns(&own.by_v, &by_x),
+            by_a: join_columns(&own.by_a, &none),
             by_u: own.by_u,
         }
     }
 }
 
 /// Joins the columns of the velocities and those of the states.
-fn beside<T: Real, const R: usize, const NV: usize, const NX: usize, const NE: usize>(
+fn join_columns<T: Real, const R: usize, const NV: usize, const NX: usize, const NE: usize>(
     left: &SMatrix<T, R, NV>,
     right: &SMatrix<T, R, NX>,
 ) -> SMatrix<T, R, NE> {

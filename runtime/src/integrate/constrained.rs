@@ -72,7 +72,7 @@ impl<T: Real> Settling<T> {
 
 /// Returns the error for a diverged iteration: [`Error::NotFinite`] at the first iteration, otherwise
 /// [`Error::NotConverged`].
-pub(super) fn lost<T: Real>(t: T, iterations: usize) -> Error {
+pub(super) fn divergence<T: Real>(t: T, iterations: usize) -> Error {
     let t = to_f64(t);
     if iterations == 0 { Error::NotFinite { t } } else { Error::NotConverged { t, iterations } }
 }
@@ -112,9 +112,9 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     ended: &mut Ended,
 ) -> bool {
     let singular = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
-    let near = |v: &SVector<T, NV>| largest(&(v - start.v)) <= largest(&start.v) * constant(LEAP);
+    let is_small_change = |v: &SVector<T, NV>| largest(&(v - start.v)) <= largest(&start.v) * constant(LEAP);
     let quick = |found: &&Middle<T, NV>| {
-        found.iterations <= if near(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
+        found.iterations <= if is_small_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
     if let Some(found) = found.as_ref().ok().filter(quick) {
         // Constraint impulses at a singular end do not remove the velocities that only the constraints of
@@ -179,7 +179,7 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
         v += change * pace.next(&change);
         if !is_finite(&v) {
-            return Err(lost(start.t, iterations));
+            return Err(divergence(start.t, iterations));
         }
         if settling.is_done(largest(&change), &q, &v) {
             let way = way(system, &start.q, &v, half);

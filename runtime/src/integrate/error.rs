@@ -103,7 +103,8 @@ impl fmt::Display for Error {
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
             Self::OffConstraints { t, entry, by } => write!(
                 f,
-                "the state at t = {t} s is off the constraints, which move `{entry}` by {by:.3e}: `assemble` and `project_velocity` bring a state onto them"
+                "the state at t = {t} s violates the constraints, which change `{entry}` by {by:.3e}: \
+                 `assemble` and `project_velocity` bring a state onto them"
             ),
             Self::Constraint { t, reason } => write!(f, "at t = {t} s {reason}"),
             Self::Event { t, event } => {
@@ -111,19 +112,21 @@ impl fmt::Display for Error {
             }
             Self::Quaternion { coordinate } => write!(
                 f,
-                "the quaternion of `{coordinate}` at the start must have unit length: divide it by its length"
+                "the quaternion of `{coordinate}` at the start must have unit length: divide it by its \
+                 length"
             ),
             Self::Impacts { t, event } => write!(
                 f,
-                "at t = {t} s the impact of event {event} does not separate what has met: end the run there with \
-                 `until`, and go on with the contact as a constraint"
+                "at t = {t} s the impact of event {event} does not separate the surfaces: end the run there \
+                 with `until`, and continue with the contact as a constraint"
             ),
             Self::NotConverged { t, iterations: 0 } => {
                 write!(f, "the matrix of the implicit step at t = {t} s is singular: take smaller steps")
             }
             Self::NotConverged { t, iterations } => write!(
                 f,
-                "the implicit step at t = {t} s did not converge in {iterations} iterations: take smaller steps"
+                "the implicit step at t = {t} s did not converge in {iterations} iterations: take smaller \
+                 steps"
             ),
         }
     }
@@ -131,7 +134,7 @@ impl fmt::Display for Error {
 
 impl Error {
     /// Returns the error with `origin`, s, added to its time.
-    pub(super) fn later(mut self, origin: f64) -> Self {
+    pub(super) fn shifted(mut self, origin: f64) -> Self {
         match &mut self {
             Self::NotFinite { t }
             | Self::StepTooSmall { t, .. }

@@ -175,7 +175,7 @@ pub struct Section<'a, T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
     /// Returns the step with `origin`, s, added to the origin of its times.
-    pub(super) fn later(self, origin: T) -> Self {
+    pub(super) fn shifted(self, origin: T) -> Self {
         Self { origin: self.origin + origin, ..self }
     }
 }
@@ -208,7 +208,7 @@ where
             // An impact is a step of zero duration, so that there are samples before and after it.
             return Ok(Step::linear(*start, begin, SVector::zeros()));
         }
-        let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.at(now, &begin.q, &v));
+        let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.evaluate(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
         if memory.is_stuck() {
             // The next step locates events again.
@@ -227,7 +227,8 @@ where
             memory.stretch = (memory.stretch + 1).min(LONGEST);
             memory.adaptive.tried(&settings, start.t)?;
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
-            let mut system = System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut system =
+                System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
             let mut local = Local { system: &mut system, origin };
             TimeStepping::step(h).advance(
                 &mut TimeStepping::step(h).memory(),
@@ -255,14 +256,14 @@ where
     T: Real,
 {
     /// Returns the value of the phase's event function after a step: negative past the first event.
-    fn left<const NU: usize>(&mut self, state: &State<T, NQ, NV>) -> T
+    fn event_value<const NU: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
         let State { t, q, v } = state;
         let (s, t) = (*t - self.begin.t, self.origin + *t);
-        let tau = self.phased.mechanism.generalized_forces(t, q, v, &self.inputs.at(t, q, v));
+        let tau = self.phased.mechanism.generalized_forces(t, q, v, &self.inputs.evaluate(t, q, v));
         Watch { s, t, q, v, tau: &tau }.left(self.phased)
     }
 
@@ -286,7 +287,8 @@ where
         };
         let made = {
             let inputs = &mut *self.inputs;
-            let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
+            let mut system =
+                System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
             let mut local = Local { system: &mut system, origin };
             memory.acceleration = Some(self.acceleration);
             let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
@@ -301,7 +303,7 @@ where
             Ok(made) => made,
             Err(error) => return Some(Err(error)),
         };
-        let past = quarters.into_iter().chain([step.end]).find(|state| self.left(state) < T::zero());
+        let past = quarters.into_iter().chain([step.end]).find(|state| self.event_value(state) < T::zero());
         let Some(past) = past else { return Some(self.ended(step)) };
         let least = landing.map_or(epsilon::<T>().powf(constant(0.75)), |s| s * constant(1e-3));
         self.located(settings, past.t - begin.t, least).map(|step| self.ended(step))
@@ -333,7 +335,7 @@ where
                 return None;
             }
             let state = self.tried(settings, middle, false).end;
-            let left = self.left(&state);
+            let left = self.event_value(&state);
             // The function is steep where one event follows another, so the smallest negative value counts as
             // past the event.
             if left < T::zero() { after = (middle, Some(left)) } else { before = (middle, Some(left)) }
@@ -349,7 +351,7 @@ where
     {
         let Self { phased, origin, begin, .. } = *self;
         let inputs = &mut *self.inputs;
-        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
         let mut local = Local { system: &mut system, origin };
         let dimensions = phased.mechanism.features().dimensions;
         let scale = Scale { relative: settings.relative, absolute: settings.absolute, dimensions };
@@ -368,7 +370,7 @@ where
         let end = step.end.finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
-        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.at(t, q, v)));
+        let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
         let local = Local { system: &mut system, origin };
         Ok(Step { end: settled(&local, State { q, v, ..end }, begin.t)?, ..step })
     }

@@ -25,7 +25,7 @@ pub struct Features {
 impl Features {
     /// Returns the properties of a mechanism that the compiler knows.
     #[must_use]
-    pub const fn of<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>() -> Self
+    pub const fn of_mechanism<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>() -> Self
     where
         M: Hooks<T, NQ, NV, NU> + ?Sized,
     {
@@ -81,7 +81,7 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// mechanism is loaded at run time.
     #[inline(always)]
     fn features(&self) -> Features {
-        Features::of::<Self, T, NQ, NV, NU>()
+        Features::of_mechanism::<Self, T, NQ, NV, NU>()
     }
 
     /// Projects a state onto the constraints, if there are any: returns the nearest state that satisfies

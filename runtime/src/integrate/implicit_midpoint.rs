@@ -1,6 +1,8 @@
 //! The implicit midpoint rule in momenta.
 
-use super::constrained::{Ended, MOST_ITERATIONS, Middle, Settling, is_crossing, lost, midpoint, passing};
+use super::constrained::{
+    Ended, MOST_ITERATIONS, Middle, Settling, divergence, is_crossing, midpoint, passing,
+};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive, settled};
 use crate::Real;
 use crate::private::{constant, to_f64};
@@ -87,7 +89,7 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         let rate = system.momentum_rate(start.t + half, &q, &v);
         let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
         if !is_finite(&next) {
-            return Err(lost(start.t, iterations));
+            return Err(divergence(start.t, iterations));
         }
         let change = largest(&(next - v));
         v = next;

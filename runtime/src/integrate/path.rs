@@ -48,8 +48,8 @@ impl<T: Real, const N: usize> Path<T, N> {
     /// Sets the coefficients from `r₃` on; those beyond `terms` are zero.
     pub(super) fn with_terms<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
         let zero = SVector::zeros();
-        let at = |k: usize| terms.get(k).copied().unwrap_or(zero);
-        Self { square: at(0), cube: at(1), fourth: at(2), higher: [at(3), at(4), at(5)], ..self }
+        let term = |k: usize| terms.get(k).copied().unwrap_or(zero);
+        Self { square: term(0), cube: term(1), fourth: term(2), higher: [term(3), term(4), term(5)], ..self }
     }
 
     /// Returns the value at `theta`, 0 at the start and 1 at the end.

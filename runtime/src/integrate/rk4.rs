@@ -46,7 +46,7 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 /// Returns the displacement and the change of the velocity in a step of `h` seconds, with the acceleration
 /// `before` at its start. An additional acceleration `added` has a constant direction in space during the
 /// step; it is returned in the axes at the end of the step.
-pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
@@ -99,7 +99,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let known = memory.take();
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
-        let ((displacement, change), _) = through(system, start, h, before, None);
+        let ((displacement, change), _) = rk4_change(system, start, h, before, None);
         let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
         let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);

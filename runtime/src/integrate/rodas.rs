@@ -197,7 +197,7 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let c = T::one() / (h * constant(GAMMA));
     let scaled = SMatrix::<T, NV, NV>::identity() * c;
     let (of_a, of_b) = (scaled - turn, scaled - slopes.by_v);
-    let matrix = Factored::of(of_b * of_a - slopes.by_q)?;
+    let matrix = Factored::new(of_b * of_a - slopes.by_q)?;
     let mut u = [Rates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
     let mut change = u[0];
     for (k, part) in TIMES.iter().enumerate() {
@@ -246,7 +246,7 @@ struct Factored<T, const N: usize> {
 
 impl<T: Real, const N: usize> Factored<T, N> {
     /// Factorises a matrix; `None` if it is singular or a pivot is not finite.
-    fn of(mut both: SMatrix<T, N, N>) -> Option<Self> {
+    fn new(mut both: SMatrix<T, N, N>) -> Option<Self> {
         let mut exchanged = [0; N];
         for (k, place) in exchanged.iter_mut().enumerate() {
             let size = |i: &usize| both[(*i, k)].abs();

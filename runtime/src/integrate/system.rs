@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 /// Inputs `u` of a mechanism over time, implemented for all input types that `simulate` accepts.
 pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Returns the inputs at a time and state.
-    fn at(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU>;
+    fn evaluate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU>;
 
     /// Returns the control period, s, of inputs that are constant within each period.
     fn period(&self) -> Option<T> {
@@ -28,7 +28,7 @@ pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
 pub struct NoInputs;
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, NV, NU> for NoInputs {
-    fn at(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
+    fn evaluate(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
         SVector::zeros()
     }
 }
@@ -45,7 +45,7 @@ where
     T: Real,
     F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
 {
-    fn at(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU> {
+    fn evaluate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU> {
         (self.0)(t, q, v)
     }
 }
@@ -71,7 +71,7 @@ where
     T: Real,
     F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
 {
-    fn at(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
+    fn evaluate(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) -> SVector<T, NU> {
         self.u
     }
 
@@ -269,17 +269,21 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         const {
             assert!(
                 !M::CONTACTING || S::CONTACTS,
-                "this mechanism has contacts, which this method of integration knows nothing of: simulate it with `.method(TimeStepping::step(1e-3))` or `.method(EventDriven::new())`, or without its contacts by `&contact::apart(&mechanism)`"
+                "this mechanism has contacts, which this method of integration does not support: simulate it \
+                 with `.method(TimeStepping::step(1e-3))` or `.method(EventDriven::new())`, or without its \
+                 contacts by `&contact::apart(&mechanism)`"
             );
             assert!(
                 !(M::CONTACTING && S::LOCATES) || M::LOCATABLE,
-                "events at the contacts of this mechanism cannot be located, as those of lanes, states of first order and stabilised constraints: simulate it with `.method(TimeStepping::step(1e-3))`"
+                "events at the contacts of this mechanism cannot be located, as those of lanes, states of \
+                 first order and stabilised constraints: simulate it with \
+                 `.method(TimeStepping::step(1e-3))`"
             );
         }
         self.undetermined = None;
         let mut local = Local { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
-        step.map_err(|error| match (error.later(to_f64(origin)), self.undetermined) {
+        step.map_err(|error| match (error.shifted(to_f64(origin)), self.undetermined) {
             (
                 Error::NotFinite { t } | Error::StepTooSmall { t, .. } | Error::NotConverged { t, .. },
                 Some(reason),
@@ -301,7 +305,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         if NU == 0 {
             return SVector::zeros();
         }
-        self.mechanism.generalized_forces(t, q, v, &self.inputs.at(t, q, v))
+        self.mechanism.generalized_forces(t, q, v, &self.inputs.evaluate(t, q, v))
     }
 }
 
@@ -447,7 +451,7 @@ where
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
     ) -> Option<(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)> {
-        let u = if NU == 0 { SVector::zeros() } else { self.inputs.at(t, q, v) };
+        let u = if NU == 0 { SVector::zeros() } else { self.inputs.evaluate(t, q, v) };
         let (mut by_q, mut by_v, by_u) = self.mechanism.acceleration_derivatives(t, q, v, &u)?;
         if NU == 0 || self.inputs.period().is_some() {
             return Some((by_q, by_v));
@@ -455,9 +459,9 @@ where
         let root = epsilon::<T>().sqrt();
         for k in 0..self.mechanism.features().dimensions[1].min(NV) {
             let size = root * v[k].abs().max(T::one());
-            let along = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
-            let moved = self.inputs.at(t, &self.mechanism.integrate(q, &along(root)), v);
-            let faster = self.inputs.at(t, q, &(v + along(size)));
+            let unit = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
+            let moved = self.inputs.evaluate(t, &self.mechanism.integrate(q, &unit(root)), v);
+            let faster = self.inputs.evaluate(t, q, &(v + unit(size)));
             by_q.column_mut(k).gemv(T::one() / root, &by_u, &(moved - u), T::one());
             by_v.column_mut(k).gemv(T::one() / size, &by_u, &(faster - u), T::one());
         }

@@ -2,7 +2,9 @@ use super::*;
 use crate::Mechanism;
 use crate::lie::{ball_difference, free_difference};
 use crate::simulate::simulate;
-use crate::testing::{FreeBody, OneDof, Top, oscillator, pendulum, pendulum_period, symmetric_top, turned};
+use crate::testing::{
+    FreeBody, OneDof, Top, oscillator, pendulum, pendulum_period, rotate_vector, symmetric_top,
+};
 use nalgebra::Vector3;
 use std::format;
 
@@ -203,7 +205,7 @@ fn pendulum_swings_with_the_elliptic_period() {
 
 /// Returns momentum in the ground frame and kinetic energy of a free top.
 fn invariants(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
-    (turned(q.into(), top.generalized_momentum(0.0, &q, &v)), top.kinetic_energy(0.0, &q, &v))
+    (rotate_vector(q.into(), top.generalized_momentum(0.0, &q, &v)), top.kinetic_energy(0.0, &q, &v))
 }
 
 #[test]
@@ -322,8 +324,11 @@ fn failures_are_errors() {
     // The solution of q̈ = 2 q³ from q = v = 1 is 1/(1 − t), which diverges at t = 1.
     let escaping = OneDof { force: |q: f64| 2.0 * q.powi(3), ..oscillator::<f64>() };
     let end = simulate(&escaping).from([1.0], [1.0]).duration(2.0).finish();
-    let at = |t: f64| (t - 1.0).abs() < 1e-3;
-    assert!(matches!(end, Err(Error::StepTooSmall { t, .. } | Error::NotFinite { t }) if at(t)), "{end:?}");
+    let is_singular_time = |t: f64| (t - 1.0).abs() < 1e-3;
+    assert!(
+        matches!(end, Err(Error::StepTooSmall { t, .. } | Error::NotFinite { t }) if is_singular_time(t)),
+        "{end:?}"
+    );
 
     let stiff = OneDof { force: |q: f64| -1e6 * q, ..oscillator::<f64>() };
     let run = simulate(&stiff).from([1.0], [0.0]).duration(1.0);

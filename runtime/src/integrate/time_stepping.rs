@@ -1,6 +1,6 @@
 //! Time stepping: motion with impacts and friction in steps of fixed length.
 
-use super::rk4::through;
+use super::rk4::rk4_change;
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -281,7 +281,7 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
     let still = SVector::zeros();
     let added = (*rate != still).then_some(rate);
-    let ((displacement, change), at_end) = through(system, start, h, *before, added);
+    let ((displacement, change), at_end) = rk4_change(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
     (end, at_end.map_or(still, |rate| rate * h))
 }

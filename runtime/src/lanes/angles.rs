@@ -9,7 +9,7 @@ use core::any::Any;
 /// Returns sines and cosines of small angles.
 #[inline(always)]
 pub(super) fn of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
-    let (s, c, shifted) = kernel::<A, _>(Vector::<A, f64, L>::of(*x));
+    let (s, c, shifted) = kernel::<A, _>(Vector::<A, f64, L>::from_array(*x));
     A::rotate_quadrants(s.numbers(), c.numbers(), shifted.numbers())
 }
 
@@ -25,13 +25,13 @@ fn replace<A: Registers, const L: usize, const N: usize>(
             // A copy, so that the angles themselves need not be stored in memory.
             let angles = Aligned(*x.numbers());
             let (sines, cosines) = A::sin_cos_of_large(&angles.0);
-            (*x, *c) = (Vector::of(sines), Vector::of(cosines));
+            (*x, *c) = (Vector::from_array(sines), Vector::from_array(cosines));
         }
         return c;
     }
     for (x, c) in x.iter_mut().zip(&mut c) {
         let [sines, cosines] = A::sin_cos_of_small(x.numbers());
-        (*x, *c) = (Vector::of(sines), Vector::of(cosines));
+        (*x, *c) = (Vector::from_array(sines), Vector::from_array(cosines));
     }
     c
 }

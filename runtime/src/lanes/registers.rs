@@ -155,7 +155,8 @@ impl Registers for Compiled {
         case!(2 f64x2 u64x2);
         case!(4 f64x4 u64x4);
         case!(8 f64x8 u64x8);
-        let turned = core::array::from_fn::<_, L, _>(|k| trigonometry::turned(s[k], c[k], shifted[k]));
+        let turned =
+            core::array::from_fn::<_, L, _>(|k| trigonometry::rotate_quadrant(s[k], c[k], shifted[k]));
         [turned.map(|(s, _)| s), turned.map(|(_, c)| c)]
     }
 

@@ -113,10 +113,10 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     #[inline(always)]
     pub fn write(&self, column: &mut [T]) {
         for (k, register) in self.eights.iter().enumerate() {
-            put(register, column, 8 * k);
+            write_entries(register, column, 8 * k);
         }
         for (k, register) in self.fours.iter().enumerate() {
-            put(register, column, 8 * E + 4 * k);
+            write_entries(register, column, 8 * E + 4 * k);
         }
     }
 }
@@ -166,7 +166,7 @@ pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -
 
 /// Writes `W` numbers from index `from` on, or to the last `W` entries if fewer remain.
 #[inline(always)]
-pub fn put<A: Arithmetic, T: Real, const W: usize>(
+pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
     register: &Vector<A, T, W>,
     column: &mut [T],
     from: usize,

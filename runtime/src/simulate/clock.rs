@@ -24,7 +24,7 @@ pub(super) struct Clock {
 
 /// Returns `a / b` as a ratio of integers, if it is one up to rounding.
 fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
-    let near = |x: f64| {
+    let small_ratio = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
             // Rounded to the nearest integer; for very large values, neighbouring integers cannot be
@@ -34,7 +34,7 @@ fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
             exact.then_some([whole, u64::from(parts)])
         })
     };
-    if a >= b { near(a / b) } else { near(b / a).map(|[whole, parts]| [parts, whole]) }
+    if a >= b { small_ratio(a / b) } else { small_ratio(b / a).map(|[whole, parts]| [parts, whole]) }
 }
 
 impl Clock {
@@ -78,7 +78,7 @@ impl Clock {
 }
 
 /// Returns the time `elapsed` seconds after the start.
-pub(super) fn after<T: Real>(start: T, elapsed: f64) -> T {
+pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
     start + constant::<T>(elapsed)
 }
 

@@ -156,7 +156,7 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
 }
 
 /// Returns the distance on a step below which events coincide up to rounding.
-pub(super) fn together<T: Real>() -> T {
+pub(super) fn coincidence<T: Real>() -> T {
     epsilon::<T>() * constant(8.0)
 }
 
@@ -267,7 +267,7 @@ where
     ) -> Result<Option<Hit<T>>, Undefined> {
         let earlier = self.0.locate(path, from, to)?;
         // Slightly farther, so that coincident events are found in any order.
-        let to = earlier.map_or(to, |hit| (hit.theta + together()).min(to));
+        let to = earlier.map_or(to, |hit| (hit.theta + coincidence()).min(to));
         let event = &mut self.1;
         event.found = None;
         let end = event.value(&path(to));
@@ -304,8 +304,8 @@ where
     }
 
     fn due(&self, from: usize, limit: T) -> Option<usize> {
-        let own = || self.1.found.filter(|found| *found <= limit && from <= E::COUNT).map(|_| E::COUNT);
-        self.0.due(from, limit).or_else(own)
+        let own_index = || self.1.found.filter(|found| *found <= limit && from <= E::COUNT).map(|_| E::COUNT);
+        self.0.due(from, limit).or_else(own_index)
     }
 
     fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(

@@ -1,7 +1,7 @@
 //! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::clock::{Clock, after};
-use super::event::together;
+use super::clock::{Clock, time_after};
+use super::event::coincidence;
 use super::{Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, not_negative, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
@@ -15,7 +15,7 @@ const SEARCHES: u8 = 4;
 const SOON: f64 = 1e-6;
 
 /// Returns whether two numbers differ by more than printing with six digits explains, or one of them is NaN.
-fn far<T: Real>(a: T, b: T) -> bool {
+fn differs<T: Real>(a: T, b: T) -> bool {
     let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
     let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
     !near
@@ -30,7 +30,7 @@ pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, co
 where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
-    let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
+    let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| differs(*a, *b));
     // From the end: NaN in a quaternion may spread to the position before it.
     match (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
         Some(coordinate) => Err(Error::Quaternion { coordinate }),
@@ -39,13 +39,13 @@ where
 }
 
 /// Returns the name and the change of the entry that differs most between two vectors, if any difference is
-/// significant (see [`far`]).
+/// significant (see [`differs`]).
 fn farthest<T: Real, const N: usize>(
     to: &SVector<T, N>,
     from: &SVector<T, N>,
     names: [&'static str; N],
 ) -> Option<(&'static str, f64)> {
-    let moves = to.iter().zip(from).zip(names).filter(|((to, from), _)| far(**to, **from));
+    let moves = to.iter().zip(from).zip(names).filter(|((to, from), _)| differs(**to, **from));
     let moves = moves.map(|((to, from), name)| (name, to_f64(*to - *from)));
     moves.reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
 }
@@ -188,7 +188,7 @@ where
         loop {
             let sample = match (run.step, run.firing.is_some()) {
                 (Some(step), true) => self.fire(run, &step)?,
-                (Some(step), false) => self.along(run, &step)?,
+                (Some(step), false) => self.advance_within(run, &step)?,
                 _ if self.at_end(run) && run.shown => return Ok(None),
                 _ => self.at_node(run)?,
             };
@@ -249,7 +249,7 @@ where
             return *asked;
         }
         let end = self.duration.filter(|_| run.clock.end() == Some(elapsed));
-        end.map_or_else(|| after(self.start.t, elapsed), |duration| self.start.t + duration)
+        end.map_or_else(|| time_after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Returns the latest instant at which the next step must end.
@@ -304,7 +304,7 @@ where
     }
 
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
-    fn along(
+    fn advance_within(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
@@ -329,7 +329,7 @@ where
         match event {
             Some((hit, elapsed)) => {
                 let state = self.on_constraints(self.state(run.node.t, step, hit.theta))?;
-                let limit = hit.theta + together();
+                let limit = hit.theta + coincidence();
                 let (jump, next, jumped, stopped) = (None, 0, false, false);
                 run.firing = Some(Firing { state, elapsed, limit, jump, next, jumped, stopped });
             }
@@ -402,18 +402,18 @@ where
         };
         let moment = step.end.t * constant(SOON);
         let mechanism = self.system.mechanism;
-        let later = |state: &State<T, NQ, NV>| {
+        let advanced = |state: &State<T, NQ, NV>| {
             let q = mechanism.integrate(&state.q, &(state.v * moment));
             State { t: state.t + moment, q, ..*state }
         };
         let before = firing.state;
-        match self.events.act(index, &mut firing.state, &later) {
+        match self.events.act(index, &mut firing.state, &advanced) {
             Flow::Go => {}
             Flow::Stop => firing.stopped = true,
             Flow::Jump => {
                 let soon = (run.ahead.0 - run.elapsed) * SOON;
-                let again = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
-                if run.jump.is_some_and(again) {
+                let is_repeated = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
+                if run.jump.is_some_and(is_repeated) {
                     return Err(Error::Impacts { t: to_f64(firing.state.t), event: index });
                 }
                 run.jump = Some((index, firing.elapsed));
@@ -450,6 +450,6 @@ where
         event: Option<usize>,
     ) -> Sample<T, NQ, NV, NU> {
         let violation = S::take_violation(&mut run.memory);
-        Sample { t, q, v, u: self.system.inputs.at(t, &q, &v), event, violation }
+        Sample { t, q, v, u: self.system.inputs.evaluate(t, &q, &v), event, violation }
     }
 }

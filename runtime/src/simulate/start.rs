@@ -29,7 +29,7 @@ use nalgebra::SVector;
 /// # Ok::<(), Error>(())
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no start of a simulation",
+    message = "`{Self}` is not an initial state of a simulation",
     label = "expected {N} numbers of type `{T}`",
     note = "they may be an array, an `SVector` (of `linkwork::nalgebra`), or a reference to one"
 )]

@@ -118,7 +118,7 @@ fn digital_controllers_hold_their_output() {
 }
 
 /// Returns the inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
-fn held<S: Method<f64>>(method: S) -> Vec<f64> {
+fn sampled_inputs<S: Method<f64>>(method: S) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
     let mut count = -1.0;
     let run = simulate(&oscillator).control_every(0.3, |_, _, _| {
@@ -131,9 +131,9 @@ fn held<S: Method<f64>>(method: S) -> Vec<f64> {
 #[test]
 fn samples_hold_the_inputs() {
     let wanted: Vec<f64> = (0..=30).map(|k| f64::from(k / 3)).collect();
-    assert_eq!(held(Rk4::step(0.1)), wanted);
-    assert_eq!(held(ImplicitMidpoint::step(0.03)), wanted);
-    assert_eq!(held(DormandPrince::new()), wanted);
+    assert_eq!(sampled_inputs(Rk4::step(0.1)), wanted);
+    assert_eq!(sampled_inputs(ImplicitMidpoint::step(0.03)), wanted);
+    assert_eq!(sampled_inputs(DormandPrince::new()), wanted);
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).inputs(|t, _, _| SVector::from([2.0 * t])).duration(1.0);
     assert!(run.sample_every(0.1).all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t)));

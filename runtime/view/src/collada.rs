@@ -18,7 +18,7 @@ const MOST_INSTANCES: usize = 100_000;
 
 /// Returns the corners of all triangles, three per triangle, m.
 pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
-    let document = Document::parse(text).map_err(|error| format!("no XML: {error}"))?;
+    let document = Document::parse(text).map_err(|error| format!("not XML: {error}"))?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("expected a `COLLADA` element, found `{}`", root.tag_name().name()));
@@ -28,7 +28,7 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
         Some(text) => text.trim().parse().ok().filter(|m: &f64| *m > 0.0 && m.is_finite()),
         None => Some(1.0),
     };
-    let metres = metres.ok_or("the `meter` of the unit is no length")?;
+    let metres = metres.ok_or("the `meter` of the unit is not a length")?;
     let elements_by_id = |library: &'static str, of: &'static str| {
         let libraries = children(root, library).flat_map(move |all| children(all, of));
         libraries.filter_map(|node| Some((node.attribute("id")?, node))).collect::<HashMap<_, _>>()
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
     fn node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
         self.instances += 1;
         if depth > MAX_DEPTH || self.instances > MOST_INSTANCES {
-            return Err("nodes inside one another without end".to_string());
+            return Err("endlessly nested nodes".to_string());
         }
         let mut place = *above;
         for part in node.children().filter(Node::is_element) {
@@ -122,7 +122,7 @@ fn within_bounds(corners: usize) -> Result<(), String> {
 fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     let Some(mesh) = child(geometry, "mesh") else {
         let name = geometry.attribute("id").unwrap_or("a geometry without name");
-        return Err(format!("`{name}` is no mesh of polygons"));
+        return Err(format!("`{name}` is not a mesh of polygons"));
     };
     let mut corners = Vec::new();
     for list in mesh.children().filter(Node::is_element) {
@@ -151,7 +151,7 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
     let (mut vertices, mut stride) = (None, 1_usize);
     for input in children(list, "input") {
         let offset: Option<usize> = input.attribute("offset").unwrap_or("0").trim().parse().ok();
-        let offset = offset.ok_or("an `offset` of an input is no count")?;
+        let offset = offset.ok_or("an `offset` of an input is not a count")?;
         stride = stride.max(offset.saturating_add(1));
         vertices = vertices.or((input.attribute("semantic") == Some("VERTEX")).then_some((offset, input)));
     }
@@ -159,7 +159,7 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
     let points = positions(mesh, input)?;
     let corner = |index: &[usize]| {
         let found = index.get(offset).and_then(|k| points.get(*k)).copied();
-        found.ok_or_else(|| format!("a `{kind}` refers to a vertex that there is not"))
+        found.ok_or_else(|| format!("a `{kind}` refers to a vertex that does not exist"))
     };
     let mut counts = child(list, "vcount").map(numbers::<usize>).transpose()?.unwrap_or_default().into_iter();
     let mut faces = Vec::new();
@@ -197,7 +197,7 @@ fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f6
     let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing)?)?;
     let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
     let count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
-        Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is no count")),
+        Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is not a count")),
         None => Ok(otherwise),
     };
     let (stride, offset) = (count("stride", 3)?, count("offset", 0)?);
@@ -238,14 +238,14 @@ fn children<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = 
 fn referred<'a>(instance: Node<'_, '_>, known: &HashMap<&str, Node<'a, 'a>>) -> Result<Node<'a, 'a>, String> {
     let url = instance.attribute("url").unwrap_or_default();
     let found = url.strip_prefix('#').and_then(|name| known.get(name)).copied();
-    found.ok_or_else(|| format!("`{}` refers to `{url}`, which is not there", instance.tag_name().name()))
+    found.ok_or_else(|| format!("`{}` refers to `{url}`, which does not exist", instance.tag_name().name()))
 }
 
 /// Parses the text of an element as a list of numbers.
 fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
     let read = |word: &str| {
         let shown: String = word.chars().take(60).collect();
-        word.parse().map_err(|_| format!("`{shown}` in a `{}` is no number", node.tag_name().name()))
+        word.parse().map_err(|_| format!("`{shown}` in a `{}` is not a number", node.tag_name().name()))
     };
     node.text().unwrap_or_default().split_whitespace().map(read).collect()
 }
@@ -257,7 +257,8 @@ mod tests {
     /// Returns a file with a mesh of four corners: a square in the plane z = 0 with edges of length 2.
     fn file(unit: &str, faces: &str, scene: &str) -> String {
         format!(
-            "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>
+            "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' \
+             version='1.4.1'>
              <asset>{unit}<up_axis>Y_UP</up_axis></asset>
              <library_geometries><geometry id='square'><mesh>
              <source id='places'><float_array id='f' count='12'>0 0 0 2 0 0 2 2 0 0 2 0</float_array>
@@ -303,7 +304,8 @@ mod tests {
     #[test]
     fn nodes_place_what_they_hold() {
         let nodes = format!(
-            "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate><scale>1 3 1</scale>{SHOWN}</node></node>"
+            "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate>\
+             <scale>1 3 1</scale>{SHOWN}</node></node>"
         );
         let found = corners(&file("<unit meter='0.01' name='cm'/>", TWO, &scene(&nodes))).unwrap();
         // (2, 2, 0) is scaled to (2, 6, 0), rotated to (−6, 2, 0) and translated to (94, 2, 0), in
@@ -318,7 +320,8 @@ mod tests {
         }
         let library =
             "<library_nodes><node id='part'><instance_geometry url='#square'/></node></library_nodes>";
-        let twice = "<node><instance_node url='#part'/><translate>0 0 1</translate><instance_node url='#part'/></node>";
+        let twice = "<node><instance_node url='#part'/><translate>0 0 1</translate>\
+                     <instance_node url='#part'/></node>";
         let both = corners(&file("", TWO, &[library, &scene(twice)].concat())).unwrap();
         assert_eq!((both.len(), both[0], both[6]), (12, [0.0; 3], [0.0, 0.0, 1.0]));
     }
@@ -335,11 +338,11 @@ mod tests {
         let bomb: String = bomb.chain([format!("<node id='n40'>{SHOWN}</node>")]).collect();
         let deep = ["<node>".repeat(30_000), "</node>".repeat(30_000)].concat();
         for (what, found) in [
-            ("no XML", corners("solid")),
+            ("not XML", corners("solid")),
             ("expected a `COLLADA` element, found `robot`", corners("<robot/>")),
             ("`meter`", corners(&file("<unit meter='0'/>", TWO, ""))),
-            ("is no number", faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
-            ("a vertex that there is not", faces(&format!("<triangles>{vertex}<p>0 1 9</p></triangles>"))),
+            ("is not a number", faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
+            ("a vertex that does not exist", faces(&format!("<triangles>{vertex}<p>0 1 9</p></triangles>"))),
             ("do not fit its count", faces(&format!("<triangles>{vertex}<p>0 1</p></triangles>"))),
             (
                 "do not fit its count",
@@ -354,10 +357,10 @@ mod tests {
             ("refers to `#cube`", placed("<node><instance_geometry url='#cube'/></node>")),
             ("placed by `skew`", placed("<node><skew>1 2 3</skew></node>")),
             ("skins", placed("<node><instance_controller url='#c'/></node>")),
-            ("without end", placed("<node id='a'><instance_node url='#a'/></node>")),
-            ("without end", placed(&bomb)),
-            ("without end", placed(&deep)),
-            ("no XML", corners(&format!("<!DOCTYPE x [<!ENTITY e 'lol'>]>{}", file("", TWO, "")))),
+            ("endlessly nested", placed("<node id='a'><instance_node url='#a'/></node>")),
+            ("endlessly nested", placed(&bomb)),
+            ("endlessly nested", placed(&deep)),
+            ("not XML", corners(&format!("<!DOCTYPE x [<!ENTITY e 'lol'>]>{}", file("", TWO, "")))),
         ] {
             let message = found.unwrap_err();
             assert!(message.contains(what), "{what}: {message}");

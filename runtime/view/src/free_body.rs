@@ -90,7 +90,8 @@ pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -
     let height = HEIGHT.max(LINE * (3.0 * all.len() as f64 + 5.0) + 30.0);
     let width = DRAWING + LIST;
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 \
+         {width} {height}\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<title>Free-body diagram of {name}</title>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n",
         name = escaped(diagram.body)
@@ -158,7 +159,8 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
         let (x, y) = to_page(shown.point);
         let _ = writeln!(
             out,
-            "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{x:.2}\" y2=\"{y:.2}\" stroke=\"#ccc\" stroke-width=\"7\" stroke-linecap=\"round\"/>",
+            "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{x:.2}\" y2=\"{y:.2}\" stroke=\"#ccc\" stroke-width=\"7\" \
+             stroke-linecap=\"round\"/>",
             center.0, center.1
         );
     }
@@ -226,7 +228,8 @@ fn arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &st
     let head = 9.0_f64.min(0.6 * long);
     let _ = writeln!(
         out,
-        "<line x1=\"{x:.2}\" y1=\"{y:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"{colour}\" stroke-width=\"2\"/>",
+        "<line x1=\"{x:.2}\" y1=\"{y:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"{colour}\" \
+         stroke-width=\"2\"/>",
         x + dx - ux * head,
         y + dy - uy * head
     );
@@ -253,7 +256,8 @@ fn arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &st
     let sweep = u8::from(!counterclockwise);
     let _ = writeln!(
         out,
-        "<path d=\"M {:.2} {y:.2} A {ARC} {ARC} 0 1 {sweep} {x:.2} {:.2}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
+        "<path d=\"M {:.2} {y:.2} A {ARC} {ARC} 0 1 {sweep} {x:.2} {:.2}\" fill=\"none\" stroke=\"{colour}\" \
+         stroke-width=\"2\"/>",
         x + sign * ARC,
         y + ARC
     );

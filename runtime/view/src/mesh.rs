@@ -204,7 +204,8 @@ mod tests {
         binary.extend([0; 12]);
         TRIANGLE.iter().flatten().for_each(|x| binary.extend(x.to_le_bytes()));
         binary.extend([0; 2]);
-        let ascii = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2 0\nendloop\nendfacet\nendsolid";
+        let ascii = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2 0\n\
+                     endloop\nendfacet\nendsolid";
         let object = "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1/1/1 2/2/2 -1\n";
         for mesh in [stl(&binary), stl(ascii.as_bytes()), obj(object)] {
             assert_eq!(mesh, Ok(Mesh { corners: TRIANGLE.to_vec() }));

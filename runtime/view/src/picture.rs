@@ -113,9 +113,12 @@ fn drawn(outlines: &[Outline]) -> String {
     out
 }
 
+/// A point, and the frame in whose axes it is; `None` for the ground.
+type FramePoint = (Option<usize>, Vector3<f64>);
+
 /// Returns points whose convex hull is the shape, each with its frame, or the ends of a line and its width.
 /// `size` is the size of the mechanism.
-fn samples(shape: &Shape, size: f64) -> (Vec<(Option<usize>, Vector3<f64>)>, f64) {
+fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
     let vector = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;

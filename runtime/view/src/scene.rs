@@ -19,7 +19,8 @@ pub(crate) struct Scene {
     eye: Vector3<f64>,
     /// Whether the motion is planar.
     plane: bool,
-    /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no terrain.
+    /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no
+    /// terrain.
     floor: Option<f64>,
 }
 

@@ -148,13 +148,16 @@ mod tests {
 
     #[test]
     fn prose_has_paragraphs_lists_code_and_emphasis() {
-        let text = "The *simple* pendulum: `m l² * θ''`, 2 * 3 * 4, a*b*c.\nOne line more.\n\n# Source\n\nCoordinates:\n- `pin`, rad,\n  counted up\n- <b>, `open and *so";
+        let text = "The *simple* pendulum: `m l² * θ''`, 2 * 3 * 4, a*b*c.\nOne line more.\n\n# Source\n\n\
+                    Coordinates:\n- `pin`, rad,\n  counted up\n- <b>, `open and *so";
         assert_eq!(
             blocks(text),
             [
-                "<p>The <em>simple</em> pendulum: <code>m l² * θ&#39;&#39;</code>, 2 * 3 * 4, a*b*c. One line more.</p>",
+                "<p>The <em>simple</em> pendulum: <code>m l² * θ&#39;&#39;</code>, 2 * 3 * 4, a*b*c. One \
+                 line more.</p>",
                 "<p><b>Source</b></p>",
-                "<p>Coordinates:</p><ul><li><code>pin</code>, rad, counted up</li><li>&lt;b&gt;, `open and *so</li></ul>",
+                "<p>Coordinates:</p><ul><li><code>pin</code>, rad, counted up</li>\
+                 <li>&lt;b&gt;, `open and *so</li></ul>",
             ]
         );
         assert!(blocks(" \n\n").is_empty());

@@ -386,7 +386,8 @@ fn single_precision_passes_singular_positions() {
                     let single = swing::<f32, _>(0.0, start, 2.0, $method::step(h as f32));
                     let double = swing::<f64, _>(0.0, start, 2.0, $method::step(h));
                     let what = $name;
-                    assert!(single < 1.1 * double + 2e-4, "{what}: {single} and {double} with {h} s from {start:?}");
+                    assert!(single < 1.1 * double + 2e-4, "{what}: {single} and {double} with {h} s from \
+                        {start:?}");
                 )+};
             }
             all! {

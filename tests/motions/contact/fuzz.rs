@@ -20,7 +20,10 @@ struct Twice {
     floor: Contact,
     #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = restitution)]
     same: Contact,
-    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction, restitution = restitution)]
+    #[contact(
+        block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction,
+        restitution = restitution
+    )]
     wall: Contact,
     #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x))]
     smooth: Contact,

@@ -13,7 +13,10 @@ struct Dice {
     pose: Free,
     #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = restitution)]
     floor: Contact,
-    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction, restitution = restitution)]
+    #[contact(
+        block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction,
+        restitution = restitution
+    )]
     wall: Contact,
 }
 

@@ -64,7 +64,9 @@ fn a_quadruped_stands() {
 
 /// Humanoid on the corners of its soles: eight contacts, whose impulses the motion does not determine
 /// uniquely.
-#[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z)]
+#[mechanism(
+    urdf = "../../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z
+)]
 struct Humanoid {
     #[contact(l_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
     left_toe: [Contact; 2],

@@ -13,7 +13,10 @@ use linkwork::batch::{Rollout, unwatched};
 use linkwork::frame;
 use linkwork::prelude::*;
 
-#[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch, derivatives)]
+#[mechanism(
+    urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], batch,
+    derivatives
+)]
 struct Arm;
 
 type Joints = SVector<f64, { Arm::NV }>;

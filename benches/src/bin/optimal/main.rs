@@ -226,7 +226,9 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
             black_box(self.rollout(&all, &mut next));
         });
         format!(
-            "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"goal\": {:?}, \"inputs\": {inputs:?}}}",
+            "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \
+             \"rollout\": {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"goal\": {:?}, \"inputs\": \
+             {inputs:?}}}",
             start.as_slice(),
             self.goal.as_slice()
         )

@@ -434,7 +434,8 @@ pub fn measure() -> String {
         black_box(trot.rollout(&plan, 1.0, &mut next));
     });
     format!(
-        "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"inputs\": {inputs:?}, \"phases\": {}}}",
+        "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": \
+         {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"inputs\": {inputs:?}, \"phases\": {}}}",
         start.as_slice(),
         trot.written()
     )

@@ -16,7 +16,8 @@ const FLAGS: [&str; 2] = ["exact", "fast"];
 pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.2 };
     println!(
-        "| robot | function | Linkwork, ns | with parameters | prepared | Pinocchio | CasADi C | dynibo | Pinocchio : Linkwork | CasADi : Linkwork | dynibo : Linkwork | code, bytes |"
+        "| robot | function | Linkwork, ns | with parameters | prepared | Pinocchio | CasADi C | dynibo | \
+         Pinocchio : Linkwork | CasADi : Linkwork | dynibo : Linkwork | code, bytes |"
     );
     println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     let mut wrong = Vec::new();

@@ -10,7 +10,11 @@ pub fn header(known: &Known<'_, '_>) -> String {
     let (prefix, number) = (known.prefix, if known.single() { "float" } else { "double" });
     let upper = prefix.to_ascii_uppercase();
     let mut text = format!(
-        "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load the shared library.\n *\n * SI units, angles in radians. Vectors are plain arrays, matrices stand column by column. Quaternions are stored\n * x y z w. Functions keep nothing between calls, and any number of threads may call them. They return 0, or 1\n * where there is no result: then results are not numbers, and {prefix}_message() says why.\n",
+        "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load \
+         the shared library.\n *\n * SI units, angles in radians. Vectors are plain arrays, matrices stand \
+         column by column. Quaternions are stored\n * x y z w. Functions keep nothing between calls, and any \
+         number of threads may call them. They return 0, or 1\n * where there is no result: then results are \
+         not numbers, and {prefix}_message() says why.\n",
         known.input.declaration.name
     );
     let velocities: Vec<String> = m.velocities.iter().map(|(name, _)| name.clone()).collect();
@@ -37,7 +41,9 @@ pub fn header(known: &Known<'_, '_>) -> String {
     }
     let _ = write!(
         text,
-        " */\n#ifndef {upper}_LIBRARY_H\n#define {upper}_LIBRARY_H\n\n#include <stddef.h>\n\n#define {upper}_NQ {}\n#define {upper}_NV {}\n#define {upper}_NU {}\n#define {upper}_PARAMETERS {}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
+        " */\n#ifndef {upper}_LIBRARY_H\n#define {upper}_LIBRARY_H\n\n#include <stddef.h>\n\n#define \
+         {upper}_NQ {}\n#define {upper}_NV {}\n#define {upper}_NU {}\n#define {upper}_PARAMETERS {}\n\n\
+         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
         m.nq(),
         m.nv(),
         m.nu(),
@@ -111,8 +117,10 @@ fn write_common(text: &mut String, prefix: &str, number: &str, has_parameters: b
     if has_parameters {
         let _ = write!(
             text,
-            "/* Whether a mechanism can have these parameters. */\nint {prefix}_validate(const {number} *own);\n\n\
-             /* The parameters that a robot file has; others are not numbers. */\nvoid {prefix}_defaults({number} *to_own);\n\n"
+            "/* Whether a mechanism can have these parameters. */\nint {prefix}_validate(const {number} \
+             *own);\n\n\
+             /* The parameters that a robot file has; others are not numbers. */\nvoid \
+                 {prefix}_defaults({number} *to_own);\n\n"
         );
     }
     let _ = write!(
@@ -123,9 +131,12 @@ const char *{prefix}_message(void);
 /* Names, shapes, units and documentation of everything, as JSON; functions in the order of their numbers. */
 const char *{prefix}_description(void);
 
-/* A function by its number for many states: every argument and result holds that of the first state, then that of the second,
- * and so on. Several threads share them out, as many as there are processors for 0. The parameters are those of all states. */
-int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments, {number} *const *results,
+/* A function by its number for many states: every argument and result holds that of the first state, then \
+    that of the second,
+ * and so on. Several threads share them out, as many as there are processors for 0. The parameters are \
+     those of all states. */
+int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments, {number} *const \
+    *results,
                   size_t states, size_t threads);
 
 /* A controller: it writes the inputs u at the time t, s, and returns 0, or anything else to end the run. */
@@ -140,13 +151,15 @@ typedef struct {prefix}_settings {{
      * \"time_stepping_leapfrog\": by a step, s */
     const char *method;
     {number} setting;  /* the tolerance or the step */
-    {number} period;   /* the controller is called every so many seconds; 0 for whenever the dynamics are evaluated */
+    {number} period;   /* the controller is called every so many seconds; 0 for whenever the dynamics are \
+        evaluated */
     {prefix}_control control; /* NULL for inputs that are zero */
     void *user;        /* what the controller is given first */
 }} {prefix}_settings;
 
 /* Simulates, and writes rows of t, q, v, u: not more than `rows`, and how many in to_count. */
-int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v, const {prefix}_settings *settings,
+int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v, const {prefix}_settings \
+    *settings,
                       {number} *to_samples, size_t rows, size_t *to_count);
 
 typedef struct {prefix}_rollout {{
@@ -155,12 +168,16 @@ typedef struct {prefix}_rollout {{
     size_t steps;
     size_t states;
     size_t threads;  /* as many as there are processors for 0 */
-    int inputs_of;   /* the inputs are: 0 zero, 1 those of each step, the same for all states, 2 those of each state and step */
+    int inputs_of;   /* the inputs are: 0 zero, 1 those of each step, the same for all states, 2 those of \
+        each state and step */
 }} {prefix}_rollout;
 
-/* Many motions under inputs that are held during each step. to_q and to_v hold, for every state, steps + 1 configurations and
- * velocities: the first ones are where it starts, all others are written. Inputs stand step by step, state after state. */
-int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs, {number} *to_q,
+/* Many motions under inputs that are held during each step. to_q and to_v hold, for every state, steps + 1 \
+    configurations and
+ * velocities: the first ones are where it starts, all others are written. Inputs stand step by step, state \
+     after state. */
+int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs, \
+    {number} *to_q,
                       {number} *to_v);
 
 "

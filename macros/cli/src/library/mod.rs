@@ -8,7 +8,7 @@ mod header;
 mod write;
 
 use crate::Stop;
-use crate::commands::given;
+use crate::commands::text_option;
 use crate::grid::{self, Grid};
 use crate::input::{Compiled, Input};
 use crate::sources::{self, dependency};
@@ -101,13 +101,13 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
         source: &source,
         model: &model,
         prefix,
-        tables: grid::given(matches, &source.tables())?,
+        tables: grid::table_options(matches, &source.tables())?,
         functions,
         left_out,
         equations: output.equations.plain.clone(),
     };
     let description = describe::description(&known);
-    let linkwork = given(matches, "linkwork").map(home).transpose()?.or_else(sources::of_command);
+    let linkwork = text_option(matches, "linkwork").map(home).transpose()?.or_else(sources::of_command);
     let manifest = manifest(prefix, linkwork.as_deref());
     let text = match matches.get_flag("expanded") {
         true => write::library(&known, &description, "")? + &expansion,
@@ -193,21 +193,24 @@ fn frames(model: &Model<'_>) -> Vec<Function> {
             "placement_of",
             vec![q()],
             vec![4, 4],
-            "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, m.",
+            "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its \
+             origin, m.",
         ),
         one(
             "frame_velocity",
             "velocity_of",
             vec![q(), v()],
             vec![6],
-            "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground axes.",
+            "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground \
+             axes.",
         ),
         one(
             "frame_acceleration",
             "acceleration_of",
             vec![q(), v(), a()],
             vec![6],
-            "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in ground axes; without gravity.",
+            "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in \
+             ground axes; without gravity.",
         ),
         one(
             "frame_jacobian",
@@ -270,7 +273,8 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let at = if model.time { "given(g, 0)" } else { "0.0" };
     let call = |function: &str| {
         format!(
-            "linkwork::discrete::{function}(m, &linkwork::integrate::Rk4::step(given(g, {})), {at}, &given(g, {first}), &given(g, {}), &given(g, {}))",
+            "linkwork::discrete::{function}(m, &linkwork::integrate::Rk4::step(given(g, {})), {at}, \
+             &given(g, {first}), &given(g, {}), &given(g, {}))",
             first + 3,
             first + 1,
             first + 2
@@ -278,7 +282,11 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     };
     let step = Function {
         name: "step".to_string(),
-        docs: vec!["One step of the classical method of Runge and Kutta, `h` seconds long, under inputs `u` that are held: the state after it.".to_string()],
+        docs: vec![
+            "One step of the classical method of Runge and Kutta, `h` seconds long, under inputs `u` that \
+             are held: the state after it."
+                .to_string(),
+        ],
         arguments: arguments.clone(),
         results: vec![("q".to_string(), vec![nq]), ("v".to_string(), vec![nv])],
         call: call("step"),
@@ -287,7 +295,12 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let part = |name: &str, columns| (name.to_string(), vec![nv, columns]);
     let transition = Function {
         name: "transition".to_string(),
-        docs: vec!["The same step with its Jacobians, exact to rounding: how configuration and velocity after it change with those before and with the inputs. Changes of configurations are displacements, as `integrate` takes them.".to_string()],
+        docs: vec![
+            "The same step with its Jacobians, exact to rounding: how configuration and velocity after it \
+             change with those before and with the inputs. Changes of configurations are displacements, as \
+             `integrate` takes them."
+                .to_string(),
+        ],
         arguments,
         results: vec![
             ("q".to_string(), vec![nq]),
@@ -308,7 +321,8 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
 /// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
 fn manifest(prefix: &str, linkwork: Option<&Path>) -> String {
     format!(
-        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
+        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname \
+         = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
          [dependencies]\n{}\n{}\n\n[workspace]\n",
         prefix.replace('_', "-"),
         dependency("linkwork", "runtime", linkwork),

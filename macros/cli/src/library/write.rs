@@ -10,10 +10,12 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
     let (kind, number, prefix) = (known.kind(), known.number(), known.prefix);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let mut text = format!(
-        "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, Library, Motion, Results, Rollout, given, raw}};\n\
+        "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, \
+         Library, Motion, Results, Rollout, given, raw}};\n\
          use std::ffi::{{CStr, c_char, c_int}};\n\n{declaration}\n"
     );
-    let _ = write!(
+    let _ =
+        write!(
         text,
         "impl Library for {kind} {{
             type Number = {number};
@@ -23,8 +25,8 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
                 Err(_) => c\"{{}}\",
             }};
             const FUNCTIONS: &'static [Function<Self>] = &[{}];
-            fn with(parameters: &[{number}]) -> Self {{
-                let of = |k: usize| parameters.get(k).copied().unwrap_or({number}::NAN);
+            fn from_parameters(parameters: &[{number}]) -> Self {{
+                let parameter = |k: usize| parameters.get(k).copied().unwrap_or({number}::NAN);
                 {}
             }}
             fn check(&self) -> Result<(), Failure> {{
@@ -44,14 +46,17 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
         checked(known),
         match (m.kinematic, known.contacting()) {
             (true, _) =>
-                "let _ = motion;\nErr(Failure::of(\"the mechanism has no dynamics\"))".to_string(),
-            (_, true) => format!("library::simulate_with_contacts::<Self, {number}, {nq}, {nv}, {nu}>(self, motion)"),
+                "let _ = motion;\nErr(Failure::new(\"the mechanism has no dynamics\"))".to_string(),
+            (_, true) => format!("library::simulate_with_contacts::<Self, {number}, {nq}, {nv}, {nu}>(self, \
+                                  motion)"),
             (_, false) => format!("library::simulate::<Self, {number}, {nq}, {nv}, {nu}>(self, motion)"),
         },
         match (m.kinematic || known.contacting(), known.source.mechanism.requests.batch) {
             (true, _) =>
-                "let _ = rollout;\nErr(Failure::of(\"rollouts go through smooth motions: this mechanism has none\"))".to_string(),
-            (_, true) => format!("library::roll_out_in_lanes::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
+                "let _ = rollout;\nErr(Failure::new(\"rollouts go through smooth motions: this mechanism has \
+                 none\"))".to_string(),
+            (_, true) => format!("library::roll_out_in_lanes::<Self, {number}, {nq}, {nv}, {nu}>(self, \
+                                  rollout)"),
             (_, false) => format!("library::roll_out::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
         },
     );
@@ -61,7 +66,8 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
             text,
             "/// The number of a frame.\nfn frame(g: Given<'_, {number}>) -> Result<usize, Failure> {{
                 let number: {number} = given(g, 0);
-                if number >= 0.0 {{ Ok(number as usize) }} else {{ Err(Failure::of(\"there is no frame with this number\")) }}
+                if number >= 0.0 {{ Ok(number as usize) }} else {{ Err(Failure::new(\"there is no frame with \
+                    this number\")) }}
             }}\n\n"
         );
     }
@@ -102,7 +108,7 @@ fn made(known: &Known<'_, '_>) -> String {
     let tables: Vec<[String; 2]> =
         tables.map(|(k, field)| [field.to_string(), format!("TABLE_{k}")]).collect();
     let has_numbers = !known.model.parameters.is_empty();
-    let unused = if has_numbers { "" } else { "let _ = of;\n" };
+    let unused = if has_numbers { "" } else { "let _ = parameter;\n" };
     let fields = by_field(&known.model.parameters);
     let own: Vec<String> =
         shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
@@ -110,14 +116,14 @@ fn made(known: &Known<'_, '_>) -> String {
         fields.get(field.trim_start_matches("r#")).and_then(|all| all.first()).copied().unwrap_or(usize::MAX)
     };
     if shell.file_fields.is_empty() {
-        let numbers = own.iter().map(|field| format!("{field}: of({})", index(field)));
+        let numbers = own.iter().map(|field| format!("{field}: parameter({})", index(field)));
         let tables = tables.iter().map(|[field, table]| format!("{field}: {table}"));
         return format!("{unused}{name} {{ {} }}", numbers.chain(tables).collect::<Vec<_>>().join(", "));
     }
     if !has_numbers && own.is_empty() && tables.is_empty() {
         return format!("{unused}{name}::FILE");
     }
-    let numbers = own.iter().map(|field| format!("of({})", index(field)));
+    let numbers = own.iter().map(|field| format!("parameter({})", index(field)));
     let tables = tables.iter().map(|[_, table]| table.clone());
     let values: Vec<String> = numbers.chain(tables).collect();
     if !has_numbers {
@@ -125,7 +131,7 @@ fn made(known: &Known<'_, '_>) -> String {
     }
     let mut text = format!("let mut m = {name}::from_file({});\n", values.join(", "));
     for (k, member) in known.model.parameters.iter().enumerate().filter(|(_, member)| !own.contains(member)) {
-        let _ = writeln!(text, "m.{member} = of({k});");
+        let _ = writeln!(text, "m.{member} = parameter({k});");
     }
     text + "m"
 }
@@ -154,7 +160,7 @@ fn tables(known: &Known<'_, '_>) -> String {
 fn checked(known: &Known<'_, '_>) -> &'static str {
     match known.model.parameters.is_empty() {
         true => "Ok(())",
-        false => "self.validate().map_err(Failure::of)",
+        false => "self.validate().map_err(Failure::new)",
     }
 }
 
@@ -230,7 +236,8 @@ fn write_motions(text: &mut String, known: &Known<'_, '_>) {
             rows: usize,
             count: *mut usize,
         ) -> c_int {{
-            unsafe {{ raw::simulate::<{kind}>([{nq}, {nv}, {nu}], parameters, q, v, settings, samples, rows, count) }}
+            unsafe {{ raw::simulate::<{kind}>([{nq}, {nv}, {nu}], parameters, q, v, settings, samples, rows, \
+                count) }}
         }}
 
         /// Many motions.

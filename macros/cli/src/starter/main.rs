@@ -35,8 +35,8 @@ pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
     let controller =
         |_t, q: &SVector<f64, 2>, v: &SVector<f64, 2>| [q[0] + 2.0 * v[0] - 30.0 * q[1] - 8.0 * v[1]].into();
     let stands: Vec<_> = motion().inputs(controller).collect::<Result<_, _>>()?;
-    let page =
-        Page::new("A cart with a pole").text("Drag to turn, scroll to zoom; the space bar plays and stops.");
+    let page = Page::new("A cart with a pole")
+        .text("Drag to rotate, scroll to zoom; the space bar plays and stops.");
     let falls = Motion::of("It falls", &cart_pole, &falls)?.trail("pole", [0.0, 1.0, 0.0], 1.0)?;
     Ok(page.motion(falls).motion(Motion::of("It is kept upright", &cart_pole, &stands)?))
 }

@@ -36,7 +36,9 @@ pub fn program(case: &Case, scalar: &str) -> String {
         texts.join(", ")
     };
     let mut text = format!(
-        "#include \"{p}.h\"\n#include <stdio.h>\n\nstatic void show(int n, const {scalar} *x) {{\n    for (int k = 0; k < n; ++k) {{\n        printf(\"%.17g \", (double)x[k]);\n    }}\n}}\n\nint main(void) {{\n"
+        "#include \"{p}.h\"\n#include <stdio.h>\n\nstatic void show(int n, const {scalar} *x) {{\n    for \
+         (int k = 0; k < n; ++k) {{\n        printf(\"%.17g \", (double)x[k]);\n    }}\n}}\n\nint main(void) \
+         {{\n"
     );
     let own = match case.parameters.is_empty() {
         true => "",

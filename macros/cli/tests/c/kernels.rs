@@ -25,7 +25,9 @@ fn program(case: &Case, scalar: &str) -> String {
         if texts.is_empty() { "0".to_string() } else { texts.join(", ") }
     };
     let mut text = format!(
-        "#include \"{p}.cuh\"\n#include <stdio.h>\n\ntypedef {scalar} number;\nstatic void show(int n, const number *x) {{\n    for (int k = 0; k < n; ++k) {{\n        printf(\"%.17g \", (double)x[{STATES} * k + {STATES} - 1]);\n    }}\n}}\n\nint main() {{\n    lw_error failed = 0;\n"
+        "#include \"{p}.cuh\"\n#include <stdio.h>\n\ntypedef {scalar} number;\nstatic void show(int n, const \
+         number *x) {{\n    for (int k = 0; k < n; ++k) {{\n        printf(\"%.17g \", (double)x[{STATES} * \
+         k + {STATES} - 1]);\n    }}\n}}\n\nint main() {{\n    lw_error failed = 0;\n"
     );
     let [arrays, tables] = case.tables;
     text.push_str(arrays);

@@ -120,11 +120,12 @@ fn by_length<const NQ: usize, const NV: usize>(
 ) -> Vec<f64> {
     let d = 1e-4;
     let (start, _) = end(0.0);
-    let at = |x: f64| {
+    let change_at = |x: f64| {
         let (q, v) = end(x);
         [difference(&start, &q).as_slice(), v.as_slice()].concat()
     };
-    let sides: Vec<[Vec<f64>; 2]> = [1.0, 2.0, 3.0].iter().map(|k| [at(k * d), at(-k * d)]).collect();
+    let sides: Vec<[Vec<f64>; 2]> =
+        [1.0, 2.0, 3.0].iter().map(|k| [change_at(k * d), change_at(-k * d)]).collect();
     let slope = |i: usize| {
         let part = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (part(0, 45.0) + part(1, -9.0) + part(2, 1.0)) / (60.0 * d)
@@ -298,12 +299,12 @@ fn declared_mechanisms() {
 fn names_that_c_does_not_have() {
     let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
-    let given = |name: &str| {
+    let argument = |name: &str| {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
     };
-    let (q, v, a) = (vector(&given("q")), vector(&given("v")), vector(&given("a")));
-    let (tau, u) = (vector(&given("tau")), vector(&given("u")));
+    let (q, v, a) = (vector(&argument("q")), vector(&argument("v")), vector(&argument("a")));
+    let (tau, u) = (vector(&argument("tau")), vector(&argument("u")));
     let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(&q, &v, &a, &tau);
     case.entries.extend([
         scalar!("short", "q", m.short(&q)),
@@ -359,10 +360,14 @@ const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] 
 
 /// Initialisers of the tables in C: linear, extrapolated, smooth, and both.
 const TABLES: [&str; 4] = [
-    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 0}",
-    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 0, 1}",
-    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 0}",
-    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 1, 1}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, \
+     0}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 0, \
+     1}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 1, \
+     0}",
+    ", {{l0, l1, 0}, {3, 2, 0}, l, 1, 1}, {{d0, 0, 0}, {4, 0, 0}, d, 1, 1}, {{m0, m1, m2}, {2, 3, 2}, m, 1, \
+     1}",
 ];
 
 /// Checks tables of every dimension within the grid and beyond it.
@@ -434,7 +439,9 @@ fn any_name_of_a_mechanism_compiles() {
         let joint = ["Ball", "Free"][k % 2];
         let source = folder.join("names.rs");
         let text = format!(
-            "#[mechanism(gravity = -9.81 * z, derivatives)]\npub struct {name} {{\n    pub mass: f64,\n    #[body(mass = mass, com = 0.1 * x, inertia = diagonal(0.1, 0.2, 0.25))]\n    stone: Body,\n    #[joint(ground -> stone)]\n    flight: {joint},\n}}\n"
+            "#[mechanism(gravity = -9.81 * z, derivatives)]\npub struct {name} {{\n    pub mass: f64,\n    \
+             #[body(mass = mass, com = 0.1 * x, inertia = diagonal(0.1, 0.2, 0.25))]\n    stone: Body,\n    \
+             #[joint(ground -> stone)]\n    flight: {joint},\n}}\n"
         );
         std::fs::write(&source, text).expect("a file of the tests'");
         export(&folder, &[source.to_str().expect("a path"), "--casadi"]);

@@ -14,7 +14,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Vector(constraint_facts(f).holonomic),
         docs: vec![
-            "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are satisfied.",
+            "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are \
+             satisfied.",
         ],
         ..Declaration::default()
     }),
@@ -22,7 +23,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
         docs: vec![
-            "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are satisfied.",
+            "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are \
+             satisfied.",
         ],
         ..Declaration::default()
     }),
@@ -30,7 +32,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Matrix(constraint_facts(f).all, f.nv),
         docs: vec![
-            "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to `v`.",
+            "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to \
+             `v`.",
         ],
         ..Declaration::default()
     }),
@@ -38,7 +41,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
         docs: vec![
-            "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint velocities is `J v̇ + b`.",
+            "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint \
+             velocities is `J v̇ + b`.",
         ],
         ..Declaration::default()
     }),

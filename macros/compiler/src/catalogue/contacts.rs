@@ -15,7 +15,9 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Vector(f.contacts.count),
         docs: vec![
-            "Gap function of each contact, in the order of `CONTACTS`: the signed distance of the surfaces, m, or the angle from a rotational stop, rad. It is zero at contact and negative for penetration.",
+            "Gap function of each contact, in the order of `CONTACTS`: the signed distance of the surfaces, \
+             m, or the angle from a rotational stop, rad. It is zero at contact and negative for \
+             penetration.",
         ],
         ..Declaration::default()
     }),
@@ -23,7 +25,10 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
-            "Contact velocities, m/s and rad/s. A contact has the rate of its gap, followed by the slip velocities of the first surface on the second one along one or two tangents, if it has friction. A friction moment has only the relative angular velocity about the normal (`.spin`) or the tangents (`.roll`). `CONTACT_ROWS` holds the rows of each contact.",
+            "Contact velocities, m/s and rad/s. A contact has the rate of its gap, followed by the slip \
+             velocities of the first surface on the second one along one or two tangents, if it has \
+             friction. A friction moment has only the relative angular velocity about the normal (`.spin`) \
+             or the tangents (`.roll`). `CONTACT_ROWS` holds the rows of each contact.",
         ],
         ..Declaration::default()
     }),
@@ -31,7 +36,9 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Matrix(f.contacts.rates, f.nv),
         docs: vec![
-            "Jacobian of the contacts: derivatives of the contact velocities with respect to `v`. A contact force `f`, N, contributes `Gᵀ f` to the generalized forces, where `G` are the rows of the contact.",
+            "Jacobian of the contacts: derivatives of the contact velocities with respect to `v`. A contact \
+             force `f`, N, contributes `Gᵀ f` to the generalized forces, where `G` are the rows of the \
+             contact.",
         ],
         ..Declaration::default()
     }),
@@ -39,7 +46,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
-            "Bias `b(q, v)` of the contacts, m/s² and rad/s²: for surfaces in contact, the time derivative of the contact velocities is `G v̇ + b`.",
+            "Bias `b(q, v)` of the contacts, m/s² and rad/s²: for surfaces in contact, the time derivative \
+             of the contact velocities is `G v̇ + b`.",
         ],
         ..Declaration::default()
     }),

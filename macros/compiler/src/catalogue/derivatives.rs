@@ -7,8 +7,10 @@ use super::shape::{Argument, Called, Record, Shape};
 use crate::mechanism::Supplied;
 use crate::syntax::Word;
 
-const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
-const KEPT: &str = "Entries that are always zero are not written: initialise the matrices with zeros once and pass them again in each call. No large value is moved.";
+const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and \
+                       free joints this is a motion in body axes.";
+const KEPT: &str = "Entries that are always zero are not written: initialise the matrices with zeros once \
+                    and pass them again in each call. No large value is moved.";
 
 const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
@@ -35,7 +37,8 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Square(f.nv),
         docs: vec![
             "A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew.",
-            "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols* (2021).",
+            "Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel \
+             symbols* (2021).",
         ],
         ..Declaration::default()
     }),
@@ -45,7 +48,8 @@ pub const ROWS: &[Row] = &[
         docs: vec![
             "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
             TANGENT,
-            "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022).",
+            "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using \
+             spatial vector algebra* (2022).",
         ],
         ..Declaration::default()
     }),
@@ -54,10 +58,15 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, Tau],
             shape: forward(f),
             docs: vec![
-                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is `M⁻¹`.",
+                "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is \
+                 `M⁻¹`.",
                 TANGENT,
-                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018). For a large mechanism it calls other functions; the operation counts then exclude the calls and the products of their results.",
-                "The motion of a mechanism with a free base, in the axes of the base, does not depend on the linear velocity of the base, and depends on its orientation only through the components of uniform gravity. If the ground exerts no other force, these six columns are exact.",
+                "`∂v̇/∂x = −M⁻¹ ∂τ/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid \
+                 body dynamics algorithms*, 2018). For a large mechanism it calls other functions; the \
+                 operation counts then exclude the calls and the products of their results.",
+                "The motion of a mechanism with a free base, in the axes of the base, does not depend on the \
+                 linear velocity of the base, and depends on its orientation only through the components of \
+                 uniform gravity. If the ground exerts no other force, these six columns are exact.",
             ],
             ..Declaration::default()
         }
@@ -66,7 +75,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V, U],
         shape: if f.calls_linear { Shape::CalledLinear(f.nv, f.nu) } else { Shape::Linear(f.nv, f.nu) },
         docs: vec![
-            "Returns `(A, B)` of `ẋ = A x + B δu`, the motion linearised about `q`, `v` and the inputs `u`, at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
+            "Returns `(A, B)` of `ẋ = A x + B δu`, the motion linearised about `q`, `v` and the inputs `u`, \
+             at the instant; `x` holds the displacement `δq` with `q ⊕ δq`, then `δv`.",
             TANGENT,
             "`δq̇` is `δv`, and for ball and free joints `δv + δq × v`.",
         ],
@@ -87,7 +97,8 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, A, Argument::Into("by_q", f.nv), Argument::Into("by_v", f.nv)],
             shape: Shape::Pair(f.nv),
             docs: vec![
-                "Writes [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) to `by_q` and `by_v`, `NV` by `NV` each.",
+                "Writes [`inverse_dynamics_derivatives`](Self::inverse_dynamics_derivatives) to `by_q` and \
+                 `by_v`, `NV` by `NV` each.",
                 KEPT,
             ],
             ..Declaration::default()
@@ -105,7 +116,9 @@ pub const ROWS: &[Row] = &[
             .concat(),
             shape: forward(f),
             docs: vec![
-                "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal [`forward_dynamics`](Self::forward_dynamics) up to rounding.",
+                "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, \
+                 `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal \
+                 [`forward_dynamics`](Self::forward_dynamics) up to rounding.",
                 KEPT,
             ],
             ..Declaration::default()
@@ -147,7 +160,8 @@ pub const MOMENTUM_ROWS: &[Row] = &[
             arguments: vec![Q, V],
             shape: Shape::Square(f.nv),
             docs: vec![
-                "`∂p/∂q` of [`generalized_momentum`](Self::generalized_momentum); `∂p/∂v` is the mass matrix.",
+                "`∂p/∂q` of [`generalized_momentum`](Self::generalized_momentum); `∂p/∂v` is the mass \
+                 matrix.",
                 TANGENT,
             ],
             ..Declaration::default()
@@ -159,14 +173,16 @@ pub const MOMENTUM_ROWS: &[Row] = &[
         docs: vec![
             "`(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Self::momentum_rate).",
             TANGENT,
-            "Derivatives of Hamilton's second equation, which occur in the Jacobians of discrete steps that are implicit in momenta.",
+            "Derivatives of Hamilton's second equation, which occur in the Jacobians of discrete steps that \
+             are implicit in momenta.",
         ],
         ..Declaration::default()
     }),
 ];
 
 const SECOND: &[Need] = &[Need::Inertia, Need::Asks(Word::SecondDerivatives)];
-const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
+const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, \
+                         with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 
 /// Rows of second derivatives of the dynamics.
 pub const SECOND_ROWS: &[Row] = &[
@@ -175,9 +191,12 @@ pub const SECOND_ROWS: &[Row] = &[
             arguments: vec![Q, V, A, Argument::Factors(f.nv)],
             shape: Shape::Hessian(f.nv),
             docs: vec![
-                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`, with `τ` by [`inverse_dynamics`](Self::inverse_dynamics): the Hessians of its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.",
+                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`, with `τ` by \
+                 [`inverse_dynamics`](Self::inverse_dynamics): the Hessians of its entries, contracted with \
+                 the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.",
                 SYMMETRIC,
-                "Computed by recursion, like the first derivatives, if motion subspaces are constant in link axes (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023).",
+                "Computed by recursion, like the first derivatives, if motion subspaces are constant in link \
+                 axes (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023).",
             ],
             ..Declaration::default()
         }
@@ -190,7 +209,9 @@ pub const SECOND_ROWS: &[Row] = &[
             arguments: vec![Q, V, U, Argument::Factors(f.nv)],
             shape: Shape::InputHessian(f.nv, f.nu),
             docs: vec![
-                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)` of `λᵀ τ`, with `τ` the [`generalized_forces`](Self::generalized_forces) of the inputs: the Hessians of its entries, contracted with the factors `lambda`.",
+                "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)` of `λᵀ τ`, with `τ` the \
+                 [`generalized_forces`](Self::generalized_forces) of the inputs: the Hessians of its \
+                 entries, contracted with the factors `lambda`.",
                 SYMMETRIC,
             ],
             ..Declaration::default()

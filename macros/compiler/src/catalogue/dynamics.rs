@@ -44,14 +44,18 @@ pub const ROWS: &[Row] = &[
         docs: vec![
             match f.constraints.is_some_and(|c| c.determining) {
                 true => {
-                    "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular if coordinates without inertia are determined by constraints."
+                    "Mass matrix `M(q)`, symmetric positive semidefinite, both triangles: singular if \
+                     coordinates without inertia are determined by constraints."
                 }
                 false => "Mass matrix `M(q)`, symmetric positive definite, both triangles.",
             },
-            "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). kg between translations, kg·m² between rotations, kg·m mixed.",
+            "Composite-rigid-body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6). \
+             kg between translations, kg·m² between rotations, kg·m mixed.",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("It contains only the bodies: forces that depend on accelerations are part of [`inverse_dynamics`](Self::inverse_dynamics)."))
+        .chain(f.acceleration_forces.then_some("It contains only the bodies: forces that depend on \
+                                                accelerations are part of \
+                                                [`inverse_dynamics`](Self::inverse_dynamics)."))
         .collect(),
         ..Declaration::default()
     })
@@ -60,7 +64,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations, N·m for rotations.",
+            "Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N \
+             for translations, N·m for rotations.",
             "Recursive Newton–Euler algorithm without accelerations.",
         ],
         ..Declaration::default()
@@ -71,8 +76,10 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: vec![
             match f.acceleration_forces {
-                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that cause the acceleration `a`, with the forces `C a` that depend on accelerations.",
-                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that cause the acceleration `a`.",
+                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that cause the \
+                         acceleration `a`, with the forces `C a` that depend on accelerations.",
+                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that cause the \
+                          acceleration `a`.",
             },
             "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
         ],
@@ -84,12 +91,17 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: match f.acceleration_forces {
             true => vec![
-                "`v̇ = (M(q) − C(q, v))⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`, with the forces `C v̇` that depend on accelerations.",
-                "Sparse triangular factorisation of `M − C`, which need not be symmetric. Not finite if one of its leading blocks, from the leaves to the root, is singular, which happens if forces that depend on accelerations outweigh the masses.",
+                "`v̇ = (M(q) − C(q, v))⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`, with the \
+                 forces `C v̇` that depend on accelerations.",
+                "Sparse triangular factorisation of `M − C`, which need not be symmetric. Not finite if one \
+                 of its leading blocks, from the leaves to the root, is singular, which happens if forces \
+                 that depend on accelerations outweigh the masses.",
             ],
             false => vec![
-                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`. Not finite if `M(q)` is singular.",
-                "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less (Featherstone 2008, ch. 6, 7).",
+                "`v̇ = M(q)⁻¹ (τ − h(q, v))`: the acceleration under the forces `tau`. Not finite if `M(q)` \
+                 is singular.",
+                "Articulated-body algorithm, or sparse factorisation of `M`, whichever costs less \
+                 (Featherstone 2008, ch. 6, 7).",
             ],
         },
         ..Declaration::default()
@@ -99,7 +111,8 @@ pub const ROWS: &[Row] = &[
         arguments: if f.velocity_inputs { vec![Q, V, U] } else { vec![Q, U] },
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Generalized forces `τ` of the inputs `u`, by virtual work: N for translations, N·m for rotations.",
+            "Generalized forces `τ` of the inputs `u`, by virtual work: N for translations, N·m for \
+             rotations.",
         ],
         ..Declaration::default()
     })
@@ -109,7 +122,8 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Scalar,
         docs: vec![match f.time {
             true => {
-                "Kinetic energy `T`, J. It is `½ vᵀ M v` only without prescribed motion, which adds terms of degree one and zero in `v`."
+                "Kinetic energy `T`, J. It is `½ vᵀ M v` only without prescribed motion, which adds terms of \
+                 degree one and zero in `v`."
             }
             false => "Kinetic energy `T = ½ vᵀ M(q) v`, J.",
         }],
@@ -128,7 +142,8 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nv),
         docs: vec![match f.time {
             true => {
-                "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M v` only without prescribed motion."
+                "Generalized momentum `p = ∂T/∂v`, kg·m/s for translations, kg·m²/s for rotations. It is `M \
+                 v` only without prescribed motion."
             }
             false => "Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.",
         }],
@@ -139,11 +154,13 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Rate of the generalized momentum without inputs, N for translations, N·m for rotations: `ṗ = momentum_rate(q, v) + τ`.",
+            "Rate of the generalized momentum without inputs, N for translations, N·m for rotations: `ṗ = \
+             momentum_rate(q, v) + τ`.",
             "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not included and must be added."))
+        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not included and \
+                                                must be added."))
         .collect(),
         ..Declaration::default()
     })
@@ -152,7 +169,8 @@ pub const ROWS: &[Row] = &[
         vec![Q, V],
         vec![
             "Power dissipated by dashpots, friction and dissipation functions, W.",
-            "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − dissipated_power`.",
+            "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − \
+             dissipated_power`.",
         ],
     )),
     Row::derived(Id::ControlPower, "control_power", INERTIA, |_| {
@@ -161,7 +179,8 @@ pub const ROWS: &[Row] = &[
     Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power(
         vec![Q, V],
         vec![match f.acceleration_forces {
-            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, without the power of forces that depend on accelerations.",
+            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, \
+                     without the power of forces that depend on accelerations.",
             false => "Power of applied forces that are neither conservative nor dissipative nor inputs, W.",
         }],
     )),

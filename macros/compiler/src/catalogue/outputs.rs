@@ -54,7 +54,8 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     arguments.extend(uses.inputs.then_some(U));
     let about = match uses.accelerations {
         true => format!(
-            "The output `{name}`, for the accelerations `a`. The option `derivatives` adds functions for its derivatives."
+            "The output `{name}`, for the accelerations `a`. The option `derivatives` adds functions for its \
+             derivatives."
         ),
         false => format!("The output `{name}`."),
     };
@@ -75,9 +76,12 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     if f.requests.derivatives {
         let docs = vec![
             format!(
-                "Partial derivatives of the output `{name}` by configuration, velocity, acceleration and input."
+                "Partial derivatives of the output `{name}` by configuration, velocity, acceleration and \
+                 input."
             ),
-            "Column `i` of the derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.".to_string(),
+            "Column `i` of the derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free \
+             joints this is a motion in body axes."
+                .to_string(),
         ];
         let shape = Shape::Jacobians(size, f.nv, f.nu);
         let name = format!("{name}{DERIVATIVES}");
@@ -85,7 +89,8 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     }
     if f.requests.sensitivities {
         let docs = vec![format!(
-            "Derivatives of the output `{name}` by the parameters: column `k` by the parameter `PARAMETERS[k]`."
+            "Derivatives of the output `{name}` by the parameters: column `k` by the parameter \
+             `PARAMETERS[k]`."
         )];
         let shape = Shape::Matrix(size, f.parameters);
         let name = format!("{name}{BY_PARAMETERS}");

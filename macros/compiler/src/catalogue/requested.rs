@@ -24,8 +24,11 @@ pub const CENTROIDAL: &[Row] = &[
             arguments: vec![Q],
             shape: Shape::Matrix(6, f.nv),
             docs: vec![
-                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part first, then angular about the centre of mass, in ground axes. For a mechanism with prescribed motion, `A v` is the contribution of the velocities.",
-                "kg and kg·m for translations, kg·m and kg·m² for rotations (Orin, Goswami and Lee, *Centroidal dynamics of a humanoid robot*, 2013).",
+                "Centroidal momentum matrix `A(q)`: [`momentum`](Self::momentum) is `A v`, linear part \
+                 first, then angular about the centre of mass, in ground axes. For a mechanism with \
+                 prescribed motion, `A v` is the contribution of the velocities.",
+                "kg and kg·m for translations, kg·m and kg·m² for rotations (Orin, Goswami and Lee, \
+                 *Centroidal dynamics of a humanoid robot*, 2013).",
             ],
             ..Declaration::default()
         }
@@ -34,7 +37,8 @@ pub const CENTROIDAL: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(6),
         docs: vec![
-            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) at zero accelerations. In every motion the rate of the momentum is `A v̇ + Ȧ v`.",
+            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) at zero \
+             accelerations. In every motion the rate of the momentum is `A v̇ + Ȧ v`.",
         ],
         ..Declaration::default()
     }),
@@ -47,10 +51,13 @@ pub const CANONICAL: &[Row] = &[
         shape: Shape::Scalar,
         docs: vec![match f.time {
             true => {
-                "Hamiltonian `H(q, p) = p·v − T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`. With prescribed motion it differs from the energy."
+                "Hamiltonian `H(q, p) = p·v − T + U`, J, of the \
+                 [`generalized_momentum`](Self::generalized_momentum) `p`. With prescribed motion it differs \
+                 from the energy."
             }
             false => {
-                "Hamiltonian `H(q, p) = T + U`, J, of the [`generalized_momentum`](Self::generalized_momentum) `p`."
+                "Hamiltonian `H(q, p) = T + U`, J, of the \
+                 [`generalized_momentum`](Self::generalized_momentum) `p`."
             }
         }],
         ..Declaration::default()
@@ -59,7 +66,8 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, Argument::Momenta(f.nv)],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Hamilton's first equation: the velocity `v = ∂H/∂p` of a generalized momentum `p`, m/s and rad/s. The inverse of [`generalized_momentum`](Self::generalized_momentum).",
+            "Hamilton's first equation: the velocity `v = ∂H/∂p` of a generalized momentum `p`, m/s and \
+             rad/s. The inverse of [`generalized_momentum`](Self::generalized_momentum).",
         ],
         ..Declaration::default()
     }),
@@ -67,7 +75,9 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, Argument::Momenta(f.nv), Tau],
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "Hamilton's second equation: `ṗ = −∂H/∂q + τ` plus passive forces without a potential, N and N·m; for ball and free joints in body components (Lie and Poisson). Include constraint forces in `tau`.",
+            "Hamilton's second equation: `ṗ = −∂H/∂q + τ` plus passive forces without a potential, N and \
+             N·m; for ball and free joints in body components (Lie and Poisson). Include constraint forces \
+             in `tau`.",
         ],
         ..Declaration::default()
     }),
@@ -75,8 +85,11 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Scalar,
         docs: vec![
-            "Routhian `R = L − p·w`, J, as a function of the velocities of the noncyclic coordinates and of the momenta `p` of the cyclic ones, in the order of `CYCLIC`. The velocities `w` of the cyclic coordinates follow from `p`; their entries of `v` are not read.",
-            "Lagrange's equations hold for it: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 8.3.",
+            "Routhian `R = L − p·w`, J, as a function of the velocities of the noncyclic coordinates and of \
+             the momenta `p` of the cyclic ones, in the order of `CYCLIC`. The velocities `w` of the cyclic \
+             coordinates follow from `p`; their entries of `v` are not read.",
+            "Lagrange's equations hold for it: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § \
+             8.3.",
         ],
         ..Declaration::default()
     }),
@@ -84,7 +97,8 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Vector(f.cyclic),
         docs: vec![
-            "Velocities of the cyclic coordinates, m/s and rad/s, in the order of `CYCLIC`, as functions of their momenta `p`: `w = −∂R/∂p`. Their entries of `v` are not read.",
+            "Velocities of the cyclic coordinates, m/s and rad/s, in the order of `CYCLIC`, as functions of \
+             their momenta `p`: `w = −∂R/∂p`. Their entries of `v` are not read.",
         ],
         ..Declaration::default()
     }),
@@ -92,7 +106,10 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V, Argument::Momenta(f.cyclic), Tau],
         shape: Shape::Vector(f.nv.saturating_sub(f.cyclic)),
         docs: vec![
-            "Accelerations of the noncyclic coordinates, m/s² and rad/s², in their order in `v`: Routh's equations with the forces `tau` and the momenta `p` of the cyclic coordinates, in the order of `CYCLIC`. The rates of these momenta are their entries of `tau`. Entries of `v` of cyclic coordinates are not read.",
+            "Accelerations of the noncyclic coordinates, m/s² and rad/s², in their order in `v`: Routh's \
+             equations with the forces `tau` and the momenta `p` of the cyclic coordinates, in the order of \
+             `CYCLIC`. The rates of these momenta are their entries of `tau`. Entries of `v` of cyclic \
+             coordinates are not read.",
         ],
         ..Declaration::default()
     }),
@@ -100,7 +117,8 @@ pub const CANONICAL: &[Row] = &[
         arguments: vec![Q, V],
         shape: Shape::Vector(f.conserved),
         docs: vec![
-            "The quantities listed in `CONSERVED`, which are constant in every motion without inputs: J for energies, kg·m/s and kg·m²/s for momenta.",
+            "The quantities listed in `CONSERVED`, which are constant in every motion without inputs: J for \
+             energies, kg·m/s and kg·m²/s for momenta.",
         ],
         ..Declaration::default()
     }),
@@ -113,8 +131,11 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, STANDARD * f.bodies),
         docs: vec![
-            "Regressor `Y(q, v, a)`: without springs, friction and other elements, [`inverse_dynamics`](Self::inverse_dynamics) is `Y π`, with the [`standard_parameters`](Self::standard_parameters) `π`.",
-            "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* (1986); columns as in Pinocchio.",
+            "Regressor `Y(q, v, a)`: without springs, friction and other elements, \
+             [`inverse_dynamics`](Self::inverse_dynamics) is `Y π`, with the \
+             [`standard_parameters`](Self::standard_parameters) `π`.",
+            "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* \
+             (1986); columns as in Pinocchio.",
         ],
         ..Declaration::default()
     }),
@@ -122,7 +143,9 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(STANDARD * f.bodies),
         docs: vec![
-            "The inertial parameters `π`: for each body of `BODIES`, including everything fixed to it, its mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) about the body's origin in its axes.",
+            "The inertial parameters `π`: for each body of `BODIES`, including everything fixed to it, its \
+             mass `m` (kg), first moment `m c` (x, y, z; kg·m) and inertia (xx, xy, yy, xz, yz, zz; kg·m²) \
+             about the body's origin in its axes.",
         ],
         ..Declaration::default()
     })
@@ -131,7 +154,9 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, f.base),
         docs: vec![
-            "The regressor of the base parameters, whose columns are linearly independent: `base_regressor(q, v, a) · base_parameters(π)` is `joint_torque_regressor(q, v, a) · π` for every `π`.",
+            "The regressor of the base parameters, whose columns are linearly independent: \
+             `base_regressor(q, v, a) · base_parameters(π)` is `joint_torque_regressor(q, v, a) · π` for \
+             every `π`.",
         ],
         ..Declaration::default()
     }),
@@ -140,8 +165,13 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Argument::Standard(STANDARD * f.bodies)],
         shape: Shape::Vector(f.base),
         docs: vec![
-            "The base parameters for the standard parameters `π`: the minimum set of linear combinations that determine the motion, which is all that can be identified from it.",
-            "Inertial parameters that a joint's motion does not affect are transferred to the parent (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial robots*, 1990). Remaining linear dependencies are found numerically. If the geometry has parameters, dependencies beyond those rules whose factors depend on the parameters are not used.",
+            "The base parameters for the standard parameters `π`: the minimum set of linear combinations \
+             that determine the motion, which is all that can be identified from it.",
+            "Inertial parameters that a joint's motion does not affect are transferred to the parent \
+             (Gautier and Khalil, *Direct calculation of minimum set of inertial parameters of serial \
+             robots*, 1990). Remaining linear dependencies are found numerically. If the geometry has \
+             parameters, dependencies beyond those rules whose factors depend on the parameters are not \
+             used.",
         ],
     }),
     Row::derived(
@@ -152,7 +182,8 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, A],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
+                "`∂τ/∂p` of [`inverse_dynamics`](Self::inverse_dynamics): column `k` is the derivative by \
+                 the parameter `PARAMETERS[k]`.",
             ],
             ..Declaration::default()
         },
@@ -165,7 +196,8 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, Tau],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
+                "`∂v̇/∂p` of [`forward_dynamics`](Self::forward_dynamics): column `k` is the derivative by \
+                 the parameter `PARAMETERS[k]`.",
                 "`∂v̇/∂p = −M⁻¹ ∂τ/∂p` at `a = v̇`.",
             ],
             ..Declaration::default()
@@ -179,7 +211,8 @@ pub const ROWS: &[Row] = &[
             arguments: vec![Q, V, Argument::U],
             shape: Shape::Matrix(f.nv, f.parameters),
             docs: vec![
-                "`∂τ/∂p` of the inputs' [`generalized_forces`](Self::generalized_forces): column `k` is the derivative by the parameter `PARAMETERS[k]`.",
+                "`∂τ/∂p` of the inputs' [`generalized_forces`](Self::generalized_forces): column `k` is the \
+                 derivative by the parameter `PARAMETERS[k]`.",
             ],
             ..Declaration::default()
         },
@@ -188,7 +221,8 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q],
         shape: Shape::Vector(f.entries.len()),
         docs: vec![
-            "The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, without those that are always zero: `MASS_MATRIX_ENTRIES[k]` holds row and column of entry `k`.",
+            "The entries of the [`mass_matrix`](Self::mass_matrix) in its lower triangle, column by column, \
+             without those that are always zero: `MASS_MATRIX_ENTRIES[k]` holds row and column of entry `k`.",
         ],
         ..Declaration::default()
     }),
@@ -196,7 +230,9 @@ pub const ROWS: &[Row] = &[
         arguments: vec![Q, Argument::Into("m", f.nv)],
         shape: Shape::Symmetric(f.nv),
         docs: vec![
-            "Writes the [`mass_matrix`](Self::mass_matrix) to `m`, `NV` by `NV`. Entries that are always zero are not written: initialise `m` with zeros once and pass it again in each call. `MASS_MATRIX_ENTRIES` lists the entries that are written, on both sides of the diagonal.",
+            "Writes the [`mass_matrix`](Self::mass_matrix) to `m`, `NV` by `NV`. Entries that are always \
+             zero are not written: initialise `m` with zeros once and pass it again in each call. \
+             `MASS_MATRIX_ENTRIES` lists the entries that are written, on both sides of the diagonal.",
         ],
         ..Declaration::default()
     }),

@@ -16,8 +16,11 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "The joint velocities `Z(q) v` for the generalized speeds `v`: rates of the coordinates, body-frame velocities of ball and free joints, in m/s and rad/s. Entries that no generalized speed replaces are those of `v`.",
-            "Not finite in singular configurations, in which the generalized speeds do not determine the joint velocities.",
+            "The joint velocities `Z(q) v` for the generalized speeds `v`: rates of the coordinates, \
+             body-frame velocities of ball and free joints, in m/s and rad/s. Entries that no generalized \
+             speed replaces are those of `v`.",
+            "Not finite in singular configurations, in which the generalized speeds do not determine the \
+             joint velocities.",
         ],
     }),
     Row::derived(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
@@ -25,7 +28,8 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(f.nv),
         docs: vec![
-            "The generalized speeds `Y(q) v` of a motion with the joint velocities `v`: the inverse of [`rates_of_speeds`](Self::rates_of_speeds).",
+            "The generalized speeds `Y(q) v` of a motion with the joint velocities `v`: the inverse of \
+             [`rates_of_speeds`](Self::rates_of_speeds).",
         ],
     }),
     Row::derived(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {

@@ -62,7 +62,7 @@ impl Function {
         let programs = [Some(&self.program), self.program.simd.as_deref()];
         programs.into_iter().flatten().all(|program| {
             let reads_arguments =
-                || program.symbols().into_iter().map(Quantity::of).all(|q| self.is_given(q));
+                || program.symbols().into_iter().map(Quantity::from_symbol).all(|q| self.is_given(q));
             program.outputs.len() == expected && reads_arguments()
         })
     }
@@ -204,12 +204,14 @@ impl Constant {
         vec![
             Constant::strings(
                 "BODIES",
-                "Name of the body that every ten standard parameters belong to, with all that is fixed to it.",
+                "Name of the body of each group of ten standard parameters, which include everything fixed \
+                 to it.",
                 bodies,
             ),
             Constant::strings(
                 "BASE_PARAMETERS",
-                "Name of every base parameter: the parameter of a link, about the frame of its joint, that stands for the combination.",
+                "Name of each base parameter: the link parameter, in the frame of its joint, that represents \
+                 the combination.",
                 base,
             ),
         ]
@@ -219,7 +221,8 @@ impl Constant {
     pub fn entries(list: &[(usize, usize)]) -> Constant {
         Constant {
             name: "MASS_MATRIX_ENTRIES",
-            docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass matrix without what is always zero.",
+            docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass \
+                   matrix without entries that are always zero.",
             item: "(usize, usize)",
             list: list.iter().map(|entry| format!("{entry:?}")).collect(),
         }
@@ -229,7 +232,9 @@ impl Constant {
     pub fn cyclic(list: &[usize]) -> Constant {
         Constant {
             name: "CYCLIC",
-            docs: "Index in `v` of the velocity of every cyclic coordinate: those on which the Lagrangian does not depend, whatever the parameters are, and whose momenta only inputs change.",
+            docs: "Index in `v` of the velocity of each cyclic coordinate. The Lagrangian does not depend on \
+                   a cyclic coordinate, for any values of the parameters, and only inputs change its \
+                   momentum.",
             item: "usize",
             list: list.iter().map(ToString::to_string).collect(),
         }
@@ -239,7 +244,9 @@ impl Constant {
     pub fn conserved(list: &[String]) -> Constant {
         Constant::strings(
             "CONSERVED",
-            "Name of every entry of [`conserved`](Self::conserved): what keeps its value in every motion without inputs, whatever the parameters are. Found by trying energy, Jacobi's integral and momenta.",
+            "Name of every entry of [`conserved`](Self::conserved): a quantity that is constant in every \
+             motion without inputs, for any values of the parameters. The energy, Jacobi's integral and \
+             momenta are tried.",
             list,
         )
     }
@@ -259,12 +266,15 @@ impl Constant {
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS",
-                "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in the parameters of the mechanism: what is at rest, the equations, and of up to three velocities and degree seven the characteristic equation with the conditions of stability.",
+                "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in \
+                 the parameters of the mechanism: the state at rest, the equations and, for at most three \
+                 velocities and degree seven, the characteristic equation with the conditions of stability.",
                 &texts(|(_, written)| written.plain.clone()),
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS_LATEX",
-                "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of `amsmath` each.",
+                "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of \
+                 `amsmath` each.",
                 &texts(|(_, written)| written.latex.clone()),
             ),
         ]
@@ -282,14 +292,16 @@ impl Constant {
             };
             let at = first - piece.numbers.len();
             format!(
-                "::linkwork::drawing::Piece {{ name: {name:?}, role: ::linkwork::drawing::Role::{role:?}, kind: ::linkwork::drawing::Kind::{kind:?}, frames: [{}, {}], first: {at} }}",
+                "::linkwork::drawing::Piece {{ name: {name:?}, role: ::linkwork::drawing::Role::{role:?}, \
+                 kind: ::linkwork::drawing::Kind::{kind:?}, frames: [{}, {}], first: {at} }}",
                 frame(a),
                 frame(b)
             )
         });
         Constant {
             name: "DRAWING",
-            docs: "What the mechanism looks like, piece by piece: solids, surfaces, joints, force elements, inputs.",
+            docs: "Geometry of the mechanism for drawings, an entry for each solid, surface, joint, force \
+                   element and input.",
             item: "::linkwork::drawing::Piece",
             list: written.collect(),
         }

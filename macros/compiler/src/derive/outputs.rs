@@ -13,7 +13,7 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
     let functions = |output: &OutputValue<'_>| {
         let size = output.values.len();
         let names = |f: fn(&Quantity) -> bool| {
-            symbols_in(&output.values).into_iter().map(Quantity::of).any(|q| f(&q))
+            symbols_in(&output.values).into_iter().map(Quantity::from_symbol).any(|q| f(&q))
         };
         let touched = output.diagram.is_none() && names(|q| matches!(q, Quantity::ContactForce(_)));
         let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
@@ -28,7 +28,7 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
 }
 
 fn uses(output: &OutputValue<'_>) -> Uses {
-    let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::of).collect();
+    let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
     let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
     Uses {
         velocities: has(|q| matches!(q, Quantity::Velocity(_))),

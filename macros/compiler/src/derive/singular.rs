@@ -8,7 +8,8 @@ use crate::mechanism::{Inertia, LinkId, Model, Motion};
 use crate::syntax::ROOT_JOINT;
 
 /// Help for a mechanism without inertia.
-const LEAVE_OUT: &str = "or leave the dynamics out, which need inertia: with `inertia = none` frames, their Jacobians, constraints and outputs remain";
+const LEAVE_OUT: &str = "or omit the dynamics with `inertia = none`: frames, their Jacobians, constraints \
+                         and outputs remain";
 
 /// Returns true if the mass matrix is regular; otherwise reports the cause.
 pub fn check<'g>(
@@ -55,9 +56,9 @@ pub fn check_effective<'g>(
     }
     cx.error(
         force.place.clone(),
-        format!("what forces take of accelerations cancels the inertia of {}", all_of(&names)),
+        format!("forces that depend on accelerations cancel the inertia of {}", all_of(&names)),
     )
-    .help("carried water or air resists acceleration: it acts against it, as in `value = -added * a(…)`");
+    .help("an added mass of water or air opposes the acceleration, as in `value = -added * a(…)`");
     false
 }
 
@@ -84,8 +85,8 @@ fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) ->
 fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     let place = &model.velocities[velocity].1;
     let (what, mend) = match place.file {
-        Some(_) => ("no link that moves has inertia", "add `<inertial>` elements to the file"),
-        None => ("nothing that moves has inertia", "give mass or inertia to the bodies"),
+        Some(_) => ("no moving link has inertia", "add `<inertial>` elements to the file"),
+        None => ("no moving body has inertia", "give mass or inertia to the bodies"),
     };
     cx.error(place.clone(), what).help(mend).help(LEAVE_OUT);
 }
@@ -101,11 +102,9 @@ fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
         false => "no moment of inertia about some axis",
     };
     let diagnostic = cx.error(place.clone(), format!("`{name}` moves freely and has {what}"));
-    diagnostic.help(format!(
-        "whatever a free base carries by joints, it needs mass and inertia: give them to `{name}`"
-    ));
+    diagnostic.help(format!("a free base needs a mass and an inertia of its own: give them to `{name}`"));
     if place.file.is_some() {
-        diagnostic.help("or hold it: leave out `base = free`");
+        diagnostic.help("or fix it: remove `base = free`");
     }
 }
 
@@ -122,9 +121,9 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
         1 => ("coordinate", "moves", "the joint carries"),
         _ => ("coordinates", "move", "the joints carry"),
     };
-    let message = format!("the {subject} {} {verb} nothing that has inertia", all_of(&list));
+    let message = format!("the {subject} {} {verb} no body with inertia", all_of(&list));
     let diagnostic = cx.error(place.clone(), message);
-    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to what {joints}"));
+    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));
     if place.file.is_some() {
         let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
         joints.dedup();

@@ -65,7 +65,8 @@ impl Specialisation {
 
     /// Returns true for a symbol whose value is known beforehand.
     pub fn knows(self, symbol: Symbol) -> bool {
-        self == Specialisation::ByParameters && matches!(Quantity::of(symbol), Quantity::Parameter(_))
+        self == Specialisation::ByParameters
+            && matches!(Quantity::from_symbol(symbol), Quantity::Parameter(_))
     }
 }
 

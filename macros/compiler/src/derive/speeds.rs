@@ -25,16 +25,19 @@ pub(super) fn unsupported_option(
 ) -> Option<(&'static str, &'static str)> {
     if requests.routh || requests.equations == Printed::Routh {
         return Some((
-            "Routh's equations are those of coordinates, not of declared speeds",
-            "the reduction eliminates the rates of cyclic coordinates by their momenta, and with speeds these rates are no velocities: leave `routh` out, or the speeds",
+            "Routh's equations are available in coordinates, not in declared speeds",
+            "the reduction replaces the rates of cyclic coordinates by their momenta, but declared speeds \
+             replace these rates: remove `routh` or the speeds",
         ));
     }
     let of_speeds: Vec<Expr<'_>> = speeds.of_speeds().iter().flatten().copied().collect();
-    let by_parameters =
-        symbols_in(&of_speeds).into_iter().any(|s| matches!(Quantity::of(s), Quantity::Parameter(_)));
+    let by_parameters = symbols_in(&of_speeds)
+        .into_iter()
+        .any(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)));
     (requests.sensitivities && by_parameters).then_some((
-        "there are no derivatives by parameters with speeds that contain parameters",
-        "the configuration would move otherwise with other parameters: leave the word `sensitivities` out, or the parameters in `#[speed(…)]`",
+        "derivatives with respect to parameters are not available with speeds that contain parameters",
+        "the motion of the configuration would depend on the parameters: remove the option `sensitivities`, \
+         or the parameters in `#[speed(…)]`",
     ))
 }
 
@@ -150,7 +153,7 @@ impl<'g> Derivation<'_, 'g> {
 
     /// Returns the expressions with the acceleration symbols replaced by `a`.
     fn at_accelerations(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        replace_all(&e, &|s| match Quantity::of(s) {
+        replace_all(&e, &|s| match Quantity::from_symbol(s) {
             Quantity::Acceleration(k) => a.get(k).copied(),
             _ => None,
         })
@@ -158,10 +161,11 @@ impl<'g> Derivation<'_, 'g> {
 
     fn linearized(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (model, tau) = (&speeds.model, self.input_forces(speeds));
-        let accelerations = replace_all(&self.free_accelerations(speeds), &|s| match Quantity::of(s) {
-            Quantity::Force(k) => tau.get(k).copied(),
-            _ => None,
-        });
+        let accelerations =
+            replace_all(&self.free_accelerations(speeds), &|s| match Quantity::from_symbol(s) {
+                Quantity::Force(k) => tau.get(k).copied(),
+                _ => None,
+            });
         let mut forces = symbolic::derivatives(model, &self.inverse(speeds));
         let by_state = symbolic::derivatives(model, &tau);
         subtract(&mut forces.by_q, &by_state.by_q);
@@ -266,7 +270,7 @@ impl<'g> Derivation<'_, 'g> {
         let of_joints = speeds.with_momenta(&momenta);
         let in_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
             let velocity = speeds.speeds_of(&speeds.with_momenta(&self.canonical(|h| h.velocity.clone())));
-            replace_all(&e, &|s| match Quantity::of(s) {
+            replace_all(&e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
                 _ => None,
             })

@@ -114,7 +114,8 @@ fn write_one(out: &mut String, name: &str, absent: &Absent, head: &Head) {
     let comma = if bounds.is_empty() { "" } else { "," };
     let _ = writeln!(
         out,
-        "{ALLOW}#[doc(hidden)]\nimpl{generics} {name}{arguments} {start}{comma} for<'a> Self: ::linkwork::__private::absent::{}<'a> {{",
+        "{ALLOW}#[doc(hidden)]\nimpl{generics} {name}{arguments} {start}{comma} for<'a> Self: \
+         ::linkwork::__private::absent::{}<'a> {{",
         absent.reason
     );
     for function in &absent.functions {

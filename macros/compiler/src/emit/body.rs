@@ -125,7 +125,7 @@ impl Writer<'_> {
                 op.operands(&mut note);
             }
         }
-        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
         self.arguments.iter().copied().filter(is_needed).collect()
     }
 
@@ -216,7 +216,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
             (false, true) => writeln!(out, "let [{list}] = *Ops::each(&{name}.data.0[0]);"),
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
-            if gather.iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
+            if gather.iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
                 let _ = writeln!(out, "let lanes{k} = {};", w.gathered(gather));
             }
         }
@@ -227,7 +227,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
 /// none. Unused entries are not bound, because rustc takes long for unused variables.
 fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
     let mut list = Vec::new();
-    for k in used.iter().filter_map(|s| argument.index(Quantity::of(*s))).filter(|k| *k < n) {
+    for k in used.iter().filter_map(|s| argument.index(Quantity::from_symbol(*s))).filter(|k| *k < n) {
         let length = list.len().max(k + 1);
         list.resize(length, "_".to_string());
         list[k] = format!("{}{k}", argument.name());

@@ -52,17 +52,20 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
             &equations.plain,
             match is_short {
                 true => {
-                    "The structure of the equations of motion as text, and the option that prints all of their terms."
+                    "The structure of the equations of motion as text, and the option that prints all of \
+                     their terms."
                 }
                 false => {
-                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the kinetic energy, the Hamiltonian or the Routhian before them."
+                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian, \
+                     the kinetic energy, the Hamiltonian or the Routhian before them."
                 }
             },
         ),
         (
             "EQUATIONS_LATEX",
             &equations.latex,
-            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with line breaks that fit a page, for display mathematics between `\\[` and `\\]`.",
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, with line \
+             breaks that fit a page, for display mathematics between `\\[` and `\\]`.",
         ),
     ];
     for (name, text, about) in texts {
@@ -106,7 +109,10 @@ fn structure(i: &Interface<'_>) -> Written {
     }
     plain.push_str(match i.facts.requests.equations {
         Printed::Structure => "\nThe option `equations = structure` omits the terms.\n",
-        _ => "\nThere are too many terms to be readable. The option `equations = lagrange` of `#[mechanism]` prints\nup to some thousand; `kane`, `hamilton` and `routh` print other forms, if available.\n",
+        _ => {
+            "\nThere are too many terms to be readable. The option `equations = lagrange` of `#[mechanism]` \
+             prints\nup to some thousand; `kane`, `hamilton` and `routh` print other forms, if available.\n"
+        }
     });
     latex.push_str("\n\\end{aligned}\n");
     Written { plain, latex, mathml: String::new() }

@@ -173,19 +173,26 @@ fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>
     let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
-        "/// Returns a configuration near `q` that satisfies the constraints. The coordinates whose velocities have the indices `held` are not changed. Angles are within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        "/// Returns a configuration near `q` that satisfies the constraints. The coordinates whose \
+         velocities have the indices `held` are not changed. Angles are within half a turn of `q`. See \
+         [`assemble`](::linkwork::Constrained::assemble) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if no such configuration is found, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if no such configuration is found,
+        /// [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {any} }}
-        /// Returns a configuration around `q` that satisfies the constraints in the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
+        /// Returns a configuration around `q` that satisfies the constraints in the assembly mode `mode`, 1
+        /// or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
         ///
         /// # Errors
         ///
-        /// The errors of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) if only configurations in the other mode are found.
+        /// The errors of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) if
+        /// only configurations in the other mode are found.
         pub fn assemble_in_mode(&self, {t}q: &{q}, held: &[usize], mode: i8) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {one} }}
-        /// Returns the assembly mode of the configuration `q`, 1 or −1, with respect to the coordinates whose velocities are not `held`; `None` if these do not determine a mode. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
+        /// Returns the assembly mode of the configuration `q`, 1 or −1, with respect to the coordinates whose
+        /// velocities are not `held`; `None` if these do not determine a mode. See
+        /// [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
         #[must_use]
         pub fn assembly_mode(&self, {t}q: &{q}, held: &[usize]) -> ::core::option::Option<i8> {{ {mode} }}"
     );
@@ -207,17 +214,22 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     if c.slipping.is_empty() {
         write_inverse_dynamics(out, c, s);
     }
-    let _ = writeln!(
+    let _ =
+        writeln!(
         out,
         "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
         ///
-        /// The Lagrange multipliers follow from a sparse elimination. Near singular configurations, and if the elimination would lose digits because masses are very different, an orthogonal factorisation of `J` in the metric of the kinetic energy is used instead. Through a singular configuration the accelerations are continuous. Redundant or contradictory constraints are solved by least squares.
+        /// The Lagrange multipliers follow from a sparse elimination. Near singular configurations, and if
+        /// the elimination would lose digits because masses are very different, an orthogonal factorisation
+        /// of `J` in the metric of the kinetic energy is used instead. Through a singular configuration the
+        /// accelerations are continuous. Redundant or contradictory constraints are solved by least squares.
         #[inline]\n#[must_use]
         pub fn forward_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> {v} {{
             self.constrained_dynamics({pass}q, v, tau).0
         }}
         {solve}
-        /// Returns the velocity change of minimum kinetic energy that removes the constraint velocities `gap`: `J x = −gap`.
+        /// Returns the velocity change of minimum kinetic energy that removes the constraint velocities
+        /// `gap`: `J x = −gap`.
         #[inline]\n#[must_use]
         pub fn constraint_correction(&self, {t}q: &{q}, gap: &{multipliers}) -> {v} {{
             self.__constraint_solution({pass}q, &[::linkwork::__private::constant::<{scalar}>(0.0); {nv}], &gap.data.0[0])
@@ -228,32 +240,44 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             {correction}.0
         }}
         #[doc(hidden)]
-        pub const __STRUCTURE: ::linkwork::__private::Structure<'static, {nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
-        /// Returns the velocity that has the entries `held` (indices) of `v` and satisfies the constraints. If this does not determine it, it is the one nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
+        pub const __STRUCTURE: ::linkwork::__private::Structure<'static, {nc}> = \
+            ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: \
+            {rank} }};
+        /// Returns the velocity that has the entries `held` (indices) of `v` and satisfies the constraints.
+        /// If this does not determine it, it is the one nearest to `v` in the metric of the kinetic energy.
+        /// See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) if the held entries contradict the
+        /// constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_velocity(&self, {t}q: &{q}, v: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_velocity(self, {any}, q, v, held)
         }}
-        /// Returns the acceleration that has the entries `held` (indices) of `a` and satisfies the constraints. If this does not determine it, it is the one nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
+        /// Returns the acceleration that has the entries `held` (indices) of `a` and satisfies the
+        /// constraints. If this does not determine it, it is the one nearest to `a` in the metric of the
+        /// kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of
+        /// the trait.
         ///
         /// # Errors
         ///
-        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) if the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
+        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) if the held entries contradict the
+        /// constraints, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
         pub fn complete_acceleration(&self, {t}q: &{q}, v: &{v}, a: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_acceleration(self, {any}, q, v, a, held)
         }}
-        /// Returns the configuration nearest to `q`, in the metric of the kinetic energy, that satisfies the constraints.
+        /// Returns the configuration nearest to `q`, in the metric of the kinetic energy, that satisfies the
+        /// constraints.
         ///
         /// # Errors
         ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if Newton's method does not converge.
+        /// [`Configuration`](::linkwork::ConstraintError::Configuration) if Newton's method does not
+        /// converge.
         pub fn project_configuration(&self, {t}q: &{q}) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_configuration(self, {any}, q)
         }}
-        /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the constraints.
+        /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the
+        /// constraints.
         ///
         /// # Errors
         ///
@@ -277,12 +301,19 @@ fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) 
     let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
-        "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that cause a motion, `M a + h = τ + Jᵀ λ`. The number of driven velocities is the number of degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
+        "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities \
+         `driven` (indices) and the multipliers `λ` that cause a motion, `M a + h = τ + Jᵀ λ`. The number of \
+         driven velocities is the number of degrees of freedom (`NS`). See \
+         [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
         ///
         /// # Errors
         ///
-        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that violates the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) if forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
-        pub fn constrained_inverse_dynamics(&self, {t}q: &{q}, v: &{v}, a: &{v}, driven: &[usize]) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and
+        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that violates the
+        /// constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) if forces at other velocities
+        /// would be needed, [`Held`](::linkwork::ConstraintError::Held) for an invalid index.
+        pub fn constrained_inverse_dynamics(&self, {t}q: &{q}, v: &{v}, a: &{v}, driven: &[usize]) -> \
+            ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::constrained_inverse_dynamics(self, {any}, q, v, a, driven)
         }}"
     );
@@ -313,7 +344,8 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
     let solution = solution(c, c.independent, &careful);
     format!(
-        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of redundant constraints have minimum norm.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
+         of constraints. Multipliers of redundant constraints have minimum norm.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let found = self.__constrained_dynamics({pass}q, v, tau);
@@ -327,19 +359,25 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
     let (scalar, slipping) = (s.scalar.name(), &c.slipping);
     format!(
-        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table of constraints. Multipliers of sliding contacts are normal forces; friction is proportional to their magnitudes. The result is NaN if [`try_constrained_dynamics`](Self::try_constrained_dynamics) fails.
+        "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
+         of constraints. Multipliers of sliding contacts are normal forces; friction is proportional to \
+         their magnitudes. The result is NaN if [`try_constrained_dynamics`](Self::try_constrained_dynamics) \
+         fails.
         #[inline]\n#[must_use]
         pub fn constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{
             let lost = ::linkwork::__private::constant::<{scalar}>(f64::NAN);
             self.try_constrained_dynamics({pass}q, v, tau).unwrap_or_else(|_| (<{v}>::repeat(lost), <{multipliers}>::repeat(lost)))
         }}
-        /// Returns the result of [`constrained_dynamics`](Self::constrained_dynamics), or an error if there is no unique solution.
+        /// Returns the result of [`constrained_dynamics`](Self::constrained_dynamics), or an error if there
+        /// is no unique solution.
         ///
         /// # Errors
-        /// `Jammed` if the motion does not determine the normal force of a sliding contact (Painlevé's paradox); `Singular` if other constraints are redundant.
+        /// `Jammed` if the motion does not determine the normal force of a sliding contact (Painlevé's
+        /// paradox); `Singular` if other constraints are redundant.
         #[inline]
         pub fn try_constrained_dynamics(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
-            ::linkwork::__private::slipping_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
+            ::linkwork::__private::slipping_solution(&{slipping:?}, &Self::__STRUCTURE.groups, \
+                &Self::CONSTRAINTS, |sides| self.__constrained_dynamics({pass}q, v, tau, sides))
         }}"
     )
 }
@@ -357,7 +395,8 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     } else {
         let slipping = &c.slipping;
         format!(
-            "::linkwork::__private::slipping_response(&{slipping:?}, &Self::__STRUCTURE.groups, &lambda, |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
+            "::linkwork::__private::slipping_response(&{slipping:?}, &Self::__STRUCTURE.groups, &lambda, \
+             |force, bias, sides| self.__slipping_response({pass}q, v, force, bias, sides))"
         )
     };
     let forces = "inputs.forces.into()";
@@ -367,28 +406,36 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         out,
         "/// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics), constraints included.
         ///
-        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not; for ball and free joints this is a motion in body axes.
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not;
+        /// for ball and free joints this is a motion in body axes.
         #[must_use]
-        pub fn forward_dynamics_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({square}, {square}, {square}) {{
+        pub fn forward_dynamics_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({square}, {square}, \
+            {square}) {{
             let (a, lambda) = self.constrained_dynamics({pass}q, v, tau);
             let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]);
             ::linkwork::__private::constrained_derivatives(&parts, {solve})
         }}
-        {multipliers}/// Linearises the motion about `q`, `v` and the inputs `u`, at the instant, in independent coordinates and velocities. If the constraints permit a choice, the velocities `preferred` (indices) are independent.
+        {multipliers}/// Linearises the motion about `q`, `v` and the inputs `u`, at the instant, in \
+            independent coordinates and velocities. If the constraints permit a choice, the velocities \
+            `preferred` (indices) are independent.
         ///
-        /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix changes along a steady motion, and its eigenvalues are not the exponents of stability.
+        /// Displacements of ball and free joints are measured in body axes: where those spin, the matrix
+        /// changes along a steady motion, and its eigenvalues are not the exponents of stability.
         ///
         /// # Errors
         /// `Singular` if constraints lose rank{jams}.
-        pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, ::linkwork::ConstraintError> {{
+        pub fn linearize(&self, {t}q: &{q}, v: &{v}, u: &{u}, preferred: &[usize]) -> \
+            ::core::result::Result<::linkwork::constraint::Linearization<{scalar}, {nx}, {nu}, {np}, {ns}>, \
+            ::linkwork::ConstraintError> {{
             let inputs = self.__input_derivatives({pass}q, v, u);
             let (a, lambda) = self.{motion};
-            let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]).under(&inputs);
+            let parts = self.__motion_derivatives({pass}q, v, &a, &lambda.data.0[0]).with_inputs(&inputs);
             let (by_q, by_v, by_force) = ::linkwork::__private::constrained_derivatives(&parts, {solve});
             ::linkwork::__private::Motion {{
                 by_q,
                 by_v,
-                by_u: by_force * ::linkwork::nalgebra::SMatrix::<{scalar}, {nv}, {nu}>::from_array_storage(::linkwork::nalgebra::ArrayStorage(inputs.by_u)),
+                by_u: by_force * ::linkwork::nalgebra::SMatrix::<{scalar}, {nv}, \
+                    {nu}>::from_array_storage(::linkwork::nalgebra::ArrayStorage(inputs.by_u)),
                 jacobian: self.constraint_jacobian({pass}q),
                 rates_by_q: {storage}(parts.rates_by_q)),
                 turning: {storage}(parts.turning)),
@@ -418,7 +465,8 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     format!(
         "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
         ///
-        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not. Derivatives for redundant constraints have minimum norm.
+        /// Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ`, whether the constraints allow it or not.
+        /// Derivatives for redundant constraints have minimum norm.
         #[must_use]
         pub fn multiplier_derivatives(&self, {t}q: &{q}, v: &{v}, tau: &{v}) -> ({rows}, {rows}, {rows}) {{
             ::linkwork::ConstrainedDerivatives::multiplier_derivatives(self, {any}, q, v, tau)
@@ -436,7 +484,8 @@ pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let _ = writeln!(
         out,
         "const CONSTRAINED: bool = true;
-        #[inline]\nfn project(&self, t: {scalar}, q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), ::linkwork::ConstraintError> {{
+        #[inline]\nfn project(&self, t: {scalar}, q: &{q}, v: &{v}) -> ::core::result::Result<({q}, {v}), \
+            ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_state(self, t, q, v)
         }}
         #[inline]\nfn impulse(&self, t: {scalar}, q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
@@ -460,7 +509,8 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
     let Words { q, v, pass, .. } = Words::new(c, s);
     let _ = writeln!(
         out,
-        "#[inline]\nfn try_forward_dynamics(&self, t: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+        "#[inline]\nfn try_forward_dynamics(&self, t: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> \
+         ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
         }}",
         scalar = s.scalar.name(),
@@ -476,13 +526,20 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         out,
         "const CONSTRAINTS: [&'static str; {nc}] = Self::CONSTRAINTS;
         const ANGLES: &'static [usize] = &{angles:?};
-        #[inline]\nfn constraint_residuals(&self, {t}: {scalar}, q: &{q}) -> {residuals} {{ Self::constraint_residuals(self, {pass}q) }}
-        #[inline]\nfn constraint_rates(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_rates(self, {pass}q, v) }}
-        #[inline]\nfn constraint_jacobian(&self, {t}: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {nc}, {nv}> {{ Self::constraint_jacobian(self, {pass}q) }}
-        #[inline]\nfn constraint_bias(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_bias(self, {pass}q, v) }}
-        #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
-        #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}
-        #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}",
+        #[inline]\nfn constraint_residuals(&self, {t}: {scalar}, q: &{q}) -> {residuals} {{ \
+            Self::constraint_residuals(self, {pass}q) }}
+        #[inline]\nfn constraint_rates(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ \
+            Self::constraint_rates(self, {pass}q, v) }}
+        #[inline]\nfn constraint_jacobian(&self, {t}: {scalar}, q: &{q}) -> \
+            ::linkwork::nalgebra::SMatrix<{scalar}, {nc}, {nv}> {{ Self::constraint_jacobian(self, {pass}q) }}
+        #[inline]\nfn constraint_bias(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ \
+            Self::constraint_bias(self, {pass}q, v) }}
+        #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, \
+            {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
+        #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ \
+            Self::constraint_correction(self, {pass}q, gap) }}
+        #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> \
+            {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}",
         angles = c.angles,
     );
 }
@@ -493,7 +550,8 @@ pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
     let (scalar, q, v, u) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.vector(s.nu));
     let _ = writeln!(
         out,
-        "#[inline]\nfn stabilized_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, rate: {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+        "#[inline]\nfn stabilized_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, rate: \
+         {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
             ::linkwork::__private::stabilized_derivatives(self, t, state, u, rate)
         }}",
         square = s.shape(Shape::Square(s.nv)),
@@ -513,7 +571,8 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if are_differentiable(c) {
         let _ = writeln!(
             out,
-            "#[inline]\nfn visit_constraints<V: ::linkwork::constraint::Visitor<{}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+            "#[inline]\nfn visit_constraints<V: ::linkwork::constraint::Visitor<{}, {}, {}, {}>>(&self, \
+             visitor: V) -> ::core::option::Option<V::Output> {{
                 ::core::option::Option::Some(::linkwork::constraint::Visitor::visit(visitor, self))
             }}",
             s.scalar.name(),
@@ -531,8 +590,10 @@ pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<
     let t = Argument::T.name();
     let _ = writeln!(
         out,
-        "#[inline]\nfn equation_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: &{multipliers}) -> ::linkwork::constraint::EquationDerivatives<{scalar}, {nv}, {nc}> {{
-            ::linkwork::constraint::EquationDerivatives::from(self.__motion_derivatives({pass}q, v, a, &lambda.data.0[0]))
+        "#[inline]\nfn equation_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: \
+         &{multipliers}) -> ::linkwork::constraint::EquationDerivatives<{scalar}, {nv}, {nc}> {{
+            ::linkwork::constraint::EquationDerivatives::from(self.__motion_derivatives({pass}q, v, a, \
+                &lambda.data.0[0]))
         }}"
     );
 }

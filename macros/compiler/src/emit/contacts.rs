@@ -72,7 +72,8 @@ pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
     let _ = writeln!(
         out,
         "/// Name of every contact.\npub const CONTACTS: [&'static str; {count}] = {names:?};
-        /// Rows of the contact velocities of each contact.\npub const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = [{}];",
+        /// Rows of the contact velocities of each contact.\npub const CONTACT_ROWS: \
+            [::linkwork::contact::Rows; {count}] = [{}];",
         ranges.join(", ")
     );
 }
@@ -87,7 +88,8 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         .map(|k| {
             let of_impulses = i.contacts.get(k).is_some_and(|contact| contact.of_impulses);
             format!(
-                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}], stiction: laws[{}], hypothesis: ::linkwork::contact::Restitution::{} }}",
+                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}], stiction: laws[{}], \
+                 hypothesis: ::linkwork::contact::Restitution::{} }}",
                 3 * k,
                 3 * k + 1,
                 3 * k + 2,
@@ -98,7 +100,9 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let is_written = i.facts.meet(Need::Inertia) && i.facts.meet(Need::FewContacts);
     let responses = if is_written {
         format!(
-            "#[inline]\nfn contact_responses(&self, t: {scalar}, q: &{q}, _: &[bool; {count}]) -> ::linkwork::contact::Responses<{scalar}, {nv}, {rows}> {{ ::linkwork::contact::Responses::from_list(&self.__contact_responses({pass}q)) }}\n        "
+            "#[inline]\nfn contact_responses(&self, t: {scalar}, q: &{q}, _: &[bool; {count}]) \
+             -> ::linkwork::contact::Responses<{scalar}, {nv}, {rows}> \
+             {{ ::linkwork::contact::Responses::from_list(&self.__contact_responses({pass}q)) }}\n        "
         )
     } else {
         String::new()
@@ -113,7 +117,9 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         let (u, square) = (s.vector(s.nu), s.shape(Shape::Square(nv)));
         let _ = writeln!(
             out,
-            "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: &[::linkwork::contact::Touch; {count}], gains: [{scalar}; 2]) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+            "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: \
+             &[::linkwork::contact::Touch; {count}], gains: [{scalar}; 2]) -> \
+             ::core::option::Option<({square}, {square}, {inputs})> {{
                 ::linkwork::__private::held_derivatives(self, t, state, u, touches, gains)
             }}",
             inputs = s.shape(Shape::Matrix(nv, s.nu)),
@@ -123,10 +129,14 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         out,
         "const CONTACTS: [&'static str; {count}] = Self::CONTACTS;
         const CONTACT_ROWS: [::linkwork::contact::Rows; {count}] = Self::CONTACT_ROWS;
-        {pressed_by}#[inline]\nfn contact_gaps(&self, t: {scalar}, q: &{q}) -> {gaps} {{ Self::contact_gaps(self, {pass}q) }}
-        #[inline]\nfn contact_rates(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_rates(self, {pass}q, v) }}
-        #[inline]\nfn contact_jacobian(&self, t: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {rows}, {nv}> {{ Self::contact_jacobian(self, {pass}q) }}
-        #[inline]\nfn contact_bias(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ Self::contact_bias(self, {pass}q, v) }}
+        {pressed_by}#[inline]\nfn contact_gaps(&self, t: {scalar}, q: &{q}) -> {gaps} {{ \
+            Self::contact_gaps(self, {pass}q) }}
+        #[inline]\nfn contact_rates(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ \
+            Self::contact_rates(self, {pass}q, v) }}
+        #[inline]\nfn contact_jacobian(&self, t: {scalar}, q: &{q}) -> \
+            ::linkwork::nalgebra::SMatrix<{scalar}, {rows}, {nv}> {{ Self::contact_jacobian(self, {pass}q) }}
+        #[inline]\nfn contact_bias(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ \
+            Self::contact_bias(self, {pass}q, v) }}
         {responses}#[inline]\nfn contact_laws(&self) -> [::linkwork::contact::Law<{scalar}>; {count}] {{
             let laws = self.__contact_laws();
             [{}]
@@ -142,8 +152,10 @@ pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>)
     let pass = if s.time { "t, " } else { "" };
     let _ = writeln!(
         out,
-        "fn contact_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, a: &{v}, forces: &{}) -> ::linkwork::contact::FirstOrder<{scalar}, {nv}, {rows}> {{
-            ::linkwork::contact::FirstOrder::from(self.__contact_derivatives({pass}q, v, a, &forces.data.0[0]))
+        "fn contact_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, a: &{v}, forces: &{}) -> \
+         ::linkwork::contact::FirstOrder<{scalar}, {nv}, {rows}> {{
+            ::linkwork::contact::FirstOrder::from(self.__contact_derivatives({pass}q, v, a, \
+                &forces.data.0[0]))
         }}",
         s.vector(rows)
     );
@@ -160,13 +172,15 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         "const CONTACTING: bool = true;
         const LOCATABLE: bool = true;
         {}
-        fn contact_start(&self, t: {scalar}, q: &{q}, parts: bool) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+        fn contact_start(&self, t: {scalar}, q: &{q}, parts: bool) -> ::core::result::Result<{q}, \
+            ::linkwork::ConstraintError> {{
             ::linkwork::contact::start(self, t, q, parts)
         }}
         fn contact_step(&self, t: {scalar}, start: (&{q}, &{v}), end: (&{q}, &{v}), given: ::linkwork::contact::Assumed<'_, {scalar}, {}>, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
             ::linkwork::contact::step(self, t, start, end, given, h)
         }}
-        #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+        #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: \
+            V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
         carry(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
@@ -195,7 +209,9 @@ pub fn write_docs(text: &mut String, contacts: &[UnilateralContact]) {
         return;
     }
     text.push_str(
-        "\n# Contacts\n\nUnilateral contacts, see `linkwork::contact`. The functions of the dynamics assume that all are separated.\n\n| | contact | gap | slip velocities | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
+        "\n# Contacts\n\nUnilateral contacts, see `linkwork::contact`. The functions of the dynamics assume \
+         that all are separated.\n\n| | contact | gap | slip velocities | friction | restitution |\n| --- | \
+         --- | --- | ---: | ---: | ---: |\n",
     );
     for (k, contact) in contacts.iter().enumerate() {
         let [friction, restitution, stiction] =

@@ -43,13 +43,16 @@ pub fn write_methods(
     for (name, about, arguments, first) in [
         (
             "integrate",
-            "Returns the derivatives `(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, which are the same for all `q`. Displacements of ball and free joints are in body axes. The derivatives are identities for plain coordinates.",
+            "Returns the derivatives `(∂/∂q, ∂/∂dv)` of [`integrate`](Self::integrate), `q ⊕ dv`, which are \
+             the same for all `q`. Displacements of ball and free joints are in body axes. The derivatives \
+             are identities for plain coordinates.",
             format!("dv: &{v}"),
             "identity",
         ),
         (
             "tangent_rate",
-            "Returns the derivatives `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate): zero and the identity for plain coordinates.",
+            "Returns the derivatives `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Self::tangent_rate): zero and the \
+             identity for plain coordinates.",
             format!("dv: &{v}, v: &{v}"),
             "zeros",
         ),
@@ -57,7 +60,8 @@ pub fn write_methods(
         let (hidden, prefix) = if i.facts.speeds { ("#[doc(hidden)]\n", "__") } else { ("", "") };
         let _ = writeln!(
             out,
-            "{hidden}/// {about}\n#[inline]\n#[must_use]\npub fn {prefix}{name}_derivatives(&self, {arguments}) -> ({square}, {square}) {{"
+            "{hidden}/// {about}\n#[inline]\n#[must_use]\npub fn {prefix}{name}_derivatives(&self, \
+             {arguments}) -> ({square}, {square}) {{"
         );
         match charts {
             None => out.push_str("loop {}\n"),
@@ -127,12 +131,14 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
         let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
         let t = if s.time { "t" } else { &zero };
         (
-            "They combine the second derivatives of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J w = 0`, with the first derivatives of accelerations and multipliers.",
+            "They combine the second derivatives of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J \
+             w = 0`, with the first derivatives of accelerations and multipliers.",
             format!("::linkwork::__private::constrained_second_derivatives(self, {t}, q, v, tau, lambda)"),
         )
     } else {
         (
-            "With `μ = M⁻¹ λ` they are the second derivatives of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations depend on `q` and `v` by [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives).",
+            "With `μ = M⁻¹ λ` they are the second derivatives of `−μᵀ τ` by [`inverse_dynamics`](Self::inverse_dynamics), whose accelerations depend on `q` and `v` by \
+             [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives).",
             format!(
                 "let first = self.forward_dynamics_derivatives({pass}q, v, tau);
             let a = self.forward_dynamics({pass}q, v, tau);
@@ -143,10 +149,11 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
     let _ = writeln!(
         out,
         "/// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`, with `v̇` by [`forward_dynamics`](Self::forward_dynamics): the Hessians of
-        /// its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All others are zero.
+        /// its entries, contracted with the factors `lambda`. Rows of mixed derivatives belong to `q`. All
+        /// others are zero.
         ///
-        /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and
-        /// free joints `dq` is a motion in body axes.
+        /// Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the
+        /// first matrix; for ball and free joints `dq` is a motion in body axes.
         ///
         /// {source}
         #[inline]\n#[must_use]
@@ -195,9 +202,13 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
     let (t, pass) = (Argument::T.name(), if s.time { "t, " } else { "" });
     let _ = writeln!(
         out,
-        "#[inline]\nfn equation_second_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: &{multipliers}, w: &{v}, z: &{multipliers}, y: &{multipliers}) -> ::linkwork::constraint::EquationSecondDerivatives<{scalar}, {nv}, {nc}> {{
-            let found = self.__constraint_curvature({pass}q, v, a, &lambda.data.0[0], &w.data.0[0], &z.data.0[0], &y.data.0[0]);
-            ::linkwork::__private::with_curvature(self.inverse_dynamics_second_derivatives({pass}q, v, a, w), found)
+        "#[inline]\nfn equation_second_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: \
+         &{multipliers}, w: &{v}, z: &{multipliers}, y: &{multipliers}) -> \
+         ::linkwork::constraint::EquationSecondDerivatives<{scalar}, {nv}, {nc}> {{
+            let found = self.__constraint_curvature({pass}q, v, a, &lambda.data.0[0], &w.data.0[0], \
+                &z.data.0[0], &y.data.0[0]);
+            ::linkwork::__private::with_curvature(self.inverse_dynamics_second_derivatives({pass}q, v, a, \
+                w), found)
         }}"
     );
 }
@@ -244,7 +255,8 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
     if i.facts.constraints.is_some() {
         let _ = writeln!(
             out,
-            "#[inline]\nfn visit_constraint_curvature<V: ::linkwork::constraint::CurvatureVisitor<{}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
+            "#[inline]\nfn visit_constraint_curvature<V: ::linkwork::constraint::CurvatureVisitor<{}, {}, \
+             {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
                 ::core::option::Option::Some(::linkwork::constraint::CurvatureVisitor::visit(visitor, self))
             }}",
             s.scalar.name(),
@@ -257,7 +269,8 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
         let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
         let _ = writeln!(
             out,
-            "#[inline]\nfn tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) -> ({square}, {square}) {{ self.__tangent_rate_second_derivatives(dv, v, lambda) }}"
+            "#[inline]\nfn tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) \
+             -> ({square}, {square}) {{ self.__tangent_rate_second_derivatives(dv, v, lambda) }}"
         );
     }
     if i.facts.speeds {
@@ -290,8 +303,10 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     } else {
         let _ = writeln!(
             out,
-            "#[inline]\nfn integrate_derivatives(&self, dv: &{v}) -> ({square}, {square}) {{ Self::integrate_derivatives(self, dv) }}
-            #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ Self::tangent_rate_derivatives(self, dv, v) }}"
+            "#[inline]\nfn integrate_derivatives(&self, dv: &{v}) -> ({square}, {square}) {{ \
+             Self::integrate_derivatives(self, dv) }}
+            #[inline]\nfn tangent_rate_derivatives(&self, dv: &{v}, v: &{v}) -> ({square}, {square}) {{ \
+                Self::tangent_rate_derivatives(self, dv, v) }}"
         );
     }
     let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
@@ -333,7 +348,8 @@ pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
     use Argument::{Q, U, V};
     let _ = writeln!(
         out,
-        "#[inline]\nfn acceleration_derivatives({}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+        "#[inline]\nfn acceleration_derivatives({}) -> ::core::option::Option<({square}, {square}, \
+         {inputs})> {{
             ::linkwork::__private::acceleration_derivatives(self, t, q, v, u)
         }}",
         s.parameters(&[Argument::T, Q, V, U]),

@@ -95,7 +95,8 @@ impl Bodies {
             let comma = if own.is_empty() || lanes.is_empty() { "" } else { ", " };
             let _ = writeln!(
                 out,
-                "{ALLOW}#[doc(hidden)]\nimpl<{own}{comma}{lanes}> ::linkwork::__private::Evaluate<{k}, {types}> for {name}{arguments} {bounds} {{
+                "{ALLOW}#[doc(hidden)]\nimpl<{own}{comma}{lanes}> ::linkwork::__private::Evaluate<{k}, \
+                 {types}> for {name}{arguments} {bounds} {{
                 type Output = {result};"
             );
             let head = format!(

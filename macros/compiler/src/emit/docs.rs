@@ -72,14 +72,16 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     if output.equations.plain.is_empty() && !interface.structure.is_empty() {
         let about = match interface.facts.kinematic {
             true => {
-                "There are no dynamics, by `inertia = none`: functions that need masses and inertias are omitted, and so is the trait `Mechanism`."
+                "There are no dynamics, by `inertia = none`: functions that need masses and inertias are \
+                 omitted, and so is the trait `Mechanism`."
             }
             false if interface.velocities.is_empty() => "Nothing moves.",
             false if interface.facts.requests.equations == Printed::Structure => {
                 "`M(q) v̇ + h(q, v) = τ`, whose terms are omitted by `equations = structure`."
             }
             false => {
-                "`M(q) v̇ + h(q, v) = τ`, which has too many terms to be readable; the option `equations = lagrange` prints up to some thousand."
+                "`M(q) v̇ + h(q, v) = τ`, which has too many terms to be readable; the option `equations = \
+                 lagrange` prints up to some thousand."
             }
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");
@@ -153,7 +155,13 @@ pub fn operations(functions: &[Function]) -> String {
         return lines;
     }
     format!(
-        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | live values | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nThe code is straight-line, without loops and recursion. *Live values* is the maximum number of values that are live at once in addition to the arguments, including returned values. With 8 bytes each (`f64`) they are the stack that an optimised build needs, apart from copies of the result. *Branches* are possible for angles beyond 10⁵ rad (one for all angles), in tables and in functions of the math library. The chapter `speed` of the guide explains how to estimate a worst-case execution time.\n"
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | live values | \
+         branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nThe code is straight-line, \
+         without loops and recursion. *Live values* is the maximum number of values that are live at once in \
+         addition to the arguments, including returned values. With 8 bytes each (`f64`) they are the stack \
+         that an optimised build needs, apart from copies of the result. *Branches* are possible for angles \
+         beyond 10⁵ rad (one for all angles), in tables and in functions of the math library. The chapter \
+         `speed` of the guide explains how to estimate a worst-case execution time.\n"
     )
 }
 
@@ -166,7 +174,9 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     let Freedom { coordinates, velocities: speeds } = c.freedom;
     let _ = writeln!(
         text,
-        "\n# Constraints\n\nThe coordinates are not independent: `NC` = {}, of which `NH` = {} are on configurations. Degrees of freedom: `NP` = {coordinates} of configurations, `NS` = {speeds} of velocities.\n",
+        "\n# Constraints\n\nThe coordinates are not independent: `NC` = {}, of which `NH` = {} are on \
+         configurations. Degrees of freedom: `NP` = {coordinates} of configurations, `NS` = {speeds} of \
+         velocities.\n",
         c.names.len(),
         c.holonomic
     );
@@ -198,14 +208,15 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(
         text,
-        "\n# Lanes\n\nIdentical limbs, or joints of one path to the root, are evaluated as SIMD lanes by {}. An operation on all lanes counts once.",
+        "\n# Lanes\n\nIdentical limbs, or joints of one path to the root, are evaluated as SIMD lanes by {}. \
+         An operation on all lanes counts once.",
         names.join(", ")
     );
     if !most.gathers.is_empty() {
         text.push_str("Corresponding coordinates of the limbs:\n\n");
     }
     for gather in &most.gathers {
-        let name = |s: &Symbol| match Quantity::of(*s) {
+        let name = |s: &Symbol| match Quantity::from_symbol(*s) {
             Quantity::Configuration(k) => i.configuration.get(k).map(|name| format!("`{name}`")),
             _ => None,
         };

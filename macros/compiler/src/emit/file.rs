@@ -87,7 +87,8 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     let kind = format!("[::linkwork::Inertial<{}>; {n}]", s.one());
     let _ = writeln!(
         out,
-        "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] = {names:?};
+        "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] \
+         = {names:?};
         /// Returns the mass properties of all links that have them as parameters, in the order of `LINKS`.
         #[inline]\n#[must_use]\npub fn inertials(&self) -> {kind} {{ [{}] }}
         /// Sets the mass properties of all links that have them as parameters, in the order of `LINKS`.
@@ -98,15 +99,17 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     if i.facts.meet(Need::Asks(Word::Regressor)) {
         let _ = writeln!(
             out,
-            "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these base parameters and
+            "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these \
+             base parameters and
             /// differ least from the current ones. See [`put_back`](::linkwork::identification::put_back).
             ///
             /// # Errors
             ///
-            /// If no physically consistent mass properties have these base parameters, or the current mass properties are not
-            /// physically consistent. The mechanism is then not changed.
+            /// If no physically consistent mass properties have these base parameters, or the current mass
+            /// properties are not physically consistent. The mechanism is then not changed.
             #[inline(never)]
-            pub fn set_base_parameters(&mut self, base: &::linkwork::nalgebra::SVector<{}, {}>) -> ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
+            pub fn set_base_parameters(&mut self, base: &::linkwork::nalgebra::SVector<{}, {}>) -> \
+                ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
                 ::linkwork::identification::put_back(self, base)
             }}",
             s.one(),
@@ -124,11 +127,14 @@ pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarS
     let (n, base, one) = (links(i).len(), i.facts.base, s.one());
     let _ = writeln!(
         out,
-        "{ALLOW}impl{generics} ::linkwork::identification::Identifiable<{n}, {base}> for {}{arguments} {bounds} {{
+        "{ALLOW}impl{generics} ::linkwork::identification::Identifiable<{n}, {base}> for {}{arguments} \
+         {bounds} {{
             type Scalar = {one};
             fn inertials(&self) -> [::linkwork::Inertial<{one}>; {n}] {{ Self::inertials(self) }}
-            fn set_inertials(&mut self, links: &[::linkwork::Inertial<{one}>; {n}]) {{ Self::set_inertials(self, links) }}
-            fn own_base_parameters(&self) -> ::linkwork::nalgebra::SVector<{one}, {base}> {{ self.base_parameters(&self.standard_parameters()) }}
+            fn set_inertials(&mut self, links: &[::linkwork::Inertial<{one}>; {n}]) {{ \
+                Self::set_inertials(self, links) }}
+            fn own_base_parameters(&self) -> ::linkwork::nalgebra::SVector<{one}, {base}> {{ \
+                self.base_parameters(&self.standard_parameters()) }}
         }}",
         i.shell.ident
     );
@@ -144,7 +150,8 @@ fn value(field: &FileField, s: &ScalarSpelling) -> String {
     let numbers: Vec<String> = field.values.iter().map(|x| s.constant(*x)).collect();
     match (field.kind, numbers.as_slice()) {
         (FileFieldKind::Inertial, [mass, x, y, z, xx, xy, xz, yy, yz, zz]) => format!(
-            "::linkwork::Inertial {{ mass: {mass}, com: [{x}, {y}, {z}], ixx: {xx}, ixy: {xy}, ixz: {xz}, iyy: {yy}, iyz: {yz}, izz: {zz} }}"
+            "::linkwork::Inertial {{ mass: {mass}, com: [{x}, {y}, {z}], ixx: {xx}, ixy: {xy}, ixz: {xz}, \
+             iyy: {yy}, iyz: {yz}, izz: {zz} }}"
         ),
         (FileFieldKind::Placement, [x, y, z, roll, pitch, yaw]) => {
             format!("::linkwork::Placement {{ xyz: [{x}, {y}, {z}], rpy: [{roll}, {pitch}, {yaw}] }}")

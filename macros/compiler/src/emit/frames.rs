@@ -46,7 +46,8 @@ pub fn write_frames(
     for (k, frame) in frames.iter().enumerate() {
         let _ = writeln!(
             out,
-            "{ALLOW}#[doc(hidden)]\nimpl{generics} ::linkwork::NamedFrame<{k}, {}, {}> for {name}{arguments} {bounds} {{\ntype Scalar = {};",
+            "{ALLOW}#[doc(hidden)]\nimpl{generics} ::linkwork::NamedFrame<{k}, {}, {}> for {name}{arguments} \
+             {bounds} {{\ntype Scalar = {};",
             s.nq,
             s.nv,
             s.scalar.name()
@@ -235,7 +236,8 @@ fn write_path(steps: &mut StepMethods, k: usize, link: &LinkSteps, s: &Signature
              ::linkwork::__private::join(&w, &self.__link{k}_acceleration({t}q, v, a, &p))"
         ),
         None => format!(
-            "::linkwork::__private::join(&self.__link{k}_twist({t}q, v), &self.__link{k}_acceleration({t}q, v, a))"
+            "::linkwork::__private::join(&self.__link{k}_twist({t}q, v), &self.__link{k}_acceleration({t}q, \
+             v, a))"
         ),
     };
     method("motion", &[Q, V, A], 12, &motion);
@@ -270,7 +272,8 @@ fn write_jacobian(
     }
     let _ = writeln!(
         out,
-        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(columns)){}\n}}",
+        "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(columns)){}\n\
+         }}",
         if speeds { " * self.__rate_matrix(q)" } else { "" }
     );
 }
@@ -300,7 +303,8 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
     }
     write_columns(&mut body, k, link, &mut written, s);
     let signature = format!(
-        "fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut [[{scalar}; 6]; {}])",
+        "fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut \
+         [[{scalar}; 6]; {}])",
         s.nv
     );
     steps.add("(always)", &signature, &body);
@@ -357,7 +361,8 @@ pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
         let parameters = s.parameters(&arguments).replacen("&self, ", "&self, frame: usize, ", 1);
         let _ = writeln!(
             out,
-            "#[inline]\nfn {name}({parameters}) -> ::core::option::Option<{result}> {{\n::core::option::Option::Some(match frame {{"
+            "#[inline]\nfn {name}({parameters}) -> ::core::option::Option<{result}> {{\n\
+             ::core::option::Option::Some(match frame {{"
         );
         for k in 0..frames {
             let call =

@@ -40,7 +40,8 @@ pub fn write_impls(
     out.push_str("}\n");
     let _ = writeln!(
         out,
-        "{ALLOW}impl{generics} ::linkwork::integrate::Hooks<{}, {}, {}, {}> for {name}{arguments} {bounds} {{",
+        "{ALLOW}impl{generics} ::linkwork::integrate::Hooks<{}, {}, {}, {}> for {name}{arguments} {bounds} \
+         {{",
         s.scalar.name(),
         s.nq,
         s.nv,
@@ -163,7 +164,8 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     } else {
         let _ = writeln!(
             out,
-            "#[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, v) }}"
+            "#[inline]\nfn tangent_rate(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate(self, dv, \
+             v) }}"
         );
     }
     constraints::write_forward_dynamics(out, &i.constraints, s);

@@ -89,7 +89,8 @@ impl Writer<'_> {
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
-                let is_input = |a: &Argument| gather.iter().any(|s| a.index(Quantity::of(*s)).is_some());
+                let is_input =
+                    |a: &Argument| gather.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
                 // Gathers of arguments are bound to names; gathers of parameters are not.
                 plain(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
@@ -125,7 +126,7 @@ impl Writer<'_> {
 
     /// Returns the text of an input: a parameter, a prepared value or an entry of an argument.
     pub fn symbol(&self, s: Symbol) -> String {
-        let quantity = Quantity::of(s);
+        let quantity = Quantity::from_symbol(s);
         if quantity == Quantity::Time {
             return if self.scalar.is_in_lanes() { "time" } else { "t" }.to_string();
         }

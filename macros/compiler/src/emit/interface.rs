@@ -68,7 +68,8 @@ pub struct Absent {
 }
 
 /// Attributes of generated implementations.
-pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
+pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, \
+                         clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
 /// Generics of the struct's implementations as text.
 pub struct Head {

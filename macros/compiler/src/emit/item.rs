@@ -145,9 +145,12 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         methods,
         "pub fn frame_placements(&self, {t}q: &{q}) -> [{placement}; {}] {{ loop {{}} }}
         pub fn frame_placement<F>(&self, frame: F, {t}q: &{q}) -> {placement} {{ loop {{}} }}
-        pub fn frame_velocity<F>(&self, frame: F, {t}q: &{q}, v: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
-        pub fn frame_acceleration<F>(&self, frame: F, {t}q: &{q}, v: &{v}, a: &{v}) -> ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
-        pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
+        pub fn frame_velocity<F>(&self, frame: F, {t}q: &{q}, v: &{v}) -> \
+            ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_acceleration<F>(&self, frame: F, {t}q: &{q}, v: &{v}, a: &{v}) -> \
+            ::linkwork::nalgebra::SVector<{scalar}, 6> {{ loop {{}} }}
+        pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, \
+            {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
     let mut emitted = assemble(interface, &s, &methods, 0, &[]);
@@ -198,22 +201,26 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
         out,
         "/// Placement of a frame in the ground: its axes and its origin.
         #[inline]\n#[must_use]
-        pub fn frame_placement(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {{
+        pub fn frame_placement(&self, frame: {frame}, {t}q: &{q}) -> \
+            ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {{
             ::linkwork::FrameName::placement(frame, self, {at}, q)
         }}
-        /// Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.
+        /// Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular
+        /// velocity.
         #[inline]\n#[must_use]
         pub fn frame_velocity(&self, frame: {frame}, {t}q: &{q}, v: &{v}) -> {six} {{
             ::linkwork::FrameName::velocity(frame, self, {at}, q, v)
         }}
-        /// Acceleration of a frame relative to the ground, in ground axes: acceleration of its origin, then angular acceleration; without gravity.
+        /// Acceleration of a frame relative to the ground, in ground axes: acceleration of its origin, then
+        /// angular acceleration; without gravity.
         #[inline]\n#[must_use]
         pub fn frame_acceleration(&self, frame: {frame}, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {{
             ::linkwork::FrameName::acceleration(frame, self, {at}, q, v, a)
         }}
         /// Jacobian of a frame: `frame_velocity` is this times `v`.
         #[inline]\n#[must_use]
-        pub fn frame_jacobian(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{
+        pub fn frame_jacobian(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, \
+            6, {nv}> {{
             ::linkwork::FrameName::jacobian(frame, self, {at}, q)
         }}",
         nv = s.nv,
@@ -303,20 +310,17 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
         let heights = match i.facts.heights {
             0 => String::new(),
             _ => format!(
-                "fn drawing_heights(&self, place: &[{scalar}; 2]) -> impl ::core::convert::AsRef<[{scalar}]> {{ Self::__drawing_heights(self, place) }}\n"
+                "fn drawing_heights(&self, place: &[{scalar}; 2]) -> impl ::core::convert::AsRef<[{scalar}]> \
+                 {{ Self::__drawing_heights(self, place) }}\n"
             ),
         };
         let _ = writeln!(
             text,
             "{ALLOW}impl{} ::linkwork::Drawn<{}, {}> for {}{} {} {{
             const DRAWING: &'static [::linkwork::drawing::Piece] = &Self::DRAWING;
-            fn drawing_numbers(&self) -> impl ::core::convert::AsRef<[{scalar}]> {{ Self::drawing_numbers(self) }}\n{heights}}}",
-            head.generics,
-            s.nq,
-            s.nv,
-            i.shell.ident,
-            head.arguments,
-            head.bounds
+            fn drawing_numbers(&self) -> impl ::core::convert::AsRef<[{scalar}]> {{ \
+                Self::drawing_numbers(self) }}\n{heights}}}",
+            head.generics, s.nq, s.nv, i.shell.ident, head.arguments, head.bounds
         );
     }
     Emitted { tokens, text }

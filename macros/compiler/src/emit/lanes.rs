@@ -72,11 +72,15 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         );
         if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
             return Some(format!(
-                "use ::linkwork::__private::{{Lanes, lane, lane_by_lane, set_lane}};\nlane_by_lane(|k| {{\n{first}let found = {call};\n{last}found\n}})\n"
+                "use ::linkwork::__private::{{Lanes, lane, lane_by_lane, set_lane}};\nlane_by_lane(|k| {{\n\
+                 {first}let found = {call};\n{last}found\n}})\n"
             ));
         }
         return (!matches!(f.shape, Shape::Accelerated(_))).then(|| {
-            format!("use ::linkwork::__private::{{lane, set_lane}};\nfor k in 0..LANES {{\n{first}{call};\n{last}}}\n")
+            format!(
+                "use ::linkwork::__private::{{lane, set_lane}};\nfor k in 0..LANES {{\n{first}{call};\n\
+                 {last}}}\n"
+            )
         });
     }
     let parts = |count: usize| {
@@ -122,7 +126,8 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.constraints.overdetermined {
         let _ = writeln!(
             out,
-            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, computed one after another, bit for bit.
+            "/// [`forward_dynamics`](Self::forward_dynamics) of the state in every lane, computed one after \
+             another, bit for bit.
             #[inline]\n#[must_use]
             pub fn forward_dynamics_lanes<const LANES: usize>({}) -> {} {{
                 use ::linkwork::__private::{{lane, lane_by_lane}};
@@ -181,8 +186,10 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
         out,
-        "#[inline]\nfn integrate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}) -> {q} {{ Self::integrate_lanes(self, q, dv) }}
-        #[inline]\nfn difference_lanes<const LANES: usize>(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference_lanes(self, from, to) }}"
+        "#[inline]\nfn integrate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}) -> {q} {{ \
+         Self::integrate_lanes(self, q, dv) }}
+        #[inline]\nfn difference_lanes<const LANES: usize>(&self, from: &{q}, to: &{q}) -> {v} {{ \
+            Self::difference_lanes(self, from, to) }}"
     );
     if i.facts.speeds {
         super::speeds::write_batch_trait(out, s);
@@ -190,6 +197,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     }
     let _ = writeln!(
         out,
-        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, dv: &{v}, v: &{v}) -> {v} {{ Self::tangent_rate_lanes(self, dv, v) }}"
+        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, dv: &{v}, v: &{v}) -> {v} \
+         {{ Self::tangent_rate_lanes(self, dv, v) }}"
     );
 }

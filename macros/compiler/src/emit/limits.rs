@@ -93,7 +93,8 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool,
     }
     let _ = writeln!(
         out,
-        "#[inline]\nfn clamp_configuration(&self, q: &{q}) -> {q} {{\nlet limits = self.__limits();\nlet [mut q] = q.data.0;"
+        "#[inline]\nfn clamp_configuration(&self, q: &{q}) -> {q} {{\nlet limits = self.__limits();\nlet \
+         [mut q] = q.data.0;"
     );
     for limit in limited {
         let k = limit.q;
@@ -114,7 +115,8 @@ pub fn write_docs(text: &mut String, limited: &[CoordinateLimits]) {
         return;
     }
     text.push_str(
-        "\n# Limits\n\nSI units; forces are generalized ones.\n\n| | from | to | speed | force |\n| --- | ---: | ---: | ---: | ---: |\n",
+        "\n# Limits\n\nSI units; forces are generalized ones.\n\n| | from | to | speed | force |\n| --- | \
+         ---: | ---: | ---: | ---: |\n",
     );
     for limit in limited {
         let _ = write!(text, "| `{}` |", limit.name);

@@ -16,21 +16,24 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     let functions = [
         on_manifold(
             "integrate",
-            "Returns `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one unit of time, with normalised quaternions.",
+            "Returns `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one \
+             unit of time, with normalised quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
             [("q", s.nq), ("dv", s.nv)],
             s.nq,
         ),
         on_manifold(
             "difference",
-            "Returns `to ⊖ from`: the constant velocity that leads from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            "Returns `to ⊖ from`: the constant velocity that leads from one configuration to another in one \
+             unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
             [("from", s.nq), ("to", s.nq)],
             s.nv,
         ),
         on_manifold(
             "tangent_rate",
-            "Returns the rate of `dv` for which `q ⊕ dv` moves with velocity `v` (inverse of the derivative of the exponential map).",
+            "Returns the rate of `dv` for which `q ⊕ dv` moves with velocity `v` (inverse of the derivative \
+             of the exponential map).",
             format!("dv: &{v}, v: &{v}) -> {v}"),
             [("dv", s.nv), ("v", s.nv)],
             s.nv,

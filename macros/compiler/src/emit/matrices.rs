@@ -28,7 +28,8 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
             format!(
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
-                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}a\n",
+                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut \
+                    {by_v});\n{}{}a\n",
                 solved([by_q, by_v], inverse, n, s, &f.structure),
                 store_known_columns(f, outputs, n)
             )
@@ -285,7 +286,8 @@ fn parts(rows: impl Fn(bool) -> String) -> String {
     let tile = |wide: bool| {
         let n = rows(wide);
         format!(
-            "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
+            "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, \
+             {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
         )
     };
     format!("({}, {})", tile(true), tile(false))
@@ -366,7 +368,8 @@ fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
     let lanes = s.suffix();
     let mutable = if mutable { "mut " } else { "" };
     format!(
-        "let ({mutable}by_q, {mutable}by_v, inverse) = self.forward_dynamics_derivatives{lanes}({t}q, v, tau);\n"
+        "let ({mutable}by_q, {mutable}by_v, inverse) = self.forward_dynamics_derivatives{lanes}({t}q, v, \
+         tau);\n"
     )
 }
 

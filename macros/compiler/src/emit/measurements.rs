@@ -142,7 +142,8 @@ impl Measurements<'_> {
         );
         self.write_each(out, |first, f| {
             format!(
-                "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, [{}]));",
+                "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, \
+                 [{}]));",
                 call(f, BY_PARAMETERS),
                 which.join(", "),
             )

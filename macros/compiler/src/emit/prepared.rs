@@ -75,10 +75,11 @@ pub fn write_prepared(
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} {ident}{arguments} {bounds} {{
-        /// Returns this mechanism with all values precomputed that depend only on its parameters. It has the same functions.
-        /// Later changes of the parameters have no effect on it.
+        /// Returns this mechanism with all values precomputed that depend only on its parameters. It has the
+        /// same functions. Later changes of the parameters have no effect on it.
         #[must_use]
-        pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: self.__prepared_numbers(){tables} }} }}"
+        pub fn prepare(&self) -> {name}{arguments} {{ {name} {{ numbers: \
+            self.__prepared_numbers(){tables} }} }}"
     );
     let program = content.numbers.cloned().unwrap_or_default();
     let numbers = Function::part("__prepared_numbers".to_string(), Vec::new(), count, program);
@@ -114,7 +115,8 @@ fn write_struct(
     };
     let _ = writeln!(
         out,
-        "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} {{ numbers: [{}; {count}]{tables} }}",
+        "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} \
+         {{ numbers: [{}; {count}]{tables} }}",
         spell(&i.shell.visibility),
         spell(&generics.where_clause),
         s.scalar.name()

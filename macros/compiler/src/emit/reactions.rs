@@ -80,7 +80,8 @@ fn write_touched_diagram(
         _ => ("q, v, u", "u".to_string()),
     };
     let acting = format!(
-        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error if friction and constraints contradict each other.",
+        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error if \
+         friction and constraints contradict each other.",
         diagram_docs(diagram, s)
     );
     let under = format!(
@@ -119,7 +120,8 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let shape = s.shape(f.shape);
         let _ = writeln!(
             out,
-            "pub fn {name}({parameters}) -> ::core::result::Result<{shape}, ::linkwork::ConstraintError> {{ loop {{}} }}"
+            "pub fn {name}({parameters}) -> ::core::result::Result<{shape}, ::linkwork::ConstraintError> \
+             {{ loop {{}} }}"
         );
     }
     for (name, diagram) in &i.diagrams {
@@ -130,7 +132,8 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
             let forces = s.vector(i.facts.contacts.rates);
             let _ = writeln!(
                 out,
-                "pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> {{ loop {{}} }}
+                "pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> \
+                 {{ loop {{}} }}
                 pub fn {name}_under({parameters}, forces: &{forces}) -> {kind} {{ loop {{}} }}"
             );
         }
@@ -166,7 +169,8 @@ fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
         false => all.join(", "),
     };
     format!(
-        "the free-body diagram of `{}` {motion}: {actions}. Points are from the centre of mass, m, forces in N, torques about their points in N·m.",
+        "the free-body diagram of `{}` {motion}: {actions}. Points are from the centre of mass, m, forces in \
+         N, torques about their points in N·m.",
         diagram.body
     )
 }
@@ -182,7 +186,9 @@ fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
         false => " without the forces of unilateral contacts",
     };
     format!(
-        "{motion}{contacts}: a reaction is the force or torque that the parent of a joint exerts on its child, at the origin of the joint's frame. Along the joint's own coordinate it includes the forces of its motor, springs and dashpots. It has no derivatives yet."
+        "{motion}{contacts}: a reaction is the force or torque that the parent of a joint exerts on its \
+         child, at the origin of the joint's frame. Along the joint's own coordinate it includes the forces \
+         of its motor, springs and dashpots. It has no derivatives yet."
     )
 }
 
@@ -216,4 +222,6 @@ pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function]
 }
 
 /// Description of the function of an output that contains contact forces.
-const ABOUT_FORCES: &str = "under the forces that contacts exert in this state (`linkwork::contact::acting`). An error if friction and constraints contradict each other. It has no derivatives.";
+const ABOUT_FORCES: &str = "under the forces that contacts exert in this state \
+                            (`linkwork::contact::acting`). An error if friction and constraints contradict \
+                            each other. It has no derivatives.";

@@ -11,13 +11,16 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     let functions = [
         (
             "integrate",
-            "Returns `q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised quaternions.",
+            "Returns `q ⊕ dv`: the configuration reached from `q` in one unit of time with the constant \
+             joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised \
+             quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
             format!("self.__integrate{lanes}(q, &self.rates_of_speeds{lanes}(q, dv))"),
         ),
         (
             "difference",
-            "Returns `to ⊖ from`: the generalized speeds, at `from`, that lead from one configuration to another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
+            "Returns `to ⊖ from`: the generalized speeds, at `from`, that lead from one configuration to \
+             another in one unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
             format!("self.speeds_of_rates{lanes}(from, &self.__difference{lanes}(from, to))"),
         ),
@@ -50,7 +53,8 @@ pub fn write_trait(out: &mut String, s: &Signature<'_>) {
     let _ = writeln!(
         out,
         "#[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
-        #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ Self::displacement_rate(self, q, dv, v) }}",
+        #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ \
+            Self::displacement_rate(self, q, dv, v) }}",
         v = turbofish(&v),
         nan = nan(s),
     );
@@ -61,8 +65,10 @@ pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
         out,
-        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat(::linkwork::__private::Lanes([::linkwork::__private::constant(f64::NAN); LANES])) }}
-        #[inline]\nfn displacement_rate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ Self::displacement_rate_lanes(self, q, dv, v) }}",
+        "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, _dv: &{v}, _v: &{v}) -> {v} {{ \
+         {v}::repeat(::linkwork::__private::Lanes([::linkwork::__private::constant(f64::NAN); LANES])) }}
+        #[inline]\nfn displacement_rate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} \
+            {{ Self::displacement_rate_lanes(self, q, dv, v) }}",
         v = turbofish(&v),
     );
 }
@@ -83,8 +89,10 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
     let _ = writeln!(
         out,
-        "#[inline]\nfn integrate_derivatives(&self, _dv: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}
-        #[inline]\nfn tangent_rate_derivatives(&self, _dv: &{v}, _v: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}
+        "#[inline]\nfn integrate_derivatives(&self, _dv: &{v}) -> ({square}, {square}) {{ ({unknown}, \
+         {unknown}) }}
+        #[inline]\nfn tangent_rate_derivatives(&self, _dv: &{v}, _v: &{v}) -> ({square}, {square}) {{ \
+            ({unknown}, {unknown}) }}
         fn integrate_derivatives_at(&self, q: &{q}, dv: &{v}) -> ({square}, {square}) {{
             let way = self.rates_of_speeds(q, dv);
             let there = self.__integrate(q, &way);
@@ -95,7 +103,8 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
                 &self.__rate_changes(q, dv),
             )
         }}
-        fn displacement_rate_derivatives(&self, q: &{q}, dv: &{v}, v: &{v}) -> ({square}, {square}, {square}) {{
+        fn displacement_rate_derivatives(&self, q: &{q}, dv: &{v}, v: &{v}) -> ({square}, {square}, \
+            {square}) {{
             let way = self.rates_of_speeds(q, dv);
             let there = self.__integrate(q, &way);
             let rates = self.rates_of_speeds(&there, v);
@@ -110,7 +119,8 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
                 [&self.__speed_matrix(q), &self.__rate_matrix(q), &self.__rate_matrix(&there)],
                 &self.__tangent_rate_derivatives(&way, &rates),
                 &moved,
-                [&self.__rate_changes(q, dv), &self.__rate_changes(q, &found), &self.__rate_changes(&there, v)],
+                [&self.__rate_changes(q, dv), &self.__rate_changes(q, &found), &self.__rate_changes(&there, \
+                    v)],
             )
         }}
         #[inline]\nfn turning(&self, q: &{q}, v: &{v}) -> {square} {{ self.__turning(q, v) }}",
@@ -123,6 +133,7 @@ pub fn write_second_derivatives(out: &mut String, s: &Signature<'_>) {
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
     let _ = writeln!(
         out,
-        "#[inline]\nfn tangent_rate_second_derivatives(&self, _dv: &{v}, _v: &{v}, _lambda: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}"
+        "#[inline]\nfn tangent_rate_second_derivatives(&self, _dv: &{v}, _v: &{v}, _lambda: &{v}) \
+         -> ({square}, {square}) {{ ({unknown}, {unknown}) }}"
     );
 }

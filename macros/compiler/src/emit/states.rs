@@ -90,8 +90,10 @@ fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
     let all = s.nv + n;
     let _ = writeln!(
         out,
-        "#[inline]\nfn extended_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, u: &{u}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
-            ::linkwork::__private::acceleration_derivatives(&::linkwork::FirstOrder::extended(self), t, q, v, u)
+        "#[inline]\nfn extended_derivatives(&self, t: {scalar}, q: &{q}, v: &{v}, u: &{u}) -> \
+         ::core::option::Option<({square}, {square}, {inputs})> {{
+            ::linkwork::__private::acceleration_derivatives(&::linkwork::FirstOrder::extended(self), t, q, \
+                v, u)
         }}",
         scalar = s.scalar.name(),
         q = s.vector(s.nq),
@@ -120,7 +122,8 @@ fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s
             ::linkwork::__private::put_rows(&mut all.by_q, {k}, &seen.by_q);
             ::linkwork::__private::put_rows(&mut all.by_v, {k}, &seen.by_v);
             ::linkwork::__private::put_rows(&mut all.by_u, {k}, &seen.by_u);
-            ::linkwork::__private::put_rows(&mut all.by_x, {k}, &::linkwork::__private::columns(&{}, [{which}]));",
+            ::linkwork::__private::put_rows(&mut all.by_x, {k}, &::linkwork::__private::columns(&{}, \
+                [{which}]));",
             call(f, DERIVATIVES),
             call(f, BY_PARAMETERS),
         );
@@ -136,7 +139,8 @@ fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s
         let _ = writeln!(
             out,
             "#[inline]\nfn {function}_by_states({}) -> {by_states} {{
-                ::linkwork::__private::columns(&Self::{function}{BY_PARAMETERS}(self, {time}q, v, {}), [{which}])
+                ::linkwork::__private::columns(&Self::{function}{BY_PARAMETERS}(self, {time}q, v, {}), \
+                    [{which}])
             }}",
             s.parameters(&[Argument::T, Argument::Q, Argument::V, last]),
             last.name(),

@@ -34,16 +34,18 @@ pub fn write_method(out: &mut String, i: &Interface<'_>, failed: bool) {
         return;
     }
     out.push_str(
-        "/// Checks that the parameters are physically valid: values are finite; masses, sizes and coefficients are not negative;
-        /// and no principal moment of inertia exceeds the sum of the other two. These are the conditions that the compiler
-        /// checks for numbers. No other function checks them: call this one for parameters that are loaded, estimated or
-        /// random. With lanes, the values of all lanes must be valid. Unused parameters whose names begin with `_` are not
-        /// checked.
+        "/// Checks that the parameters are physically valid: values are finite; masses, sizes and \
+         coefficients are not negative;
+        /// and no principal moment of inertia exceeds the sum of the other two. These are the conditions that
+        /// the compiler checks for numbers. No other function checks them: call this one for parameters that
+        /// are loaded, estimated or random. With lanes, the values of all lanes must be valid. Unused
+        /// parameters whose names begin with `_` are not checked.
         ///
         /// # Errors
         ///
         /// The first invalid value, with the parameters on which it depends.
-        #[inline(never)]\npub fn validate(&self) -> ::core::result::Result<(), ::linkwork::ParameterError> {\n",
+        #[inline(never)]\npub fn validate(&self) -> ::core::result::Result<(), ::linkwork::ParameterError> \
+            {\n",
     );
     if failed {
         out.push_str("loop {}\n}\n");

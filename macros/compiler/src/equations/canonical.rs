@@ -68,7 +68,7 @@ pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>)
 }
 
 fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    replace_all(e, &|s| match Quantity::of(s) {
+    replace_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
     })
@@ -104,7 +104,7 @@ pub(super) fn velocities_of<'g>(
         let cofactors: Matrix<'g> = (0..n).map(|i| (0..n).map(|j| cofactor(&own, i, j)).collect()).collect();
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
-        let moves = |s: &Symbol| matches!(Quantity::of(*s), Quantity::Configuration(_));
+        let moves = |s: &Symbol| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_));
         if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.normal_form(divisor)?.terms.len() > 1)
         {
             determinants.push(divisor);

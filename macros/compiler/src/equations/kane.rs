@@ -222,7 +222,9 @@ impl<'g> Solved<'g> {
             inverse.iter().map(|row| shortened(model, entry(row))).collect()
         };
         let at_zero_velocity = |e: Expr<'g>| {
-            replace_all(&[e], &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()))[0]
+            replace_all(&[e], &|s| {
+                matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
+            })[0]
         };
         // Motion that is driven in time also moves dependent velocities.
         let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| at_zero_velocity(c.rate)).collect();
@@ -249,7 +251,7 @@ impl<'g> Solved<'g> {
     /// Expresses all velocities and accelerations in the independent ones.
     fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let place = |k: usize| self.dependent.iter().position(|d| *d == k);
-        replace_all(e, &|s| match Quantity::of(s) {
+        replace_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => Some(self.values[place(k)?]),
             Quantity::Acceleration(k) => Some(*self.changes.get(place(k)?)?),
             _ => None,
@@ -332,7 +334,8 @@ fn legend(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> 
         _ => ("are the independent velocities", "The equations of motion are Kane's for them"),
     };
     format!(
-        "{} {are}; from them the others follow by {}. {equations}, without multipliers. A prime marks a rate.",
+        "{} {are}; from them the others follow by {}. {equations}, without multipliers. A prime marks a \
+         rate.",
         all_of(&independent),
         all_of(&held)
     )

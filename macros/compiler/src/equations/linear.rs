@@ -68,14 +68,20 @@ pub fn linear<'g>(
     }
     let found = written_out(model, at, &all, &rest, normal);
     if found.is_none() {
-        cx.error(at.place.clone(), format!("the linear equations of `{}` are too long to be written", at.name))
-            .help("the generated function `linearize` has them in numbers; ask for the printed ones of a smaller mechanism");
+        cx.error(
+            at.place.clone(),
+            format!("the linear equations of `{}` are too long to be written", at.name),
+        )
+        .help(
+            "the generated function `linearize` has them in numbers; ask for the printed ones of a smaller \
+             mechanism",
+        );
     }
     let found = found?;
     if found.changes() {
         cx.error(
             at.place.clone(),
-            format!("`{}` does not stay at rest: what drives it changes in time", at.name),
+            format!("`{}` does not stay at rest: its prescribed motion depends on time", at.name),
         )
         .help("linear equations with constant coefficients need forces that stay the same");
         return None;

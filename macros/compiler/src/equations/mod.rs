@@ -196,7 +196,7 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     for node in nodes.iter() {
         if let Node::Call(Function::Sin | Function::Cos, argument) = node
             && let Node::Symbol(symbol) = nodes[*argument as usize]
-            && let Quantity::Configuration(k) = Quantity::of(symbol)
+            && let Quantity::Configuration(k) = Quantity::from_symbol(symbol)
             && let Some(angle) = angle.get_mut(k)
         {
             *angle = true;
@@ -276,7 +276,7 @@ fn shortened(mut short: Simplifier, found: Equations) -> Option<Equations> {
 }
 
 fn rank(symbol: Symbol) -> Rank {
-    match Quantity::of(symbol) {
+    match Quantity::from_symbol(symbol) {
         Quantity::Configuration(_) | Quantity::Time => Rank::Position,
         Quantity::Velocity(_) => Rank::Rate,
         Quantity::Acceleration(_) => Rank::Acceleration,

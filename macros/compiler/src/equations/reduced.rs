@@ -112,7 +112,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
-    let name = |symbol: Symbol| match Quantity::of(symbol) {
+    let name = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(c) => (momenta[c].clone(), 0),
         Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
             (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)

@@ -50,7 +50,7 @@ fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     }
     let (v, a, u) = (numbers(model.nv()), numbers(model.nv()), numbers(model.nu()));
     let multipliers = numbers(model.constraints.len());
-    move |symbol| match Quantity::of(symbol) {
+    move |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Parameter(k) => parameters[k],
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
@@ -252,7 +252,10 @@ fn a_condition_that_always_holds_is_dropped() {
     // A contact that can never close is reported, however small its row is.
     let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
     let messages = crate::check(arguments(), hovering.parse().unwrap(), Path::new(""));
-    assert!(messages.len() == 1 && messages[0].contains("`contact.normal` can never hold"), "{messages:?}");
+    assert!(
+        messages.len() == 1 && messages[0].contains("`contact.normal` cannot be satisfied"),
+        "{messages:?}"
+    );
 }
 
 #[test]
@@ -355,12 +358,12 @@ fn check_canonical(model: &Model<'_>) -> String {
         let symbol = state(model, seed);
         let p = eval(&momenta, &symbol);
         // Determinants contain no other determinants, but the ring evaluates all of its atoms.
-        let one = |s: Symbol| match Quantity::of(s) {
+        let one = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(_) | Quantity::Prepared(_) => 1.0,
             _ => symbol(s),
         };
         let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
-        let symbol_value = |s: Symbol| match Quantity::of(s) {
+        let symbol_value = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
             Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
@@ -406,11 +409,11 @@ fn forms_that_there_are_not_are_refused() {
     assert_eq!(said("structure", SPHERE), [""; 0]);
     assert_eq!(said("hamilton", FREE), [""; 0]);
     let rows = [
-        ("hamilton", SPHERE.to_string(), "printed for mechanisms without constraints"),
-        ("routh", SPHERE.to_string(), "are those of mechanisms without constraints"),
+        ("hamilton", SPHERE.to_string(), "printed only for mechanisms without constraints"),
+        ("routh", SPHERE.to_string(), "require a mechanism without constraints"),
         ("routh", BALL.to_string(), "no coordinate of this mechanism is cyclic"),
         ("lagrange", masses(100), "have thousands of terms"),
-        ("newton", SPHERE.to_string(), "unknown choice `newton` for `equations`"),
+        ("newton", SPHERE.to_string(), "unknown value `newton` for `equations`"),
     ];
     for (words, item, expected) in rows {
         let messages = said(words, &item);

@@ -79,7 +79,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let determinants = determinants(model, canonical.determinants.len());
     let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
-    let name = |symbol| match Quantity::of(symbol) {
+    let name = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
@@ -94,7 +94,9 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
     let mut plain = line(&format!("H = {}", lines[0])) + "\n";
     plain.extend(lines[1..].iter().map(line));
-    let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, and a prime marks a rate.".to_string();
+    let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, \
+                     and a prime marks a rate."
+        .to_string();
     about += &about_inertias(&determinants);
     plain = plain + "\n" + &filled(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &dotted });
@@ -228,7 +230,7 @@ pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
 
 /// Returns the name of a symbol, and how often the quantity of this name is differentiated.
 pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
-    match Quantity::of(symbol) {
+    match Quantity::from_symbol(symbol) {
         Quantity::Parameter(k) => (model.parameters[k].clone(), 0),
         Quantity::Configuration(k) => (model.configuration[k].clone(), 0),
         Quantity::Velocity(k) => (model.velocities[k].0.clone(), u8::from(rates.get(k) == Some(&true))),
@@ -285,7 +287,8 @@ fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String
             _ => ("are the generalized forces", "their terms"),
         };
         format!(
-            "{} {are} of gravity, force elements and inputs; {terms} are too many to be readable. The option `equations = lagrange` of `#[mechanism]` prints up to some thousand.",
+            "{} {are} of gravity, force elements and inputs; {terms} are too many to be readable. The option \
+             `equations = lagrange` of `#[mechanism]` prints up to some thousand.",
             all_of(&names)
         )
     });

@@ -144,7 +144,7 @@ impl<'a> Cx<'a> {
             mend(self.diagnostics.error(place.clone(), message));
         } else if self.mistakes == MISTAKES_SHOWN + 1 {
             let message =
-                format!("`{}` has more mistakes; these are the first {MISTAKES_SHOWN}", self.files[0].path);
+                format!("`{}` has more errors; these are the first {MISTAKES_SHOWN}", self.files[0].path);
             self.diagnostics.error(self.span, message);
         }
     }

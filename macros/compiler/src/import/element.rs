@@ -277,13 +277,14 @@ pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, c
     let Some(n) = angles.iter().find(is_likely) else { return };
     let (degrees, turned) = (n.to_radians(), n % std::f64::consts::TAU);
     let message = format!(
-        "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad turn like {turned} rad"
+        "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad is the same rotation \
+         as {turned} rad"
     );
     cx.habit(place, message, help);
 }
 
 const SEPARATE: &str =
-    "write spaces between the numbers instead of commas, and a decimal point; so everywhere in the file";
+    "write spaces between the numbers instead of commas, and a decimal point, everywhere in the file";
 const POINT: &str = "write one number, with a decimal point";
-const SPACES: &str = "write as many numbers, with spaces between them";
+const SPACES: &str = "write that many numbers, separated by spaces";
 const DIGITS: &str = "write digits, as in `-0.5` or `1e-3`";

@@ -94,7 +94,7 @@ pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// Returns the rotation matrix axis_rotation a unit axis; the angle is in radians.
+/// Returns the rotation matrix about a unit axis; the angle is in radians.
 pub(in crate::import) fn axis_rotation(axis: Vector, angle: f64) -> Matrix {
     let (s, c) = sin_cos(angle);
     std::array::from_fn(|i| {

@@ -110,17 +110,14 @@ pub(super) fn report_circle(
     let error = cx.error(at.place.clone(), format!("{} includes itself", quote(shown)));
     let rest = open.iter().skip_while(|file| **file != known).skip(1);
     for by in rest.filter_map(|file| places.get(*file)) {
-        error.help(format!("by way of {} at {}", quote(&by.text), position(&by.place)));
+        error.help(format!("through {} at {}", quote(&by.text), position(&by.place)));
     }
 }
 
 /// Reports too many included files or too deep nesting.
 pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
-    let (most, what) = if depth > MAX_DEPTH {
-        (MAX_DEPTH, "files inside one another")
-    } else {
-        (MAX_FILES, "included files")
-    };
+    let (most, what) =
+        if depth > MAX_DEPTH { (MAX_DEPTH, "nested files") } else { (MAX_FILES, "included files") };
     cx.error(at.place.clone(), format!("more than {most} {what}"));
 }
 

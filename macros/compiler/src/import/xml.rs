@@ -186,7 +186,7 @@ fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
                 root.get_or_insert(start);
                 let length = scan_tag(rest, start, &mut open, &mut note)?;
                 if open.len() > deepest {
-                    return Err((start, format!("more than {deepest} elements inside one another")));
+                    return Err((start, format!("more than {deepest} nested elements")));
                 }
                 length
             };
@@ -299,7 +299,7 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
         Error::UnknownEntityReference(name, _) => format!("unknown entity {}", quote(&format!("&{name};"))),
         Error::MalformedEntityReference(_) => {
             help = Some("write `&amp;` for `&`");
-            "this `&` begins no entity".to_string()
+            "this `&` does not begin an entity".to_string()
         }
         Error::UnknownNamespace(prefix, _) => {
             help = (prefix == "xacro").then_some(run_xacro(format));

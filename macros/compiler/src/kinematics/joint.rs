@@ -226,7 +226,7 @@ fn rate_of_placement<'g>(
 
 fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
-    let index = |s: Symbol| match Quantity::of(s) {
+    let index = |s: Symbol| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(k),
         _ => None,
     };
@@ -235,7 +235,7 @@ fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
 
 /// Returns an expression with all velocities set to zero.
 fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
-    replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| graph.zero()))
+    replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| graph.zero()))
 }
 
 fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {

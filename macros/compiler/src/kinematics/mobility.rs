@@ -50,8 +50,8 @@ pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagno
     if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && starts == STARTS)
     {
         let c = &model.constraints[row];
-        cx.error(c.place.clone(), format!("no configuration was found that fulfils `{}`", c.name))
-            .help(format!("the best one is {open:.3} off: check the lengths and axes"));
+        cx.error(c.place.clone(), format!("no configuration was found that satisfies `{}`", c.name))
+            .help(format!("the smallest residual is {open:.3}: check the lengths and axes"));
     }
     found
 }
@@ -61,7 +61,7 @@ fn is_numeric(model: &Model<'_>) -> bool {
     let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
     symbols_in(&residuals)
         .into_iter()
-        .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
+        .all(|s| !matches!(Quantity::from_symbol(s), Quantity::Parameter(_) | Quantity::Time))
 }
 
 /// Counts the degrees of freedom, of configurations and of velocities, in the assembly mode of the first
@@ -88,7 +88,7 @@ pub fn degrees_of_freedom(
     if freedom.velocities == 0 && !samples.is_empty() && stands() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
-            "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
+            "its {nv} coordinates are fixed by {nc} constraints: remove a joint or a constraint"
         ));
     }
     freedom
@@ -98,7 +98,8 @@ pub fn degrees_of_freedom(
 /// has a velocity-free term.
 fn is_driven(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
     let placements: Vec<Expr<'_>> = model.links.iter().flat_map(|link| link.placement.entries()).collect();
-    rows.has_drift(q, *seed) || symbols_in(&placements).into_iter().any(|s| Quantity::of(s) == Quantity::Time)
+    rows.has_drift(q, *seed)
+        || symbols_in(&placements).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time)
 }
 
 /// Returns a pivot for each constraint among the velocities that need not be independent, in the order of an

@@ -31,7 +31,7 @@ pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
 /// once per symbol.
 pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool) -> Vec<Expr<'g>> {
     let g = space.graph;
-    let rate = |symbol: Symbol| match Quantity::of(symbol) {
+    let rate = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => Some(configuration_rate(space, k)),
         Quantity::Velocity(k) if accelerated => Some(Quantity::Acceleration(k).expr(g)),
         Quantity::Time => Some(g.one()),
@@ -99,7 +99,7 @@ impl<'g> Partials<'g> {
 fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol) -> Expr<'g>) -> Expr<'g> {
     let mut sum = e.zero();
     for symbol in symbols_in(&[e]) {
-        let rate = match Quantity::of(symbol) {
+        let rate = match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => configuration_rate(space, k),
             Quantity::Time => space.graph.one(),
             _ => continue,
@@ -178,7 +178,7 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
     }
     wanted.sort_unstable();
     for rows in wanted.chunk_by(|a, b| a.0 == b.0) {
-        let Quantity::Velocity(k) = Quantity::of(rows[0].0) else { continue };
+        let Quantity::Velocity(k) = Quantity::from_symbol(rows[0].0) else { continue };
         let mut derivative = Derivative::with_respect_to(rows[0].0, graph);
         for (_, row) in rows {
             gradients[*row].push((k, derivative.differentiate(all[*row])));

@@ -54,12 +54,16 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
     let open = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
     for ((c, gap), again) in constant.iter().zip(values(0)).zip(values(1)) {
         if gap.is_nan() && again.is_nan() {
-            cx.error(c.place.clone(), format!("`{}` has a value nowhere", c.name)).help(
-                "a length or a direction on its way is always zero: of a circle on a plane, for one, the axes must differ",
+            cx.error(c.place.clone(), format!("`{}` is undefined in every configuration", c.name)).help(
+                "one of its lengths or directions is always zero: for a circle on a plane, for example, the \
+                 axes must differ",
             );
         } else if open(gap) && open(again) {
-            cx.error(c.place.clone(), format!("`{}` can never hold: it stays {gap} away from zero", c.name))
-                .help("no configuration closes this loop: check the lengths and axes on its way");
+            cx.error(
+                c.place.clone(),
+                format!("`{}` cannot be satisfied: its residual is at least {gap}", c.name),
+            )
+            .help("no configuration closes this loop: check the lengths and axes along it");
         }
     }
 }

@@ -86,7 +86,7 @@ impl<'g> Rows<'g> {
 
 /// Returns the value of a symbol at zero velocities, with parameters sampled by `seed`.
 pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
-    match Quantity::of(s) {
+    match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(_) => 0.0,
         _ => sample(s, seed),

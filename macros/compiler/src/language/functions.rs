@@ -166,7 +166,8 @@ table! {
         /// A moment or product of inertia of bodies about a point.
         MomentOfInertia = row("moment_of_inertia", "",
             ("a body, a point and a direction",
-             "write `moment_of_inertia(body / point, direction)`, with a second direction for a product of inertia"),
+             "write `moment_of_inertia(body / point, direction)`, with a second direction for a product of \
+              inertia"),
             Arguments, Moment);
         /// The vector from a point to the centre of mass of bodies.
         CenterOfMass = row("center_of_mass", "",
@@ -175,7 +176,8 @@ table! {
         /// The vector from a point to the centre of percussion of a body that rotates about it.
         CenterOfPercussion = row("center_of_percussion", "",
             ("a body, a point and an axis",
-             "write `center_of_percussion(body / point, z)`: the body turns about the axis through the point"),
+             "write `center_of_percussion(body / point, z)`: the body rotates about the axis through the \
+              point"),
             Arguments, Places(LENGTH));
         /// The vector from a body's origin to its instantaneous centre of rotation.
         InstantCenter = row("instant_center", "", (MOVING, "write `instant_center(body / frame)`"),
@@ -198,7 +200,7 @@ table! {
         Outer = row("outer", "", (TWO, "write `outer(a, b)`"), Arguments, Product { scalar: false });
         /// The rotation that takes the axes of one frame to those of another.
         Rotation = row("rotation", "",
-            ("two frames", "write `rotation(B / A)`, which turns the axes of A into those of B"),
+            ("two frames", "write `rotation(B / A)`, which rotates the axes of A into those of B"),
             Arguments, Of(PLAIN));
         /// The inertia matrix of bodies about a point.
         Inertia = row("inertia", "",

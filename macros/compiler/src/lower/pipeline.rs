@@ -39,7 +39,7 @@ const SHARE_SUBSUMS: Pass = Pass {
 };
 const REASSOCIATE: Pass = Pass {
     name: "reassociate",
-    about: "in sums on the longest chain, what is known late is added last",
+    about: "in sums on the longest chain, operands that are available late are added last",
     run: Program::with_late_terms_last,
 };
 const FUSE: Pass = Pass {

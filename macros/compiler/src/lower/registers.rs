@@ -149,8 +149,8 @@ impl Needs {
         order
     }
 
-    /// Chooses instructions from the last to the first: the one that adds fewest live values before it, and of
-    /// these the one whose value became live last.
+    /// Chooses instructions from the last to the first: the one that adds fewest live values before it, and
+    /// of these the one whose value became live last.
     fn backwards(&self) -> Vec<usize> {
         let n = self.of.len();
         let mut users = vec![0_usize; self.count];

@@ -163,7 +163,7 @@ impl State {
     }
 
     fn value(&self, s: Symbol) -> f64 {
-        match Quantity::of(s) {
+        match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k],
             Quantity::Velocity(k) => self.v[k],
             Quantity::Time => self.t,

@@ -75,7 +75,7 @@ pub fn inverse_dynamics<'g>(
     if a == symbols {
         return found;
     }
-    let acceleration = |s| match Quantity::of(s) {
+    let acceleration = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };

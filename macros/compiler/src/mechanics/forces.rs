@@ -34,7 +34,9 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
     }
     for load in &model.loads {
         // The force at zero inputs belongs to the bias.
-        let alone = replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()));
+        let alone = replace(load.force, &|s| {
+            matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero())
+        });
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
             for (k, d) in known_gradient(model, load.rate) {

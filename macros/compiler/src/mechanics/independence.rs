@@ -51,7 +51,7 @@ fn values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f6
     for state in 0..states as u64 {
         let at = 1000 * (seed + 1) + state;
         let q = random_configuration(model, at);
-        let found = eval(&all, &|s: Symbol| match Quantity::of(s) {
+        let found = eval(&all, &|s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             Quantity::Parameter(_) => sample(s, seed),
             _ => 4.0 * (sample(s, at) - 1.0),

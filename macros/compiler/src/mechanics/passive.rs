@@ -38,7 +38,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
             }
         }
         for load in &model.loads {
-            let no_input = |s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero());
+            let no_input = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
             let force = replace(load.force, &no_input);
             for (k, d) in known_gradient(model, load.rate) {
                 h[k] -= force * d;

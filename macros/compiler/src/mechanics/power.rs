@@ -38,7 +38,7 @@ pub fn control<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
 pub fn disturbance<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let without_inputs = |load: &Load<'g>| {
-        replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()))
+        replace(load.force, &|s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero()))
     };
     let applied = model.loads.iter().filter(|l| !l.dissipative);
     applied.fold(g.zero(), |sum, load| sum + without_inputs(load) * load.rate)

@@ -15,13 +15,13 @@ const SIX: usize = 6;
 
 /// Returns true if one of the expressions contains a reaction.
 pub fn names_one(e: &[Expr<'_>]) -> bool {
-    symbols_in(e).into_iter().any(|s| matches!(Quantity::of(s), Quantity::Reaction(_)))
+    symbols_in(e).into_iter().any(|s| matches!(Quantity::from_symbol(s), Quantity::Reaction(_)))
 }
 
 /// Returns the expressions with reactions replaced by expressions of `q`, `v`, `a` and the inputs;
 /// multipliers are arguments. With `touched`, contact forces are included; otherwise they are zero.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
-    let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::of(s) {
+    let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::from_symbol(s) {
         Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
         _ => None,
     };
@@ -31,7 +31,7 @@ pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Exp
     };
     let (held, multipliers) = on_released_coordinates(model, released, touched);
     let reaction = |s: Symbol| {
-        let Quantity::Reaction(k) = Quantity::of(s) else { return None };
+        let Quantity::Reaction(k) = Quantity::from_symbol(s) else { return None };
         if k >= Quantity::MULTIPLIERS {
             return multiplier(s, &multipliers);
         }
@@ -65,7 +65,7 @@ fn of_multipliers<'g>(
 
 /// Returns true for a coordinate of a released joint, or its velocity.
 fn is_open(model: &Model<'_>, s: Symbol) -> bool {
-    match Quantity::of(s) {
+    match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => k >= model.nq(),
         Quantity::Velocity(k) => k >= model.nv(),
         _ => false,

@@ -33,7 +33,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let q = random_configuration(model, seed);
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
     let whole: Vec<Vec<Rounded>> = Tape::new(&entries)
-        .rounded(&|s: Symbol| match Quantity::of(s) {
+        .rounded(&|s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             _ => crate::expr::sample::sample(s, seed),
         })

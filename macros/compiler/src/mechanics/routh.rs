@@ -44,7 +44,7 @@ pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
         .collect();
     for seed in 0..STATES {
         let q = random_configuration(model, seed);
-        let values = rates.values(&|s| match Quantity::of(s) {
+        let values = rates.values(&|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(_) => 3.0 * sample(s, seed) - 3.0,
             Quantity::Input(_) => 0.0,
@@ -130,7 +130,7 @@ pub fn with_cyclic_velocities<'g>(
 
 /// Returns the expressions with the velocity symbols replaced by `v`.
 pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    replace_all(e, &|s| match Quantity::of(s) {
+    replace_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
     })

@@ -107,7 +107,7 @@ impl<'g> InSpeeds<'g> {
     /// Expresses joint velocities, accelerations and forces in generalized speeds: replaces the symbols in
     /// `e` by their values in terms of `u`, `u̇` and the forces of the speeds.
     pub fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        replace_all(e, &|s| match Quantity::of(s) {
+        replace_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => self.rates.get(k).copied(),
             Quantity::Acceleration(k) => self.accelerations.get(k).copied(),
             Quantity::Force(k) => self.efforts.get(k).copied(),
@@ -157,7 +157,7 @@ impl<'g> InSpeeds<'g> {
     /// Sets the rates of the speeds in the expressions to zero.
     pub fn without_accelerations(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = self.model.graph.zero();
-        replace_all(e, &|s| matches!(Quantity::of(s), Quantity::Acceleration(_)).then_some(zero))
+        replace_all(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Acceleration(_)).then_some(zero))
     }
 
     /// Transforms the results of a function in joint velocities to generalized speeds.

@@ -4,7 +4,8 @@ use crate::diag::Place;
 use crate::expr::Expr;
 
 /// Help for an equilibrium that requires linearisation of dry friction.
-pub const DRY_FRICTION: &str = "at rest it holds whatever is too weak to overcome it: write a `Dashpot` for damping, or declare the equilibrium in a mechanism without friction";
+pub const DRY_FRICTION: &str = "at rest it balances every smaller force: use a `Dashpot` for damping, or \
+                                declare the equilibrium in a mechanism without friction";
 
 /// An equilibrium configuration with all values that belong to it: expressions of the parameters.
 #[derive(Clone, Debug)]

@@ -146,7 +146,7 @@ impl Quantity {
     }
 
     /// Returns the quantity that a symbol denotes.
-    pub fn of(symbol: Symbol) -> Quantity {
+    pub fn from_symbol(symbol: Symbol) -> Quantity {
         let index = (symbol.0 & ((1 << Quantity::SHIFT) - 1)) as usize;
         match symbol.0 >> Quantity::SHIFT {
             0 => Quantity::Parameter(index),
@@ -210,7 +210,7 @@ mod tests {
         let displacements = (0..3).map(Quantity::Displacement);
         let single = [Quantity::Time, Quantity::Laplace, Quantity::Stretch];
         for quantity in all.chain(given).chain(factors).chain(displacements).chain(single) {
-            assert_eq!(Quantity::of(quantity.symbol()), quantity);
+            assert_eq!(Quantity::from_symbol(quantity.symbol()), quantity);
         }
     }
 }

@@ -19,7 +19,8 @@ pub struct Site {
     /// Mass properties, if numeric.
     pub mass: Option<Mass>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
-    /// The rounding error of moments of inertia axis_rotation the origin grows as the square of this distance.
+    /// The rounding error of moments of inertia about the origin grows as the square of this
+    /// distance.
     pub reach: f64,
 }
 
@@ -87,7 +88,7 @@ fn children(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
-/// Candidate angles axis_rotation, and shifts along, a link's axis.
+/// Candidate angles about, and shifts along, a link's axis.
 struct Choices {
     /// Index of the coordinate axis.
     a: usize,

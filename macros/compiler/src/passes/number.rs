@@ -74,7 +74,7 @@ pub fn transpose(m: &Matrix) -> Matrix {
 /// Identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Returns the rotation axis_rotation coordinate axis `k`.
+/// Returns the rotation about coordinate axis `k`.
 pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let (sin, cos) = angle.sin_cos();
@@ -142,9 +142,9 @@ fn clean_vector(v: Vector) -> Vector {
 pub struct Mass {
     /// Mass.
     pub mass: f64,
-    /// First moment axis_rotation the origin.
+    /// First moment about the origin.
     pub moment: Vector,
-    /// Inertia axis_rotation the origin.
+    /// Inertia about the origin.
     pub tensor: Matrix,
 }
 
@@ -173,8 +173,8 @@ impl Mass {
         }
     }
 
-    /// Returns the mass properties axis_rotation the origin `p` of another frame, in its axes. With the first moment
-    /// `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
+    /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first
+    /// moment `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
     pub fn seen_from(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);

@@ -22,12 +22,12 @@ impl<'g> Scope<'_, 'g> {
         match self.value(argument, cx)? {
             Value::Scalar(value) => Some(self.rates(function, &argument.place, &[value], cx)?[0]),
             Value::Matrix(_) => {
-                cx.error(argument.place.clone(), "the rate of a matrix is one as seen from a frame")
+                cx.error(argument.place.clone(), "the rate of a matrix is relative to a frame")
                     .help("write `rate(matrix / frame)`");
                 None
             }
             Value::Vector(_) => {
-                cx.error(argument.place.clone(), "the rate of a vector is one as seen from a frame")
+                cx.error(argument.place.clone(), "the rate of a vector is relative to a frame")
                     .help("write `rate(vector / frame)`; the rate of its length is `rate(norm(vector))`");
                 None
             }
@@ -75,7 +75,7 @@ impl<'g> Scope<'_, 'g> {
         values: &[Expr<'g>],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Expr<'g>>> {
-        let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
+        let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
         let has = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
         let is_state = |k: &usize| {
             self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
@@ -84,19 +84,20 @@ impl<'g> Scope<'_, 'g> {
             quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
         if let Some(state) = state {
             cx.error(place.clone(), format!("this depends on the state `{}`", state.text)).help(
-                "a rate is known of what depends on coordinates, velocities and time: write the state's own rate",
+                "`rate` applies to expressions of coordinates, velocities and time: write the rate of the \
+                 state itself",
             );
             return None;
         }
         if has(|q| matches!(q, Quantity::Input(_))) {
             cx.error(place.clone(), "this depends on inputs, whose rates are not known")
-                .help("a `State` that follows an input late has a rate");
+                .help("a `State` that follows an input with a lag has a rate");
             return None;
         }
         if has(|q| matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_)))
         {
             cx.error(place.clone(), "this depends on accelerations or forces, whose rates are not known")
-                .help("a rate is known of what depends on coordinates, velocities and time");
+                .help("`rate` applies to expressions of coordinates, velocities and time");
             return None;
         }
         let gradients = velocity_gradients(values);
@@ -104,7 +105,7 @@ impl<'g> Scope<'_, 'g> {
             if gradients.iter().all(Vec::is_empty) { Allowed::Motion } else { Allowed::Acceleration };
         let what = match needed {
             Allowed::Motion => "a rate",
-            _ => "the rate of what depends on velocities",
+            _ => "the rate of an expression of velocities",
         };
         if !self.check_allowed(needed, what, function, cx) {
             return None;
@@ -144,7 +145,7 @@ impl<'g> Builder<'_, 'g> {
                 force.place.clone(),
                 format!("a force cannot depend on accelerations in a mechanism with {found}"),
             )
-            .help("hold the bodies by joints that form a tree, or leave these terms out");
+            .help("connect the bodies by joints that form a tree, or remove these terms");
         }
     }
 }

@@ -19,7 +19,10 @@ const MAX_VELOCITIES: usize = 128;
 const MAX_SEPARATE_REPORTS: usize = 3;
 
 /// Help for mechanisms with too many velocities.
-const DIVIDE_HELP: &str = "every degree of freedom is written out, and the code of the mass matrix grows as their square: divide the mechanism into several, weld what hardly moves (`Weld`, `lock = [\"joint\"]` of a file), or compute a long chain by a loop of your own";
+const DIVIDE_HELP: &str = "the generated code has no loops, and that of the mass matrix grows with the \
+                           square of the degrees of freedom: divide the mechanism into several, weld parts \
+                           that hardly move (`Weld`, `lock = [\"joint\"]` of a file), or compute a long \
+                           chain by a loop of your own";
 
 /// Maximum number of bodies of a mechanism.
 const MAX_BODIES: usize = 1024;
@@ -35,12 +38,14 @@ pub fn build_model<'g>(
 ) -> Option<Model<'g>> {
     if description.bodies.len() + description.particles.len() > MAX_BODIES {
         cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"))
-            .help("each body becomes code of its own: divide the mechanism, or weld bodies that do not move into one");
+            .help("each body adds code: divide the mechanism, or weld bodies that do not move into one");
         return None;
     }
     if description.bodies.is_empty() && description.particles.is_empty() {
-        cx.error(description.name.place.clone(), "a mechanism without a body")
-            .help("add one, as in `#[body(mass = 1)] cart: Body`, or read a file: `#[mechanism(urdf = \"robot.urdf\")]`");
+        cx.error(description.name.place.clone(), "a mechanism without a body").help(
+            "add one, as in `#[body(mass = 1)] cart: Body`, or read a file: `#[mechanism(urdf = \
+             \"robot.urdf\")]`",
+        );
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
@@ -207,8 +212,9 @@ impl<'a, 'g> Builder<'a, 'g> {
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
         for name in all.clone().filter(|n| n.text == GROUND) {
-            cx.error(name.place.clone(), "the name `ground` is taken: it is what does not move")
-                .help("choose another name, or remove the body: joints begin at `ground` as it is");
+            cx.error(name.place.clone(), "the name `ground` is reserved for the fixed reference").help(
+                "choose another name, or remove the body: joints can start at `ground` without a declaration",
+            );
         }
         check_names(description, cx);
         let gravity = description.gravity.as_ref().and_then(|e| read_gravity(e, &scope, cx));
@@ -220,7 +226,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             && s <= 0.0
         {
             cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
-                .help("around it Coulomb's law is smooth; 0.01 is usual");
+                .help("Coulomb's law is smoothed below this speed; 0.01 is usual");
         }
         scope.require(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
@@ -270,12 +276,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             && rest.len() >= MAX_SEPARATE_REPORTS
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
-            cx.error(first.place.clone(), format!("nothing uses the parameters {}", all_of(&list)))
-                .help("remove them, or let their names begin with `_` to keep them for your own use");
+            cx.error(first.place.clone(), format!("unused parameters {}", all_of(&list)))
+                .help("remove them, or begin their names with `_` to keep them for your own use");
             return;
         }
         for parameter in unused {
-            cx.error(parameter.place.clone(), format!("nothing uses the parameter `{}`", parameter.text))
+            cx.error(parameter.place.clone(), format!("unused parameter `{}`", parameter.text))
                 .help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
         }
     }
@@ -316,7 +322,7 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
     let joints = description.joints.iter().map(|joint| &joint.name);
     for table in description.tables.iter().filter(|table| Callable::is_function(&table.name.text)) {
         cx.error(table.name.place.clone(), format!("the name `{}` is taken by a function", table.name.text))
-            .help(format!("name the table otherwise, such as `{}_table`", table.name.text));
+            .help(format!("rename the table, for example `{}_table`", table.name.text));
     }
     for name in written.chain(joints) {
         if Builtin::of_name(&name.text).is_some() && name.place.file.is_none() {

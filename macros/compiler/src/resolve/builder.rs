@@ -114,7 +114,7 @@ impl<'g> Builder<'_, 'g> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
                 let range = ValueRange::of_scalar(&self.description.scalar);
-                let place = || format!("the place of a joint on `{}`", end.body.text);
+                let place = || format!("the position of a joint on `{}`", end.body.text);
                 v.0.iter().for_each(|c| self.scope.require(Rule::Length, place, &[*c]));
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
             }),
@@ -139,7 +139,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
         let moves = symbols_in(&pose.entries())
             .into_iter()
-            .any(|s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time));
+            .any(|s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time));
         if !moves {
             return (link, pose);
         }

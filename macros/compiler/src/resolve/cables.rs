@@ -89,16 +89,17 @@ impl<'g> Scope<'_, 'g> {
             (CYLINDER | DRUM, _) => {
                 cx.error(
                     word.place.clone(),
-                    "a cylinder that a cable runs around is written `cylinder(radius, axis)`",
+                    "a cylinder that a cable wraps around is written `cylinder(radius, axis)`",
                 )
                 .help(
-                    "the cable turns about the axis, by the right hand, from the first point to the second",
+                    "the cable wraps about the axis by the right-hand rule, from the first point to the \
+                     second",
                 );
                 return None;
             }
             _ => {
-                cx.error(word.place.clone(), format!("a cable does not run around a `{}`", word.text))
-                    .help("it runs around a `sphere(radius)` or a `cylinder(radius, axis)`");
+                cx.error(word.place.clone(), format!("a cable cannot wrap around a `{}`", word.text))
+                    .help("it wraps around a `sphere(radius)` or a `cylinder(radius, axis)`");
                 return None;
             }
         };
@@ -107,7 +108,7 @@ impl<'g> Scope<'_, 'g> {
         let value = self.in_context(constant(), |s| s.scalar(radius, cx))?;
         if let Some(n) = value.value().filter(|n| *n <= 0.0) {
             cx.error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
-                .help("the side that a cable runs on is said by the direction of the axis");
+                .help("the direction of the axis selects the side of the cable");
             return None;
         }
         self.require(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);

@@ -28,8 +28,14 @@ impl<'g> Scope<'_, 'g> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         if !always(w.dot(v), 0.0) {
-            cx.error(call.place.clone(), "this body may slide along the axis that it turns about: no point of it rests")
-                .help("the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / frame)` tells how it slides");
+            cx.error(
+                call.place.clone(),
+                "this body can slide along its axis of rotation: it has no point at rest",
+            )
+            .help(
+                "the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / \
+                 frame)` is the advance along it",
+            );
             return None;
         }
         Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
@@ -57,8 +63,10 @@ impl<'g> Scope<'_, 'g> {
         let [a, alpha] = rates?;
         let square = w.dot(w);
         if !(vanishes(w.cross(alpha)) && always(w.dot(a), 0.0)) {
-            cx.error(call.place.clone(), "this body does not move in a plane")
-                .help("an acceleration centre is that of a motion in a plane; accelerations of points are `a(point / point / frame)`");
+            cx.error(call.place.clone(), "this body does not move in a plane").help(
+                "an acceleration centre is that of a motion in a plane; accelerations of points are `a(point \
+                 / point / frame)`",
+            );
             return None;
         }
         let center = (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)));
@@ -76,9 +84,9 @@ impl<'g> Scope<'_, 'g> {
         if motion.w.is_zero() {
             cx.error(
                 body.place.clone(),
-                format!("`{}` does not turn with respect to `{}`", body.to_source(), frame.to_source()),
+                format!("`{}` does not rotate with respect to `{}`", body.to_source(), frame.to_source()),
             )
-            .help("what moves without turning has no centre: all its points move alike");
+            .help("a body in pure translation has no centre: all its points have the same velocity");
             return None;
         }
         Some(motion)
@@ -144,7 +152,8 @@ impl<'g> Scope<'_, 'g> {
                 format!("the centre of mass of `{}` lies on this axis", body.to_source()),
             )
             .help(
-                "there is no centre of percussion then: a couple turns the body without a force at the axis",
+                "there is no centre of percussion then: a pure torque rotates the body without a force at \
+                 the axis",
             );
             return None;
         }
@@ -152,11 +161,9 @@ impl<'g> Scope<'_, 'g> {
         if !vanishes((central * axis_here).cross(axis_here)) {
             cx.error(
                 axis.place.clone(),
-                format!("this axis is no principal axis of inertia of `{}`", body.to_source()),
+                format!("this axis is not a principal axis of inertia of `{}`", body.to_source()),
             )
-            .help(
-                "a blow then pushes against the bearings wherever it falls: there is no centre of percussion",
-            );
+            .help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
         let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);

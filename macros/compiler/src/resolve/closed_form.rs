@@ -28,7 +28,9 @@ struct Side<'g> {
 /// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
 pub struct Solved(());
 
-const CLOSED_FORM_HELP: &str = "a loop is solved in closed form where a Pin closes it between two bodies that are held by Pins, or by a Pin and a Sleeve, in one plane; without `branch` it is kept by multipliers";
+const CLOSED_FORM_HELP: &str = "a loop is solved in closed form if a Pin closes it between two bodies that \
+                                are connected by Pins, or by a Pin and a Sleeve, in one plane; without \
+                                `branch` it is enforced by multipliers";
 
 /// Returns the loops whose closing joint has a `branch`, and reports joints for which that is not allowed.
 pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
@@ -36,8 +38,8 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
         if !closing[j] {
-            cx.error(branch.place.clone(), "this joint closes no loop: it has no branch")
-                .help("a joint closes a loop where its child is held by an earlier joint");
+            cx.error(branch.place.clone(), "this joint does not close a loop and has no branch")
+                .help("a joint closes a loop if its child has an earlier joint");
             continue;
         }
         let holder = |end: &Endpoint| {
@@ -165,7 +167,7 @@ impl<'g> Builder<'_, 'g> {
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
         let first_released = self.model.nq() - RELEASED * joints.len();
-        let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= first_released);
+        let open = |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(k) if k >= first_released);
         let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
         closed.try_into().map_or(v, Vec3)
     }

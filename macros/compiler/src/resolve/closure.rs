@@ -55,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
         let Some((motions, ends)) = self.closing_joint(j, cx) else { return };
         let place = &joint.name.place;
         if matches!(motions.as_slice(), [Elementary::Free]) {
-            cx.error(place.clone(), format!("`{}` closes a loop, but it restricts nothing", joint.name.text))
+            cx.error(place.clone(), format!("`{}` closes a loop, but constrains no motion", joint.name.text))
                 .help("remove it: a Free joint allows all motions");
             return;
         }

@@ -70,8 +70,10 @@ impl<'g> Builder<'_, 'g> {
         let count = self.model.constraints.len();
         if count > MAX_CONSTRAINTS {
             let place = self.description.name.place.clone();
-            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}"))
-                .help("each loop costs up to five of them: hold bodies by the tree where you can, or divide the mechanism");
+            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}")).help(
+                "each loop adds up to five of them: connect the bodies as a tree where possible, or divide \
+                 the mechanism",
+            );
             return Constrained(());
         }
         for j in &solved {
@@ -105,9 +107,12 @@ impl<'g> Builder<'_, 'g> {
         let (components, redundant) = without_vanishing(rows);
         let mut rows = Vec::new();
         for (name, residual) in components {
-            if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::of(*s), Quantity::Parameter(_))) {
-                cx.error(constraint.value.place.clone(), "this restricts no coordinate")
-                    .help("an expression of coordinates stays zero, or equal to another one");
+            if symbols_in(&[residual])
+                .iter()
+                .all(|s| matches!(Quantity::from_symbol(*s), Quantity::Parameter(_)))
+            {
+                cx.error(constraint.value.place.clone(), "this does not constrain any coordinate")
+                    .help("a holonomic constraint sets an expression of coordinates to zero, or equal to another one");
                 return None;
             }
             let rate = time_derivative(self.model.space(), residual);
@@ -144,16 +149,16 @@ impl<'g> Builder<'_, 'g> {
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
             let contains = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
-                symbols_in(e).into_iter().any(|s| f(Quantity::of(s)))
+                symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
             };
             if gradient.is_empty() {
-                cx.error(place.clone(), "this restricts no velocity")
+                cx.error(place.clone(), "this does not constrain any velocity")
                     .help("a constraint on coordinates is a `Holonomic` one");
                 return None;
             }
             if contains(&[rate], |q| matches!(q, Quantity::Input(_))) {
                 cx.error(place.clone(), "a constraint contains no input")
-                    .help("a motion that is given is an expression of time `t`");
+                    .help("a prescribed motion is an expression of time `t`");
                 return None;
             }
             let linear = match contains(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
@@ -162,7 +167,8 @@ impl<'g> Builder<'_, 'g> {
             };
             let Some(linear) = linear else {
                 cx.error(place.clone(), "this constraint is not linear in the velocities").help(
-                    "each term holds one velocity at most, as in `dot(v(skate / ground / ground), sled.y)`",
+                    "each term contains at most one velocity, as in `dot(v(skate / ground / ground), \
+                     sled.y)`",
                 );
                 return None;
             };
@@ -230,7 +236,7 @@ impl<'g> Builder<'_, 'g> {
 fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
     let is_vanishing = |e: &Expr<'g>| {
         let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
-        symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::of(s))) && always(*e, 0.0)
+        symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::from_symbol(s))) && always(*e, 0.0)
     };
     let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
     if remaining.is_empty() {
@@ -244,7 +250,7 @@ fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
     // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
     let evaluate = |e: Expr<'g>, pattern: u64| {
-        eval_one(e, &|s| match Quantity::of(s) {
+        eval_one(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
             Quantity::Velocity(_) => sample(s, pattern),
             _ => sample(s, 0),
@@ -257,7 +263,7 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
             && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate(e, *p)))
     };
     let substitute = |e: Expr<'g>, value: f64| {
-        replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| e.num(value)))
+        replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| e.num(value)))
     };
     let remainder = substitute(rate, 0.0);
     if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(remainder, 0).is_finite() {

@@ -24,9 +24,7 @@ impl Scope<'_, '_> {
         } else if !words::explain(error, words::NUMBER_METHODS, text, &[])
             && !words::explain(error, &words::functions(), text, &[])
         {
-            error.help(
-                "functions stand before what they take, as in `sin(angle)`; `body.at(vector)` is a place",
-            );
+            error.help("functions precede their arguments, as in `sin(angle)`; `body.at(vector)` is a point");
         }
     }
 
@@ -72,7 +70,7 @@ pub const MATRIX_SYNTAX: &str =
     "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
 
 /// Help for a function that is undefined at a number.
-pub const DOMAIN_HELP: &str = "its argument is a number here: mend that";
+pub const DOMAIN_HELP: &str = "its argument is a number here: correct that";
 
 /// Maximum plain number that is accepted as an angle, rad: a full revolution with room for the digits of 2 π.
 const FULL_TURN: f64 = 6.3;

@@ -38,9 +38,12 @@ impl<'g> Scope<'_, 'g> {
                 if always(x.square() + y.square(), 0.0) {
                     cx.error(
                         argument.place.clone(),
-                        format!("this vector lies on the z axis, where `{}` has no directions", name.text),
+                        format!("this vector lies on the z axis, on which `{}` has no directions", name.text),
                     )
-                    .help("the axes follow from a vector that leaves the z axis of the frame it starts from");
+                    .help(
+                        "the axes are determined by a vector that is not on the z axis of the frame in which \
+                         it starts",
+                    );
                     return None;
                 }
                 let about = Rotation::about_axis(2, y.atan2(x));
@@ -102,7 +105,7 @@ impl<'g> Scope<'_, 'g> {
         let normal = first.cross(second);
         if normal.0.iter().all(|c| always(*c, 0.0)) {
             cx.error(call.arguments[0].place.clone(), "this curve is straight, and has no torsion")
-                .help("its curvature is zero: it has no normal that could turn");
+                .help("its curvature is zero: it has no normal");
             return None;
         }
         Some(Value::Scalar(normal.dot(third) / normal.dot(normal)))
@@ -161,13 +164,14 @@ impl<'g> Scope<'_, 'g> {
             return Some(*c);
         }
         let known: Vec<&str> = kinematics.coordinates.iter().map(|(known, ..)| known.as_str()).collect();
-        let error = cx.error(
-            e.place.clone(),
-            format!("`{text}` takes a coordinate, along which the curve is run through"),
-        );
+        let error =
+            cx.error(e.place.clone(), format!("`{text}` takes the coordinate that parametrises the curve"));
         error.suggest(&name, known);
         if error.is_bare() {
-            error.help("a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a `Coordinate`");
+            error.help(
+                "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
+                 `Coordinate`",
+            );
         }
         None
     }
@@ -201,7 +205,7 @@ impl<'g> Scope<'_, 'g> {
         let gradient =
             Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).differentiate(value))));
         if gradient.is_zero() {
-            cx.error(field.place.clone(), format!("this does not depend on the place of `{name}`"))
+            cx.error(field.place.clone(), format!("this does not depend on the position of `{name}`"))
                 .help(format!("a field is an expression of `r({name} / ground)`"));
             return None;
         }

@@ -48,7 +48,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.context.replace(previous);
         self.scope.records.borrow_mut().requirements = required;
         let is_fixed = |e: &[Expr<'g>]| {
-            symbols_in(e).into_iter().all(|s| matches!(Quantity::of(s), Quantity::Parameter(_)))
+            symbols_in(e).into_iter().all(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
         };
         pieces.retain(|piece: &Piece<'g>| is_fixed(&piece.numbers));
         self.model.drawing = pieces;

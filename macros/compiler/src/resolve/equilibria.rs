@@ -26,7 +26,7 @@ impl<'g> Builder<'_, 'g> {
             if dry {
                 cx.error(
                     declared.name.place.clone(),
-                    format!("dry friction has no linear equations about `{}`", declared.name.text),
+                    format!("dry friction cannot be linearised about `{}`", declared.name.text),
                 )
                 .help(DRY_FRICTION);
             } else if self.model.kinematic {
@@ -132,12 +132,12 @@ impl<'g> Builder<'_, 'g> {
             self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
         let follows = self.scope.joints.iter().any(|joint| joint == text);
         let what = self.scope.kind_of_name(text);
-        let error = cx.error(place.place.clone(), format!("`{text}` has no value at rest of its own"));
+        let error = cx.error(place.place.clone(), format!("`{text}` cannot have a value at rest"));
         match (own.as_slice(), what) {
-            ([first, ..], _) => error.help(format!("its coordinates have: write `{first} = …`")),
-            (_, Some("a parameter")) => {
-                error.help("parameters have theirs in the struct, and values here may be expressions of them")
-            }
+            ([first, ..], _) => error.help(format!("give its coordinates values: write `{first} = …`")),
+            (_, Some("a parameter")) => error.help(
+                "parameters have their values in the struct; values here can be expressions of parameters",
+            ),
             _ if follows => {
                 error.help("it has no coordinate: it is welded, closes a loop, or follows others")
             }

@@ -41,7 +41,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         for (axes, v) in terms {
             if let Axes::Of(body) = axes {
                 cx.error(e.place.clone(), format!("this vector is given in the axes of `{body}`"))
-                    .help("here only the frame's own axes `x`, `y` and `z` can stand");
+                    .help("only the axes `x`, `y` and `z` of the frame are allowed here");
                 return None;
             }
             sum += v;
@@ -176,7 +176,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             (BinaryOp::Mul, Scalar(a), Scalar(b)) => Scalar(a * b),
             (BinaryOp::Div, _, Scalar(b)) if b.is_zero() => {
                 cx.error(e.place.clone(), "division by zero")
-                    .help("the divisor is the number zero, or cancels to it");
+                    .help("the divisor is zero, or simplifies to zero");
                 return None;
             }
             (op, left @ Value::Matrix(_), right) | (op, left, right @ Value::Matrix(_)) => {
@@ -223,8 +223,8 @@ fn finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Optio
         Value::Matrix(m) => m.entries.0.iter().flatten().all(is_finite),
     };
     if !is_valid {
-        cx.error(e.place.clone(), "the value of this is not a finite number")
-            .help("the largest number is about 1e308: use smaller figures");
+        cx.error(e.place.clone(), "this value is not a finite number")
+            .help("the largest number is about 1e308: use smaller numbers");
     }
     is_valid.then_some(value)
 }

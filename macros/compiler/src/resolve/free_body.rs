@@ -54,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
         let open = RELEASED * joints.len();
         let (nq, nv) = (self.model.nq() - open, self.model.nv() - open);
         replace_all(e, &|s| {
-            let released = match Quantity::of(s) {
+            let released = match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => k >= nq,
                 Quantity::Velocity(k) | Quantity::Acceleration(k) => k >= nv,
                 _ => false,
@@ -140,8 +140,10 @@ impl<'g> Builder<'_, 'g> {
             .in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
         let name = e.name()?;
         if self.holders_of(name).iter().all(|(_, holds)| !holds) {
-            cx.error(e.place.clone(), format!("nothing holds `{name}` that could be released"))
-                .help("a free-body diagram is that of a body or a particle that moves by a joint or by its own `at` and `frame`; what is fixed on another body belongs to the diagram of that");
+            cx.error(e.place.clone(), format!("`{name}` has no joint that can be released")).help(
+                "a free-body diagram is available for a body or a particle with a joint or with its own `at` \
+                 and `frame`; a body fixed to another one belongs to the diagram of that one",
+            );
             return None;
         }
         Some(name.to_string())
@@ -175,9 +177,12 @@ impl<'g> Builder<'_, 'g> {
             if placed.link != link {
                 cx.error(
                     output.value.place.clone(),
-                    format!("`{other}` moves on `{name}` without a joint, so that `{name}` cannot be freed"),
+                    format!(
+                        "`{other}` moves relative to `{name}` without a joint, so `{name}` cannot be \
+                         isolated"
+                    ),
                 )
-                .help("hold it by a joint, whose reaction acts on both");
+                .help("connect it by a joint, whose reaction acts on both");
                 return None;
             }
             mass += *m;
@@ -436,7 +441,7 @@ impl<'g> Builder<'_, 'g> {
         (0..SAMPLES).any(|seed| {
             // Sampled quaternions have unit length, because terms may cancel only for rotations.
             let q = random_configuration(&self.model, seed);
-            let number = |s: Symbol| match Quantity::of(s) {
+            let number = |s: Symbol| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k],
                 _ => sample(s, seed),
             };

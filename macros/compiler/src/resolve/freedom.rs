@@ -29,7 +29,7 @@ impl<'g> Builder<'_, 'g> {
     fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
-            cx.error(place.clone(), "independent speeds leave no normal force for friction to follow")
+            cx.error(place.clone(), "independent speeds eliminate the normal force that friction depends on")
                 .help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
             return;
         }
@@ -57,7 +57,7 @@ impl<'g> Builder<'_, 'g> {
                 place.clone(),
                 format!("{} independent speeds for {free} degrees of freedom", independent.len()),
             )
-            .help(format!("name {free}, or leave `independent` out: then they are chosen"));
+            .help(format!("name {free}, or remove `independent` to have them chosen"));
             return;
         }
         if !cx.is_empty() {
@@ -66,8 +66,11 @@ impl<'g> Builder<'_, 'g> {
         self.model.dependent = mobility::dependent(&self.model, rows, samples, &independent);
         if self.model.dependent.is_none() {
             let diagnostic =
-                cx.error(place.clone(), "the other velocities do not follow from independent speeds");
-            diagnostic.help("constraints are redundant, or these speeds depend on each other: use `formulation = multipliers`, or others");
+                cx.error(place.clone(), "the independent speeds do not determine the other velocities");
+            diagnostic.help(
+                "constraints are redundant, or these speeds depend on each other: use `formulation = \
+                 multipliers`, or others",
+            );
         }
     }
 }

@@ -61,14 +61,14 @@ impl<'g> Scope<'_, 'g> {
                 Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
             }
             F::Norm => {
-                let (_, v) = self.vector_argument(call, "the size of a scalar is `abs(a)`", cx)?;
+                let (_, v) = self.vector_argument(call, "the magnitude of a scalar is `abs(a)`", cx)?;
                 Some(Value::Scalar(v.length()))
             }
             F::Unit => {
                 let (axes, v) = self.vector_argument(call, "a scalar has no direction", cx)?;
                 if v.is_zero() {
                     cx.error(call.arguments[0].place.clone(), "the zero vector has no direction")
-                        .help("a direction is a vector of some length");
+                        .help("a direction is a nonzero vector");
                     return None;
                 }
                 Some(Value::Vector(vec![(axes, unit(v))]))
@@ -141,7 +141,9 @@ impl<'g> Scope<'_, 'g> {
         let [argument] = arguments else {
             let text = &callee.text;
             let help = match f {
-                Function::Atan => "of two arguments is `atan2(y, x)`: did you mean `atan2`?".to_string(),
+                Function::Atan => {
+                    "the function of two arguments is `atan2(y, x)`: did you mean `atan2`?".to_string()
+                }
                 _ => format!("write `{text}(a)`"),
             };
             cx.error(callee.place.clone(), format!("`{text}` takes 1 argument")).help(help);
@@ -182,11 +184,14 @@ impl<'g> Scope<'_, 'g> {
         let greek = words::known_spelling(text, &known);
         match (greek, solid) {
             (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
-            (_, Some(_)) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
+            (_, Some(_)) => drop(error.help(format!("`{text}` is a solid, for `inertia = …`"))),
             _ => words::suggest_meaning(error, &words::functions(), text, &known),
         }
         if error.is_bare() {
-            error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
+            error.help(
+                "available are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, \
+                 `dot`, `cross`, `norm`, …",
+            );
         }
     }
 
@@ -204,10 +209,7 @@ impl<'g> Scope<'_, 'g> {
             let plural = if expected == 1 { "" } else { "s" };
             cx.error(
                 callee.place.clone(),
-                format!(
-                    "`{}` is a table of {expected} variable{plural}, but {found} stand here",
-                    callee.text
-                ),
+                format!("`{}` is a table of {expected} variable{plural}, but {found} are given", callee.text),
             )
             .help(format!("it is declared as `Table<{expected}>`"));
             return None;
@@ -230,9 +232,10 @@ fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagn
         Some(n) if x.powf(n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
         Some(n) => format!("`pow` is infinite at {x} and {n}"),
         None if x >= 0.0 => return true,
-        None => format!("powers of {x} are defined for whole exponents alone"),
+        None => format!("powers of {x} are defined only for integer exponents"),
     };
-    let help = "the first argument of `pow` is the base, the second the exponent: a base that may be negative takes a whole number";
+    let help = "the first argument of `pow` is the base, the second the exponent: a base that can be \
+                negative requires an integer exponent";
     cx.error(place.clone(), what).help(help);
     false
 }

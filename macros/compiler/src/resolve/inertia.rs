@@ -87,12 +87,16 @@ impl<'g> Scope<'_, 'g> {
                         error.help("solids are added with `+`; twice a solid has twice the mass");
                     }
                     ExprKind::Binary(..) | ExprKind::Name(_) | ExprKind::Neg(_) => {
-                        error.help("write `diagonal(i, i, i)` for one moment `i` about all axes; in a plane only the one about its normal counts");
+                        error.help(
+                            "write `diagonal(i, i, i)` for one moment `i` about all axes; in a plane only \
+                             the one about its normal counts",
+                        );
                     }
                     _ => {}
                 }
                 error.help(
-                    "write a solid such as `rod(m, l, y)` or `sphere(m, r)`, `diagonal(xx, yy, zz)`, or a 3×3 matrix",
+                    "write a solid such as `rod(m, l, y)` or `sphere(m, r)`, `diagonal(xx, yy, zz)`, or a \
+                     3×3 matrix",
                 );
                 None
             }
@@ -127,7 +131,10 @@ impl<'g> Scope<'_, 'g> {
                 error.help(format!("it is written `{}`", solid.usage()));
             }
             if error.is_bare() {
-                error.help("the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`");
+                error.help(
+                    "the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, \
+                     `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`",
+                );
             }
             return None;
         };
@@ -217,12 +224,12 @@ pub fn check_inertia(
             .help(format!("its principal moments are {list}"))
             .help(hint);
     } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
-        cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
+        cx.error(place.clone(), format!("the inertia of `{body}` is not physically consistent"))
             .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
             .help(hint);
     } else if mass == Some(0.0) && place.file.is_some() {
         cx.error(place.clone(), format!("`{body}` has an inertia and no mass"))
-            .help("no real body has that: give it a mass, or an inertia of zero")
+            .help("no real body has an inertia without mass: give it a mass, or an inertia of zero")
             .help(hint);
     }
 }

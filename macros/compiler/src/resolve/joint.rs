@@ -117,7 +117,7 @@ impl<'g> Scope<'_, 'g> {
                 None => {
                     cx.error(
                         place.clone(),
-                        "a normal that depends on parameters does not say the directions in the plane",
+                        "a normal that depends on parameters does not determine the directions in the plane",
                     )
                     .help("write `along = (first, second)` instead of `about`");
                     return None;
@@ -138,7 +138,7 @@ impl<'g> Scope<'_, 'g> {
             && !(*given - normal).0.iter().all(|c| vanishes(*c))
         {
             cx.error(place.clone(), "`about` is not the normal of the two directions in `along`")
-                .help("leave one of them out");
+                .help("remove one of them");
             return None;
         }
         // The written normal is exact, the product is rounded.
@@ -221,7 +221,7 @@ fn check_independent(
     };
     if let Some(last) = last.filter(|_| dependent) {
         cx.error(last.place.clone(), format!("the axes of {what} are not independent"))
-            .help("the last one adds nothing to the others; choose another direction");
+            .help("the last one depends on the others; choose another direction");
         return None;
     }
     Some(())

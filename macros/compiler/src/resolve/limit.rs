@@ -34,11 +34,11 @@ impl<'g> Builder<'_, 'g> {
             [Key::MaxSpeed, Key::MaxEffort].iter().find_map(|key| Some((key, given.get(*key)?)))
         {
             let name = key.name();
-            let message = format!("a `{name}` is that of a coordinate, and this is an expression");
+            let message = format!("`{name}` applies to a coordinate, but this is an expression");
             cx.error(e.place.clone(), message).help("write it in a limit of the joint");
         } else if given.get(Key::Restitution).is_none() {
-            cx.error(limit.on.place.clone(), "a limit of an expression is a stop, and has a restitution").help(
-                "add `restitution = e`, from 0 to 1: the part of the speed that is left when the bound is struck",
+            cx.error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").help(
+                "add `restitution = e`, from 0 to 1: the ratio of the speeds after and before the impact on the bound",
             );
         } else if let Some(bounds) = self.bounds(limit, false, cx) {
             check_bounds(limit, &bounds, cx);
@@ -103,11 +103,12 @@ impl<'g> Builder<'_, 'g> {
             let own = limit.name.text == name;
             let follower = if own { other.unwrap_or(limit) } else { limit };
             let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
-            let error = cx.error(place.clone(), format!("the limits of `{name}` leave it no room"));
+            let error = cx.error(place.clone(), format!("the limits of `{name}` exclude every value"));
             match follower.name.text == name || limit.on.place.file.is_none() {
-                true => error.help("all limits of a coordinate hold together, those of a file too"),
+                true => error.help("all limits of a coordinate apply, including those of a file"),
                 false => error.help(format!(
-                    "`{}` follows it and has limits of its own; to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+                    "`{}` follows it and has its own limits; to ignore limits, write `#[mechanism(…, limits \
+                     = ignore)]`",
                     follower.name.text
                 )),
             };

@@ -51,7 +51,7 @@ impl<'g> Builder<'_, 'g> {
             && m < 0.0
         {
             cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
-                .help("a mass is zero or more, kg; gravity has the sign");
+                .help("a mass is zero or more, kg; the sign belongs to gravity");
         }
         let range = ValueRange::of_scalar(&self.description.scalar);
         let mut is_valid = true;
@@ -72,12 +72,14 @@ impl<'g> Builder<'_, 'g> {
         {
             let hint = match e.place.file {
                 None if body.about.is_some() => {
-                    "these are the moments about the centre of mass, to which it was moved from `about`; to take it as it is, write `#[mechanism(…, inertia = trust)]`"
+                    "these are the moments about the centre of mass, transformed from `about`; to accept the \
+                     inertia unchanged, write `#[mechanism(…, inertia = trust)]`"
                 }
                 Some(_) => {
-                    "mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+                    "correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the \
+                     inertia unchanged"
                 }
-                None => "to take it as it is, write `#[mechanism(…, inertia = trust)]`",
+                None => "to accept the inertia unchanged, write `#[mechanism(…, inertia = trust)]`",
             };
             check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
         }
@@ -102,7 +104,10 @@ impl<'g> Builder<'_, 'g> {
         });
         if let Some(solid) = solid.filter(|solid| *solid != Solid::Diagonal) {
             cx.error(about.place.clone(), format!("the inertia of a `{}` is about its centre", solid.name()))
-                .help("remove `about`, and say by `com` where the centre is; `about` goes with `diagonal(xx, yy, zz)` or a matrix");
+                .help(
+                    "remove `about`, and give the centre by `com`; `about` is for `diagonal(xx, yy, zz)` or \
+                     a matrix",
+                );
             return None;
         }
         let about = match about.literal() {
@@ -147,8 +152,11 @@ impl<'g> Builder<'_, 'g> {
             let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
             if all.into_iter().any(infinite) {
                 let name = &body.name;
-                cx.error(name.place.clone(), format!("the figures of `{}` are too large", name.text))
-                    .help("mass times the square of the distance from the joint leaves no room for products");
+                cx.error(
+                    name.place.clone(),
+                    format!("the inertial parameters of `{}` are too large", name.text),
+                )
+                .help("mass times the square of the distance from the joint overflows in products");
                 return;
             }
         }

@@ -35,8 +35,10 @@ impl<'g> Scope<'_, 'g> {
         match self.value(e, cx)? {
             Value::Matrix(m) => Some(m),
             other => {
-                cx.error(e.place.clone(), format!("expected a matrix, found {}", other.word()))
-                    .help("a matrix is `projector(n)`, `skew(v)`, `outer(a, b)`, `rotation(B / A)`, `inertia(body / point)` or made of these");
+                cx.error(e.place.clone(), format!("expected a matrix, found {}", other.word())).help(
+                    "a matrix is `projector(n)`, `skew(v)`, `outer(a, b)`, `rotation(B / A)`, `inertia(body \
+                     / point)` or an expression of these",
+                );
                 None
             }
         }
@@ -54,8 +56,8 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports a matrix in a context that does not allow matrices.
     fn report_no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
-        cx.error(place.clone(), "a matrix cannot stand here")
-            .help("matrices stand in definitions, outputs and forces: `#[define(projector(n))]`");
+        cx.error(place.clone(), "a matrix is not allowed here")
+            .help("matrices are allowed in definitions, outputs and forces: `#[define(projector(n))]`");
         None
     }
 
@@ -207,7 +209,7 @@ impl<'g> Scope<'_, 'g> {
                 let (what, help) = match op {
                     BinaryOp::Mul => (
                         "multiplied by",
-                        "a matrix stands before what it takes: `M * v`; of a row, write `transpose(M) * v`",
+                        "a matrix is the left factor, `M * v`; for a row vector, write `transpose(M) * v`",
                     ),
                     BinaryOp::Div => {
                         ("divided by", "divide by a scalar, or multiply by `transpose(M)` of a rotation")

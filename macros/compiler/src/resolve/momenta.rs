@@ -33,8 +33,9 @@ impl<'g> Scope<'_, 'g> {
             let error = cx.error(call.place.clone(), format!("`{text}` takes {}", row.takes));
             match call.arguments.len() {
                 0 | 1 => error.help(row.usage),
-                _ => error
-                    .help(format!("several bodies stand in parentheses: `{text}((first, second){point})`")),
+                _ => error.help(format!(
+                    "several bodies are written in parentheses: `{text}((first, second){point})`"
+                )),
             };
             return None;
         }
@@ -80,7 +81,7 @@ impl<'g> Scope<'_, 'g> {
         let from = self.current_place(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
-            cx.error(bodies_written.place.clone(), "what has no mass has no centre of mass")
+            cx.error(bodies_written.place.clone(), "a body without mass has no centre of mass")
                 .help("name bodies with a `mass`");
             return None;
         }
@@ -159,7 +160,7 @@ impl<'g> Scope<'_, 'g> {
             items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
         };
         if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
-            cx.error(items[k].place.clone(), format!("`{}` stands here twice", items[k].to_source()))
+            cx.error(items[k].place.clone(), format!("`{}` is given twice", items[k].to_source()))
                 .help("name each body once");
             return None;
         }

@@ -65,14 +65,11 @@ impl<'g> Scope<'_, 'g> {
                 .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
         } else if let Some(table) = self.tables.iter().find(|table| table.name.text == name) {
             let variables = ["a", "b", "c"].get(..table.variables).unwrap_or_default().join(", ");
-            cx.error(
-                e.place.clone(),
-                format!("`{name}` is a table, which has a value for its variables alone"),
-            )
-            .help(format!("write `{name}({variables})`"));
+            cx.error(e.place.clone(), format!("`{name}` is a table, which needs its variables"))
+                .help(format!("write `{name}({variables})`"));
         } else if let Some(what) = self.kind_of_name(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
-                .help("an expression is made of parameters, numbers and directions");
+                .help("an expression consists of parameters, numbers and directions");
         } else if let Some(
             function @ (FunctionId::Momentum | FunctionId::AngularMomentum | FunctionId::KineticEnergy),
         ) = FunctionId::of_name(name)
@@ -128,7 +125,7 @@ impl<'g> Scope<'_, 'g> {
             }
             if let Some(what) = self.kind_of_name(body) {
                 cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
-                    .help("write `x`, `y`, `z` for the axes at hand, or `body.x` for those of a body");
+                    .help("write `x`, `y`, `z` for the axes available here, or `body.x` for those of a body");
                 return None;
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
@@ -138,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
             }
             let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
             if words::meaning(words::OWN, body, &[]).is_some() {
-                error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
+                error.help("without a body, `x`, `y` and `z` are the axes of the current frame");
                 return None;
             }
             words::suggest_meaning(error, words::BODIES, body, &known);
@@ -150,7 +147,7 @@ impl<'g> Scope<'_, 'g> {
             let meaning =
                 meaning.filter(|meaning| body != GROUND || !meaning.contains(FunctionId::Omega.name()));
             let meaning =
-                meaning.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
+                meaning.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a point");
             let help = meaning.replace("NAME", body);
             cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
             return None;
@@ -183,7 +180,7 @@ impl<'g> Scope<'_, 'g> {
         match self.placed(name) {
             Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
             None => {
-                cx.error(place.clone(), format!("`{name}` is not placed"));
+                cx.error(place.clone(), format!("`{name}` has no placement"));
                 None
             }
         }
@@ -255,13 +252,12 @@ impl<'g> Scope<'_, 'g> {
     fn define(&self, d: &syntax::Definition, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = &d.name.text;
         if self.context.borrow().defining.contains(name) {
-            cx.error(d.name.place.clone(), format!("`{name}` is defined by itself"))
-                .help("a definition stands for an expression of others");
+            cx.error(d.name.place.clone(), format!("the definition of `{name}` depends on itself"))
+                .help("a definition is an expression of other quantities");
             return None;
         }
         if self.context.borrow().defining.len() > 64 {
-            cx.error(d.name.place.clone(), "definitions are nested too deeply")
-                .help("write some of them out");
+            cx.error(d.name.place.clone(), "definitions are nested too deeply").help("expand some of them");
             return None;
         }
         // Unqualified directions in a definition are those of the ground in all its uses.
@@ -276,7 +272,10 @@ impl<'g> Scope<'_, 'g> {
         }
         if self.speeds.iter().any(|speed| speed.text == *name) {
             cx.error(d.value.place.clone(), format!("a speed is a scalar, and this is {}", value.word()))
-                .help("take a component of it, such as `dot(omega(body / ground), body.x)`, and declare a speed for each");
+                .help(
+                    "take a component of it, such as `dot(omega(body / ground), body.x)`, and declare a \
+                     speed for each",
+                );
             return None;
         }
         let (is, meant) = (value.word(), value.rank().kind());
@@ -305,13 +304,14 @@ impl<'g> Scope<'_, 'g> {
             return true;
         }
         if needed == Allowed::Reaction {
-            cx.error(place.clone(), format!("{what} cannot stand here"))
-                .help("forces of joints and contacts stand in outputs: `#[output(reaction_force(joint))]`");
+            cx.error(place.clone(), format!("{what} is not allowed here")).help(
+                "forces of joints and contacts are allowed in outputs: `#[output(reaction_force(joint))]`",
+            );
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
         if self.allowed() == Allowed::Placement && motion && self.records.borrow().in_holonomic_constraint {
-            cx.error(place.clone(), format!("{what} cannot stand here"))
+            cx.error(place.clone(), format!("{what} is not allowed here"))
                 .help("a constraint on velocities is a `Nonholonomic`");
             return false;
         }
@@ -320,7 +320,8 @@ impl<'g> Scope<'_, 'g> {
             Allowed::Placement => "only numbers, parameters, coordinates and time",
             _ => "no accelerations",
         };
-        cx.error(place.clone(), format!("{what} cannot stand here")).help(format!("this place takes {only}"));
+        cx.error(place.clone(), format!("{what} is not allowed here"))
+            .help(format!("this expression allows {only}"));
         false
     }
 }

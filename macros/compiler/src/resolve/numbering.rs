@@ -52,7 +52,7 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => {
                     cx.error(mimic.joint.place.clone(), format!("`{}` cannot be followed", mimic.joint.text))
-                        .help("a joint that is followed has one coordinate of its own");
+                        .help("a joint that others follow has one coordinate");
                 }
             }
         }

@@ -19,8 +19,14 @@ impl<'g> Builder<'_, 'g> {
             }
             if let Some(values) = self.output(output, cx) {
                 if !contact::has_consistent_forces(&values) {
-                    cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
-                        .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
+                    cx.error(
+                        output.value.place.clone(),
+                        "a contact force together with a reaction or an acceleration",
+                    )
+                    .help(
+                        "reactions and accelerations are computed without contacts: declare a separate \
+                         output",
+                    );
                     continue;
                 }
                 self.model.outputs.push(OutputValue {

@@ -84,7 +84,7 @@ impl<'g> Scope<'_, 'g> {
         let compared = (self.scalar(left, cx), self.scalar(right, cx));
         let (x, border) = (compared.0?, compared.1?);
         let moves = |e: Expr<'g>| {
-            symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::of(s), Quantity::Parameter(_)))
+            symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
         };
         // The border is the constant operand.
         let is_swapped = !moves(x) && (moves(border) || x.value().is_some());
@@ -93,8 +93,8 @@ impl<'g> Scope<'_, 'g> {
             false => (left, x, border, [below, above]),
         };
         if compared.value().is_some() {
-            cx.error(left.place.join(&right.place), "this comparison of two numbers is always the same")
-                .help("keep the piece that holds alone");
+            cx.error(left.place.join(&right.place), "this comparison of two numbers is constant")
+                .help("keep only the piece that applies");
             return None;
         }
         let depth = self.context.borrow().compared.len();
@@ -106,8 +106,11 @@ impl<'g> Scope<'_, 'g> {
         let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
-            cx.error(left.place.join(&right.place), "the border between the pieces moves with what decides")
-                .help("solve the comparison: what decides on one side, the border on the other");
+            cx.error(
+                left.place.join(&right.place),
+                "the boundary between the pieces depends on the compared quantity",
+            )
+            .help("solve the comparison: the compared quantity on one side, the boundary on the other");
             return None;
         }
         let law = PiecewiseLaw { symbol, compared, border, pieces: pieces_read };
@@ -158,14 +161,15 @@ impl<'g> Scope<'_, 'g> {
                     true => format!(": they are {first} and {second} there"),
                     false => String::new(),
                 };
-                cx.error(place, format!("the pieces do not meet where `{a}` is `{b}`{values}")).help(
-                    "laws are continuous, as methods of integration need it: give both pieces one value there, or go from one to the other within a short way, as `tanh` does",
+                cx.error(place, format!("the pieces differ where `{a}` is `{b}`{values}")).help(
+                    "integration requires continuous laws: give both pieces the same value there, or blend \
+                     them over a short range, as `tanh` does",
                 );
                 false
             }
             Err(()) => {
-                cx.error(place, format!("it cannot be told whether the pieces meet where `{a}` is `{b}`"))
-                    .help("both pieces must be defined there, and borders further on must lie further on");
+                cx.error(place, format!("cannot determine whether the pieces agree where `{a}` is `{b}`"))
+                    .help("both pieces must be defined there, and the boundaries must increase");
                 false
             }
         }

@@ -155,13 +155,13 @@ impl<'a, 'g> Builder<'a, 'g> {
         path.sort_unstable();
         let names: Vec<&Name> = path.iter().map(|k| self.item_name(waiting[*k], order)).collect();
         let Some((first, others)) = names.split_first() else { return };
-        let error = cx.error(first.place.clone(), format!("`{}` is placed by way of itself", first.text));
+        let error =
+            cx.error(first.place.clone(), format!("the placement of `{}` depends on itself", first.text));
         if !others.is_empty() {
             let list: Vec<String> = others.iter().map(|name| format!("`{}`", name.text)).collect();
-            error.note(format!("it goes round by {}", all_of(&list)));
+            error.note(format!("the cycle passes through {}", all_of(&list)));
         }
-        error
-            .help("its definition is circular: start from the ground or from a body that is held by a joint");
+        error.help("its definition is circular: start from the ground or from a body with a joint");
     }
 
     /// Returns the name of the element that an item places.
@@ -290,7 +290,10 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
                 words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
-                    error.help("a frame starts with the axes of a body or another frame: `#[frame(ground, z(angle))]`");
+                    error.help(
+                        "a frame starts with the axes of a body or another frame: `#[frame(ground, \
+                         z(angle))]`",
+                    );
                 }
                 None
             }
@@ -353,7 +356,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 self.offset(frame, &arguments[0], free, cx)
             }
             ExprKind::Method(_, method, _) => {
-                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a place", method.text))
+                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a point", method.text))
                     .suggest(&method.text, ["at"]);
                 None
             }

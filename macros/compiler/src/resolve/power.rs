@@ -49,7 +49,7 @@ impl<'g> Builder<'_, 'g> {
             power += load.force * load.rate;
         }
         let energies = &forces.potentials;
-        if symbols_in(energies).into_iter().any(|s| Quantity::of(s) == Quantity::Time) {
+        if symbols_in(energies).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time) {
             return Err("its energy depends on time");
         }
         for energy in energies {
@@ -126,7 +126,7 @@ impl<'g> Scope<'_, 'g> {
         match self.kinematics.powers.get(name) {
             Some(Ok(power)) => Some(Value::Scalar(*power)),
             Some(Err(why)) => {
-                cx.error(e.place.clone(), format!("the power of `{name}` is not there: {why}"))
+                cx.error(e.place.clone(), format!("the power of `{name}` is not available: {why}"))
                     .help("write it as a product of a force and a rate");
                 None
             }

@@ -74,7 +74,10 @@ impl<'g> Scope<'_, 'g> {
             let error = cx.error(argument.place.clone(), "`rate` takes a coordinate");
             error.suggest(&name, known);
             if error.is_bare() {
-                error.help("a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a `Coordinate`");
+                error.help(
+                    "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
+                     `Coordinate`",
+                );
             }
             return None;
         };
@@ -109,7 +112,7 @@ impl<'g> Scope<'_, 'g> {
             ExprKind::Name(name) => match self.placed(name) {
                 Some(p) if p.kind != PlacedKind::Frame => Some(p),
                 Some(_) => {
-                    cx.error(e.place.clone(), format!("`{name}` is a frame, which has axes but no place"))
+                    cx.error(e.place.clone(), format!("`{name}` is a frame, which has axes but no position"))
                         .help("name a body, a particle or a point");
                     None
                 }
@@ -137,7 +140,7 @@ impl<'g> Scope<'_, 'g> {
 
     fn unknown_place(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if let Some(what) = self.kind_of_name(name).filter(|w| *w != "a body") {
-            cx.error(place.clone(), format!("`{name}` is {what}, which has no place"))
+            cx.error(place.clone(), format!("`{name}` is {what}, which has no position"))
                 .help("name a body, a particle or a point");
             return;
         }

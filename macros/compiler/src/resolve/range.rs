@@ -30,14 +30,13 @@ impl ValueRange {
     pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
         let Some(n) = e.value().filter(|n| *n != 0.0) else { return true };
         if n.abs() > self.max {
-            cx.error(place.clone(), format!("this figure is too large for `{}`: {n:e}", self.name))
-                .help(format!("products of it are not finite; figures up to {:e} leave room", self.max));
+            cx.error(place.clone(), format!("this number is too large for `{}`: {n:e}", self.name))
+                .help(format!("products of it overflow; write at most {:e}", self.max));
             return false;
         }
         if n.abs() < self.min_nonzero {
-            cx.error(place.clone(), format!("this figure is too small for `{}`: {n:e}", self.name)).help(
-                format!("what is divided by it is not finite; write 0, or more than {:e}", self.min_nonzero),
-            );
+            cx.error(place.clone(), format!("this number is too small for `{}`: {n:e}", self.name))
+                .help(format!("division by it overflows; write 0, or more than {:e}", self.min_nonzero));
             return false;
         }
         true
@@ -47,7 +46,7 @@ impl ValueRange {
     pub fn check_length(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
         let Some(n) = e.value().filter(|n| n.abs() > self.length) else { return true };
         cx.error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))
-            .help(format!("its square is not finite; lengths up to {:e} m leave room", self.length));
+            .help(format!("its square overflows; write at most {:e} m", self.length));
         false
     }
 }

@@ -24,7 +24,7 @@ pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
-        .filter_map(|s| match Quantity::of(s) {
+        .filter_map(|s| match Quantity::from_symbol(s) {
             Quantity::Reaction(k) if k < Quantity::MULTIPLIERS => Some(k / RELEASED),
             _ => None,
         })

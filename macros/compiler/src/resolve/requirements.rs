@@ -10,7 +10,7 @@ use crate::mechanism::{Quantity, Requirement, Rule};
 impl<'g> Scope<'_, 'g> {
     /// Records a condition on values, if they depend on parameters and on nothing else.
     pub fn require(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
-        let parameter = |symbol| match Quantity::of(symbol) {
+        let parameter = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some(k),
             _ => None,
         };

@@ -52,11 +52,9 @@ impl<'g> Scope<'_, 'g> {
                         let word = id.name();
                         cx.error(
                             step.place.clone(),
-                            format!("`{word}` stands first among the rotations of a `Frame`"),
+                            format!("`{word}` must be the first rotation of a `Frame`"),
                         )
-                        .help(format!(
-                            "write `#[frame(ground, {word}(…))]`, and further rotations behind it"
-                        ));
+                        .help(format!("write `#[frame(ground, {word}(…))]`, followed by further rotations"));
                         return None;
                     }
                     _ => {}

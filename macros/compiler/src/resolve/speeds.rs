@@ -51,30 +51,35 @@ impl<'a, 'g> Builder<'a, 'g> {
         let mut row = vec![g.zero(); self.model.nv()];
         velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
         if row.iter().all(|d| d.is_zero()) {
-            cx.error(place(), "this speed contains no rate")
-                .help("a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), body.x)`");
+            cx.error(place(), "this speed contains no rate").help(
+                "a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), \
+                 body.x)`",
+            );
             return None;
         }
         let state =
             |k: usize| state_indices(self).find(|(_, parameter)| *parameter == k).map(|(name, _)| name);
         for symbol in symbols_in(&row) {
-            let (what, help) = match Quantity::of(symbol) {
+            let (what, help) = match Quantity::from_symbol(symbol) {
                 Quantity::Velocity(_) => (
                     "a speed is linear in the rates".to_string(),
-                    "their coefficients are made of coordinates and parameters",
+                    "their coefficients are functions of coordinates and parameters",
                 ),
                 Quantity::Time => (
-                    "what multiplies the rates in a speed cannot depend on time".to_string(),
-                    "displacements, steps and linear systems are measured in the speeds: an `#[output(…)]` may contain time",
+                    "the coefficients of rates in a speed cannot depend on time".to_string(),
+                    "displacements, steps and linear systems are measured in the speeds: an `#[output(…)]` \
+                     may contain time",
                 ),
                 Quantity::Input(k) => (
                     format!("a speed cannot depend on the input `{}`", self.model.inputs[k].0),
-                    "it is a combination of rates with coefficients of coordinates and parameters",
+                    "it is a linear combination of rates whose coefficients depend on coordinates and \
+                     parameters",
                 ),
                 Quantity::Parameter(k) => match state(k) {
                     Some(state) => (
                         format!("a speed cannot depend on the state `{state}`"),
-                        "it is a combination of rates with coefficients of coordinates and parameters",
+                        "it is a linear combination of rates whose coefficients depend on coordinates and \
+                         parameters",
                     ),
                     None => continue,
                 },
@@ -83,11 +88,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             cx.error(place(), what).help(help);
             return None;
         }
-        let at_rest = replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()));
+        let at_rest =
+            replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero()));
         let remainder = [vec![at_rest]];
         if !at_rest.is_zero() && !speeds::named_columns(&self.model, &remainder.to_vec()).is_empty() {
-            cx.error(place(), "a speed has no part that is there at rest")
-                .help("speeds are velocities: zero at rest, and multiplied by a time they are displacements. Take the rates relative to what moves, or make it an `#[output(…)]`");
+            cx.error(place(), "a speed cannot have a term without rates").help(
+                "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
+                 declare an `#[output(…)]`",
+            );
             return None;
         }
         Some(row)
@@ -108,7 +116,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 declared[0].value.place.clone(),
                 format!("more than {limit} of these speeds depend on each other"),
             )
-            .help("choose speeds each of which names few rates");
+            .help("choose speeds that contain few rates each");
             return;
         };
         let g = self.scope.graph;
@@ -150,10 +158,10 @@ impl<'a, 'g> Builder<'a, 'g> {
             let speed = &declared[k];
             let what = match k {
                 0 => format!("the speed `{}` is zero in every motion", speed.name.text),
-                _ => format!("the speed `{}` follows from the speeds before it", speed.name.text),
+                _ => format!("the speed `{}` depends on the speeds before it", speed.name.text),
             };
             cx.error(speed.value.place.clone(), what)
-                .help("speeds are independent combinations of the rates, so that the rates follow from them");
+                .help("speeds are independent combinations of the rates, which determine the rates");
             return false;
         }
         if count < all {
@@ -164,7 +172,11 @@ impl<'a, 'g> Builder<'a, 'g> {
                 last.name.place.clone(),
                 format!("{subject} {verb} {all} velocities: {}", list(columns)),
             )
-            .help(format!("every velocity that speeds name is replaced: declare as many speeds, such as one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`", rate.replace('.', "_")));
+            .help(format!(
+                "speeds replace all velocities that they contain: declare the same number of speeds, for \
+                 example one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`",
+                rate.replace('.', "_")
+            ));
             return false;
         }
         let bounded = self.model.limits.iter().find_map(|limit| {
@@ -178,7 +190,10 @@ impl<'a, 'g> Builder<'a, 'g> {
                 declared[0].name.place.clone(),
                 format!("speeds replace the rate of {rate}, which has a `{}`", key.name()),
             )
-            .help(format!("it bounds {what} of {rate}, which is none of the velocities any more: leave it out, or choose speeds that keep this rate; bounds `from` and `to` of the coordinate may stay"));
+            .help(format!(
+                "it bounds {what} of {rate}, which is no longer a velocity: remove it, or choose speeds that \
+                 keep this rate; bounds `from` and `to` of the coordinate are allowed"
+            ));
             return false;
         }
         true

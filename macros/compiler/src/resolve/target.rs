@@ -23,15 +23,20 @@ impl<'g> Builder<'_, 'g> {
     pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
         let joint = on.name().and_then(|name| self.joint_coordinates(name));
         if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source()))
-                .help("limits are on joints with plain coordinates: not on a Ball, Free or Weld, and not on what closes a loop");
+            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source())).help(
+                "limits apply to joints with plain coordinates: not to a Ball, Free or Weld, and not to a \
+                 joint that closes a loop",
+            );
             return None;
         }
         match self.target(on, cx)? {
             Target::Coordinate(coordinate, angle) => Some((coordinate, angle)),
             Target::Point(_) | Target::Expression(_) => {
-                cx.error(on.place.clone(), "a Limit is on the coordinate of a joint, but this is a place")
-                    .help("name a joint, as in `on = hinge`");
+                cx.error(
+                    on.place.clone(),
+                    "a Limit applies to the coordinate of a joint, but this is a point",
+                )
+                .help("name a joint, as in `on = hinge`");
                 None
             }
         }
@@ -80,7 +85,7 @@ impl<'g> Builder<'_, 'g> {
             let list: Vec<String> = joint.iter().map(|(n, ..)| format!("`on = {n}`")).collect();
             if list.is_empty() {
                 cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
-                    .help("a force or a torque can act on a body that it joins, with a direction");
+                    .help("a force or a torque can act on one of its bodies, with a direction");
             } else {
                 cx.error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
                     .help(format!("write {}", one_of(&list)));
@@ -149,7 +154,7 @@ impl<'g> Builder<'_, 'g> {
     /// Reports a name that cannot be a target, with the reason.
     fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
-            cx.error(place.clone(), "nothing that acts on the ground has an effect")
+            cx.error(place.clone(), "a force on the ground has no effect")
                 .help("name a body that moves, or one of its points: `on = body.at(length * x)`");
         } else if self.scope.kind_of_name(name) == Some("a joint") {
             cx.error(place.clone(), format!("`{name}` is a joint and has no points"))

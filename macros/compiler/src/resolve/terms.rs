@@ -47,8 +47,10 @@ impl<'g> Builder<'_, 'g> {
     pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let stretch = self.stretch_of(e, cx)?;
         if velocity_gradient(stretch.rate).is_empty() {
-            cx.error(e.place.clone(), "this contains no coordinate: nothing that acts on it has an effect")
-                .help("an element acts on a length or an angle that changes with the motion, such as `norm(r(a / b))`");
+            cx.error(e.place.clone(), "this contains no coordinate: a force on it has no effect").help(
+                "an element acts on a length or an angle that changes with the motion, such as `norm(r(a / \
+                 b))`",
+            );
             return None;
         }
         Some(stretch)
@@ -81,8 +83,8 @@ impl<'g> Builder<'_, 'g> {
         // The test for a common line ignores released joints.
         let with_closed_joints = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
         if always_zero(with_closed_joints) {
-            cx.error(b.place.clone(), "these two points are always at the same place")
-                .help("let the element act between points that move apart");
+            cx.error(b.place.clone(), "these two points always coincide")
+                .help("let the element act between points that move relative to each other");
             return None;
         }
         let mut v = kinematics.velocity(&second);
@@ -113,8 +115,10 @@ impl<'g> Builder<'_, 'g> {
             let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             // Zero is not an error: the bodies may be welded together.
             if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
-                cx.error(e.place.clone(), "this contains no velocity, and has no effect")
-                    .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
+                cx.error(e.place.clone(), "this contains no velocity, and has no effect").help(
+                    "dissipation is a function of rates, half the dissipated power: `c / 2 * rate(hinge) * \
+                     rate(hinge)`",
+                );
             }
             let dissipations = function.into_iter().collect();
             self.add_forces(&name.text, Forces { dissipations, ..Forces::default() });
@@ -143,9 +147,10 @@ impl<'g> Builder<'_, 'g> {
         all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
         all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
         all.extend(m.links.iter().flat_map(|link| link.placement.entries()));
-        let time = symbols_in(&all).into_iter().any(|s| Quantity::of(s) == Quantity::Time);
+        let time = symbols_in(&all).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time);
         let by_velocity = m.loads.iter().any(|load| {
-            let symbols: Vec<Quantity> = symbols_in(&[load.force]).into_iter().map(Quantity::of).collect();
+            let symbols: Vec<Quantity> =
+                symbols_in(&[load.force]).into_iter().map(Quantity::from_symbol).collect();
             symbols.iter().any(|q| matches!(q, Quantity::Input(_)))
                 && symbols.iter().any(|q| matches!(q, Quantity::Velocity(_)))
         });

@@ -138,17 +138,14 @@ fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx
     let name = &body.text;
     let joints = || loops.iter().map(|j| &description.joints[*j]);
     if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
-        cx.error(
-            joint.name.place.clone(),
-            format!("`{name}` hangs from itself: its joints form a cycle that the ground is not part of"),
-        )
-        .help(format!("let one of them begin at the ground, as in `ground -> {name}`"));
+        cx.error(joint.name.place.clone(), format!("the joints of `{name}` form a cycle without the ground"))
+            .help(format!("start one of them at the ground, as in `ground -> {name}`"));
     } else if let Some(joint) = joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
     {
         cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
-            .help(format!("turn the joint around, `ground -> {name}`, or hold `{name}` by another one"));
+            .help(format!("reverse the joint, `ground -> {name}`, or connect `{name}` by another one"));
     } else {
-        cx.error(body.place.clone(), format!("nothing holds `{name}`"))
+        cx.error(body.place.clone(), format!("no joint connects `{name}` to the ground"))
             .help(format!("add a joint `ground -> {name}`, a Free one if it moves freely"));
     }
 }
@@ -179,17 +176,17 @@ fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut 
     let place: Place = name.place.clone();
     if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.error(place, format!("`{}` is {what}, not a body", name.text))
-            .help("a joint joins bodies: `parent -> child`, with `ground` for what does not move");
+            .help("a joint connects bodies: `parent -> child`, with `ground` for the fixed reference");
         return;
     }
     if scope.frames.contains(&name.text) {
-        cx.error(place, format!("`{}` is a frame, which has axes but no place", name.text))
+        cx.error(place, format!("`{}` is a frame, which has axes but no position", name.text))
             .help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
         return;
     }
     if scope.bodies.contains(&name.text) {
         cx.error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
-            .help("leave its `at` out, or join the body");
+            .help("remove its `at`, or use the body");
         return;
     }
     let known: Vec<&str> = jointed.iter().map(|h| h.text.as_str()).chain([GROUND]).collect();

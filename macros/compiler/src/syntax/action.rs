@@ -36,7 +36,8 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow() {
-        cx.error(a.place.join(&b.place), format!("{} is no joint", kind.phrase())).help(between_help(&a, &b));
+        cx.error(a.place.join(&b.place), format!("{} is not a joint", kind.phrase()))
+            .help(between_help(&a, &b));
         return true;
     }
     if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
@@ -93,7 +94,7 @@ fn read_target(
         return None;
     }
     if let Some(on) = arguments.place_of("on") {
-        cx.error(on, "an element has one of `on` and `between`")
+        cx.error(on, "an element has either `on` or `between`")
             .help("`on` names a joint, `between` two points");
         arguments.remove_key("on");
     }
@@ -130,7 +131,7 @@ fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnosti
     for key in given.iter().skip(1) {
         if let Some(place) = arguments.place_of(key) {
             let list: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name())).collect();
-            cx.error(place, format!("a second law: `{}` is given already", given[0]))
+            cx.error(place, format!("a second force law: `{}` is already given", given[0]))
                 .help(format!("give one of {}", crate::diag::one_of(&list)));
             arguments.remove_key(key);
         }

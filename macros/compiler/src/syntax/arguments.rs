@@ -90,7 +90,7 @@ impl Arguments {
             // The end of the input has no span.
             Err(error) if error.to_string().starts_with("unexpected end") => {
                 cx.error(span, "unexpected end of the arguments")
-                    .help("something is missing behind the last word");
+                    .help("an argument is missing after the last token");
                 return None;
             }
             Err(error) => {
@@ -184,7 +184,7 @@ impl Arguments {
             _ => false,
         };
         let help = if off { "leave it out".to_string() } else { format!("write `{word}` alone") };
-        cx.error(place.clone(), format!("`{word}` is a word without a value")).help(help);
+        cx.error(place.clone(), format!("`{word}` is an option without a value")).help(help);
         self.plain.push(Expr { kind: ExprKind::Name(word.to_string()), place });
         true
     }
@@ -194,12 +194,12 @@ impl Arguments {
         match self.take(key)? {
             (_, ArgumentValue::Expr(e)) => Some(e),
             (_, ArgumentValue::Text(text)) => {
-                cx.error(text.span(), format!("expected an expression for `{key}`, found a text"))
+                cx.error(text.span(), format!("expected an expression for `{key}`, found a string"))
                     .help("write it without quotes");
                 None
             }
             (name, ArgumentValue::Texts(_) | ArgumentValue::FileParameters(_)) => {
-                cx.error(name.place, format!("expected an expression for `{key}`, found texts"))
+                cx.error(name.place, format!("expected an expression for `{key}`, found strings"))
                     .help("write it without quotes");
                 None
             }
@@ -264,7 +264,7 @@ impl Arguments {
             ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
                 let synonyms = if key == "formulation" { words::FORMULATIONS } else { &[] };
                 words::suggest_meaning(
-                    cx.error(place, format!("unknown choice `{word}` for `{key}`")),
+                    cx.error(place, format!("unknown value `{word}` for `{key}`")),
                     synonyms,
                     &word,
                     choices,
@@ -272,12 +272,12 @@ impl Arguments {
                 None
             }
             ArgumentValue::Text(text) if choices.contains(&text.value().as_str()) => {
-                cx.error(text.span(), format!("expected a word for `{key}`"))
+                cx.error(text.span(), format!("expected a name for `{key}`"))
                     .help(format!("write it without quotes: `{key} = {}`", text.value()));
                 None
             }
             _ => {
-                cx.error(name.place, format!("expected a word for `{key}`"))
+                cx.error(name.place, format!("expected a name for `{key}`"))
                     .suggest("", choices.iter().copied());
                 None
             }
@@ -407,8 +407,8 @@ impl Arguments {
             };
         }
         if let Some((parent, child)) = self.relation.take() {
-            cx.error(parent.place.join(&child.place), format!("{whose} joins nothing"))
-                .help("`parent -> child` stands in a joint");
+            cx.error(parent.place.join(&child.place), format!("{whose} does not connect bodies"))
+                .help("`parent -> child` belongs to a joint");
         }
     }
 }

@@ -88,7 +88,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         // The type parameter is most likely meant by an unknown type.
         if unknown_types.is_empty() {
             cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
-                "remove the type parameter, or give it to a parameter: then all generated functions use it",
+                "remove the type parameter, or use it as the type of the parameters: all generated functions \
+                 then use it",
             );
         }
     }
@@ -124,8 +125,9 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
         Item::Trait(t) => (t.trait_token.span, "a trait"),
         _ => (Span::call_site(), "this item"),
     };
-    cx.error(span, format!("`#[mechanism]` cannot be put on {what}")).help(
-        "a mechanism is a struct with named fields: parameters (`mass: f64`) and elements (`#[body(mass = mass)] cart: Body`)",
+    cx.error(span, format!("`#[mechanism]` cannot be applied to {what}")).help(
+        "a mechanism is a struct with named fields: parameters (`mass: f64`) and elements (`#[body(mass = \
+         mass)] cart: Body`)",
     );
     None
 }
@@ -133,9 +135,10 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
 /// Returns the help for an item that is not valid Rust.
 fn field_syntax_help(error: &syn::Error) -> &'static str {
     match error.to_string().contains("keyword") {
-        true => "this is a word of Rust's: name the field otherwise, and write it as `name: Type`",
+        true => "this is a keyword of Rust: choose another name for the field, and write it as `name: Type`",
         false => {
-            "a mechanism is a struct, `pub struct Name { … }`; its fields are written `name: Type,`, with an attribute before them as in `#[body(mass = 1)] cart: Body,`"
+            "a mechanism is a struct, `pub struct Name { … }`; its fields are written `name: Type,`, with an \
+             attribute before them as in `#[body(mass = 1)] cart: Body,`"
         }
     }
 }
@@ -155,7 +158,7 @@ fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String
             }
             GenericParam::Type(t) => {
                 cx.error(t.ident.span(), format!("a second type parameter `{}`", t.ident))
-                    .help("a mechanism has one scalar type at most");
+                    .help("a mechanism has at most one scalar type");
                 refused.push(t.ident.clone());
             }
             GenericParam::Const(c) => {

@@ -34,13 +34,14 @@ pub fn read_constraint(
     arguments.finish(&whose, names, cx);
     let Some((value, other)) = found else {
         if is_empty {
-            cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+            cx.error(name.place.clone(), format!("`{}` has no expression", name.text))
                 .help(format!("write `{example}`"));
         }
         return;
     };
     if let (Some(_), Some(other)) = (kind.pair(), &other) {
-        cx.error(other.place.clone(), "a pair of surfaces is no equation").help(format!("write `{example}`"));
+        cx.error(other.place.clone(), "a pair of surfaces is not an equation")
+            .help(format!("write `{example}`"));
         return;
     }
     description.constraints.push(Constraint { name, kind, value, other, arguments: given });
@@ -61,8 +62,8 @@ pub fn read_limit(
     let Some(on) = on else { return };
     if given.iter().all(|(key, _)| key == Key::Restitution) {
         if is_empty {
-            cx.error(name.place.clone(), format!("the limit `{}` bounds nothing", name.text))
-                .help("write what it bounds: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
+            cx.error(name.place.clone(), format!("the limit `{}` has no bound", name.text))
+                .help("add a bound: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
         }
     } else if check_relations(row.relations, &given, &name, cx) {
         description.limits.push(Limit { name, on, arguments: given });

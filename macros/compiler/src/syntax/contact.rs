@@ -32,10 +32,10 @@ pub fn read_contact(
             cx.error(only.place, "expected two surfaces, found one").help(format!("write `{example}`"));
         }
         (Some(_), Some(_), Some(more)) => {
-            cx.error(more.place, "a contact is one of two surfaces").help("declare a field for each pair");
+            cx.error(more.place, "a contact is between two surfaces").help("declare a field for each pair");
         }
         _ if is_empty => {
-            cx.error(name.place.clone(), format!("`{}` does not say what touches", name.text))
+            cx.error(name.place.clone(), format!("`{}` has no surfaces", name.text))
                 .help(format!("write `{example}`"));
         }
         _ => {}

@@ -31,8 +31,10 @@ pub fn take_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, 
         match Path::parse_mod_style.parse2(path.into_iter().collect()) {
             Ok(path) => found = Some(path),
             Err(_) => {
-                cx.error(span, "expected a path for `crate`")
-                    .help("write `crate = name` if the dependency has another name, `crate = other::linkwork` if another crate re-exports it");
+                cx.error(span, "expected a path for `crate`").help(
+                    "write `crate = name` if the dependency has another name, `crate = other::linkwork` if \
+                     another crate re-exports it",
+                );
             }
         }
     }

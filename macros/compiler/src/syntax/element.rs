@@ -52,8 +52,11 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
         cx.error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
             .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
     } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
-        cx.error(place, format!("field `{}` has a type that a mechanism cannot have", field.text))
-            .help("a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element (`Body`, `Pin`, …); a vector is three parameters, `[a, b, c]` in expressions");
+        cx.error(place, format!("field `{}` has a type that is not supported in a mechanism", field.text))
+            .help(
+                "a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element \
+                 (`Body`, `Pin`, …); a vector is three parameters, `[a, b, c]` in expressions",
+            );
     } else {
         let types = element_types();
         let diagnostic = cx.error(place, format!("unknown element type `{kind}`"));
@@ -167,7 +170,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     let tokens = match &attribute.meta {
         Meta::List(list) if !list.tokens.is_empty() => list.tokens.clone(),
         _ => {
-            cx.error(attribute.path().span(), "this says no unit")
+            cx.error(attribute.path().span(), "missing unit")
                 .help("write `#[unit(kg)]` or `#[unit(N * m / rad)]`");
             return None;
         }
@@ -176,7 +179,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
         if input.peek(LitStr) {
             let text: LitStr = input.parse()?;
             let help = format!("write it without quotes: `#[unit({})]`", text.value());
-            return Err(syn_error(text.span(), "expected a unit, found a text", &help));
+            return Err(syn_error(text.span(), "expected a unit, found a string", &help));
         }
         let unit = parse_expr(input)?;
         if input.is_empty() {
@@ -208,7 +211,7 @@ fn attribute_arguments(
         if word == expected {
             if found.is_some() {
                 cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text))
-                    .help("write all arguments into one");
+                    .help("write all arguments in one attribute");
             } else {
                 found = Some(Arguments::of_attribute(attribute, cx));
             }
@@ -221,7 +224,7 @@ fn attribute_arguments(
         }
     }
     if found.is_none() {
-        cx.error(name.place.clone(), format!("`{}` does not say how it is placed", name.text))
+        cx.error(name.place.clone(), format!("`{}` has no attribute that defines it", name.text))
             .help(format!("add `{}`", words::example(kind)));
     }
     found.flatten()
@@ -249,7 +252,7 @@ fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut 
         diagnostic.help(format!("expected {}", one_of(&list)));
     }
     diagnostic
-        .help("an element does not stay in the struct; only parameters can have attributes of other crates");
+        .help("elements are removed from the struct; only parameters can have attributes of other crates");
     false
 }
 
@@ -268,9 +271,9 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
     if let (Some(about), None) = (&body.about, &body.inertia) {
         cx.error(
             about.place.clone(),
-            "`about` says which point the inertia is about, and there is no inertia",
+            "`about` is the reference point of the inertia, but there is no inertia",
         )
-        .help("write `inertia = …` beside it, or remove it");
+        .help("add `inertia = …`, or remove it");
     }
     if let Some(place) = massive {
         if body.at.is_none() && body.frame.is_none() {
@@ -278,7 +281,7 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
                 "place it by expressions of time: `#[body(massive, at = height * sin(speed * t) * z)]`",
             );
         } else if body.mass.is_some() || body.inertia.is_some() {
-            cx.error(place, "a massive body moves as it is told, whatever its mass")
+            cx.error(place, "the motion of a massive body is prescribed and does not depend on its mass")
                 .help("remove `mass` and `inertia`");
         }
     }
@@ -308,7 +311,7 @@ fn no_arguments(
     if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)))
-            .help("it is the field alone: remove the attribute");
+            .help("the field alone declares it: remove the attribute");
         return None;
     }
     for attribute in attributes {
@@ -358,7 +361,7 @@ fn read_other(
                 return;
             }
             if on.is_none() && at.is_none() && arguments.is_empty() {
-                cx.error(name.place.clone(), "a point says where it is")
+                cx.error(name.place.clone(), "a point needs a position")
                     .help("write `#[point(on = body, at = length * x)]`");
             }
             arguments.finish("a Point", &kind.keys(), cx);
@@ -440,7 +443,7 @@ fn read_expression(
         let last = value.as_ref().map_or(&name.place, |e| &e.place);
         cx.error(
             plain[0].place.join(last),
-            format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
+            format!("`#[{word}(…)]` takes one expression, found {}", plain.len() + 1),
         )
         .help("declare a field for each");
         return None;
@@ -448,7 +451,7 @@ fn read_expression(
     let is_empty = arguments.is_empty();
     arguments.finish(&ElementKind::Other(kind).phrase(), &kind.keys(), cx);
     if value.is_none() && is_empty {
-        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+        cx.error(name.place.clone(), format!("`{}` has no expression", name.text))
             .help(format!("write `#[{word}(expression)]`"));
     }
     value

@@ -13,7 +13,7 @@ use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 const MAX_LENGTH: usize = 400;
 
 const PIECEWISE_HELP: &str =
-    "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
+    "a piecewise law is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
 /// A parsed expression with its size.
 struct Parsed(Expr, Size);
@@ -115,7 +115,7 @@ fn parse_operand(
     if input.is_empty() || input.peek(Token![,]) {
         return Err(syn_error(
             operator,
-            "nothing stands behind this operator",
+            "missing operand after this operator",
             "write an operand, or remove it",
         ));
     }
@@ -144,7 +144,7 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let dot = input.parse::<Token![.]>()?.span;
         if !input.peek(Ident::peek_any) {
             let help = "`body.x` is an axis of a body, `body.at(vector)` a point of it";
-            return Err(syn_error(dot, "expected a name behind this dot", help));
+            return Err(syn_error(dot, "expected a name after this dot", help));
         }
         let member = parse_name(input)?;
         let size = inner.1.extended();
@@ -225,7 +225,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
         if !input.peek(Token![else]) {
-            let message = "an `if` needs an `else`: it has a value on both sides";
+            let message = "an `if` needs an `else`: both branches need a value";
             let keyword = branches.last().map_or(input.span(), |branch| branch.keyword);
             return Err(syn_error(keyword, message, PIECEWISE_HELP));
         }
@@ -235,7 +235,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         } else if input.peek(token::Brace) {
             break parse_piece(input)?;
         } else {
-            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECEWISE_HELP));
+            return Err(syn_error(input.span(), "expected `{` or `if` after `else`", PIECEWISE_HELP));
         }
     };
     for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
@@ -270,7 +270,7 @@ fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     if !input.peek(token::Brace) {
         return Err(syn_error(
             input.span(),
-            "expected `{` and what holds where the comparison does",
+            "expected `{` and the expression for a true comparison",
             PIECEWISE_HELP,
         ));
     }
@@ -303,19 +303,19 @@ fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
 fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {
-        "`*` stands between two factors; write `pow(a, n)` for a power"
+        "`*` is a binary operator; write `pow(a, n)` for a power"
     } else if input.peek(Token![+]) {
-        "remove the `+`: it stands between two terms"
+        "remove the `+`: it is a binary operator"
     } else if input.peek(Token![|]) {
-        "an expression is made of parameters, coordinates and functions of the language; closures are Rust's"
+        "an expression consists of parameters, coordinates and functions of the language; it has no closures"
     } else if input.peek(Token![=]) {
         "write `name = value`"
     } else if input.peek(Token![->]) {
         "write `parent -> child`"
     } else if input.peek(Token![&]) {
-        "parameters are named as they are: remove the `&`"
+        "parameters are used without references: remove the `&`"
     } else if input.peek(token::Brace) || input.peek(Token![match]) {
-        "an expression has no blocks; `if a < b { … } else { … }` chooses between pieces that meet"
+        "an expression has no blocks; a continuous piecewise expression is `if a < b { … } else { … }`"
     } else if input.is_empty() {
         return input.error(message);
     } else {
@@ -332,13 +332,14 @@ pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
     } else if input.peek(Token![<]) && input.peek2(Token![-]) || input.peek(Token![=>]) {
         "write `parent -> child`"
     } else if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![!=]) {
-        "comparisons stand in `if a < b { … } else { … }`, and a constraint is an equation, `a = b`"
+        "comparisons are allowed in `if a < b { … } else { … }`, and a constraint is an equation, `a = b`"
     } else if input.peek(Token![::]) {
         "names have no path: the number π is `pi`, a vector `[a, b, c]`, a constant a parameter"
     } else if input.peek(token::Bracket) {
-        "coordinates have names, that of a joint or `joint.x` if it has several; what is counted is declared as a list, `hinge: [Pin; 2]`"
+        "coordinates have names, that of a joint or `joint.x` if it has several; numbered elements are \
+         declared as a list, `hinge: [Pin; 2]`"
     } else if input.peek(Token![=]) {
-        "arguments of a function stand in their order, without names"
+        "arguments of a function are positional, without names"
     } else if input.peek(Token![:]) {
         "write `name = value`"
     } else if input.peek(Token![^]) {
@@ -368,7 +369,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         // Words; the error at their use is more helpful.
         Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE),
         Lit::Str(_) | Lit::Char(_) => {
-            let message = "expected an expression, found a text";
+            let message = "expected an expression, found a string";
             return Err(syn_error(literal.span(), message, "write it without quotes"));
         }
         _ => return Err(syn_error(literal.span(), "expected a number", "write it in digits, as in `9.81`")),

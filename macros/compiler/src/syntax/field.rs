@@ -95,7 +95,7 @@ pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
         if first.text == second.text {
             cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text))
                 .note("another field has this name as well")
-                .help("name one of the two otherwise");
+                .help("rename one of the two");
             twice.push(second.text.clone());
         }
     }

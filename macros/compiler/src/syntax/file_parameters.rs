@@ -86,11 +86,11 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());
-        return Err(syn_error(text.span(), "expected a kind of figures, found a text", &help));
+        return Err(syn_error(text.span(), "expected a group of file parameters, found a string", &help));
     }
     if !input.peek(Ident) {
         let help = format!("write `parameters = {INERTIAL}(\"link\")`");
-        return Err(syn_error(input.span(), "expected a kind of figures", &help));
+        return Err(syn_error(input.span(), "expected a group of file parameters", &help));
     }
     let word = parse_name(input)?;
     if !input.peek(token::Paren) {
@@ -100,11 +100,11 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
     parenthesized!(list in input);
     if list.is_empty() {
         let help = format!("write `{}` alone for all of them", word.text);
-        return Err(syn_error(word.place.span, "no name stands in these parentheses", &help));
+        return Err(syn_error(word.place.span, "missing name in these parentheses", &help));
     }
     let name = |input: ParseStream<'_>| -> syn::Result<Name> {
         if !input.peek(LitStr) {
-            let help = "names of the file are texts: `inertial(\"trunk\")`";
+            let help = "names of the file are strings: `inertial(\"trunk\")`";
             return Err(syn_error(input.span(), "expected a name in quotation marks", help));
         }
         let text: LitStr = input.parse()?;
@@ -121,12 +121,12 @@ pub fn check(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FilePa
         let word = &figures.word;
         if !WORDS.contains(&word.text.as_str()) {
             let words = WORDS.map(|word| format!("`{word}`"));
-            let error = cx.error(word.place.clone(), format!("unknown figures `{}`", word.text));
+            let error = cx.error(word.place.clone(), format!("unknown file parameters `{}`", word.text));
             error.suggest(&word.text, WORDS);
             error.help(format!("parameters of a file are {}", one_of(&words)));
         } else if good.iter().any(|known| known.word.text == word.text) {
-            cx.error(word.place.clone(), format!("`{}` stands here twice", word.text))
-                .help(format!("name all in one: `{}(\"…\", \"…\")`", word.text));
+            cx.error(word.place.clone(), format!("`{}` is given twice", word.text))
+                .help(format!("list all names in one: `{}(\"…\", \"…\")`", word.text));
         } else {
             good.push(figures);
         }

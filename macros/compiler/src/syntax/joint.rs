@@ -25,11 +25,11 @@ pub fn read_joint(
         {
             let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();
             let help = if list.is_empty() {
-                "it takes no axis".to_string()
+                "it has no axis".to_string()
             } else {
                 format!("expected {}", crate::diag::one_of(&list))
             };
-            cx.error(place, format!("{} takes no `{key}`", kind.phrase())).help(help);
+            cx.error(place, format!("{} has no argument `{key}`", kind.phrase())).help(help);
         }
     }
     arguments.finish(&kind.phrase(), allowed, cx);
@@ -86,7 +86,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     Some(end)
                 }
                 Some(Method::At) if arguments.len() == 1 => {
-                    cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`")
+                    cx.error(method.place, "`.at(…)` is allowed once, before `.rotated(…)`")
                         .help("write `body.at(a + b).rotated(z(angle))`");
                     None
                 }
@@ -105,7 +105,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     Some(end)
                 }
                 Some(Method::Rotated) => {
-                    cx.error(method.place, "`.rotated()` says no rotation")
+                    cx.error(method.place, "`.rotated()` has no rotation")
                         .help("write `body.rotated(z(angle))`");
                     None
                 }

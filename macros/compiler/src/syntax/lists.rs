@@ -61,8 +61,9 @@ impl Lists {
         let count = match &array.len {
             Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse::<usize>().unwrap_or(usize::MAX),
             other => {
-                cx.error(span(other), "the length of a list is a number").help(
-                    "write `[Body; 2]`: the value of a Rust constant is not known yet when mechanisms are compiled",
+                cx.error(span(other), "the length of a list must be a number").help(
+                    "write `[Body; 2]`: the value of a Rust constant is not known yet when mechanisms are \
+                     compiled",
                 );
                 0
             }
@@ -71,10 +72,10 @@ impl Lists {
         if count > left {
             cx.error(
                 span(&array.len),
-                format!("the lists of a mechanism have {MAX_LIST_ELEMENTS} elements at most"),
+                format!("the lists of a mechanism have at most {MAX_LIST_ELEMENTS} elements"),
             );
         } else if count == 0 && matches!(&array.len, Expr::Lit(_)) {
-            cx.error(span(&array.len), "a list has one element at least")
+            cx.error(span(&array.len), "a list has at least one element")
                 .help("write its length, as in `[Body; 2]`");
         }
         let count = if cx.len() > found { 0 } else { count };
@@ -128,10 +129,7 @@ impl Lists {
             self.tokens += 1;
             if self.tokens > MAX_EXPANDED_TOKENS {
                 if self.tokens == MAX_EXPANDED_TOKENS + 1 {
-                    cx.error(
-                        token.span(),
-                        format!("lists are written out to {MAX_EXPANDED_TOKENS} tokens at most"),
-                    );
+                    cx.error(token.span(), format!("lists expand to at most {MAX_EXPANDED_TOKENS} tokens"));
                 }
                 break;
             }
@@ -211,13 +209,14 @@ impl Lists {
         let written: Option<Expr> = short.then(|| syn::parse2(group.stream()).ok()).flatten();
         let value = written.as_ref().and_then(|e| value(e, index));
         let Some(value) = value else {
-            let error = cx.error(group.span(), format!("expected the place of an element of `{list}`"));
+            let error = cx.error(group.span(), format!("expected an index into `{list}`"));
             match index {
                 Some(_) => error.help(format!(
-                    "write a whole number, or one that follows from `{INDEX}`, as in `{list}[{INDEX} + 1]`"
+                    "write an integer, or an expression of `{INDEX}`, as in `{list}[{INDEX} + 1]`"
                 )),
                 None => error.help(format!(
-                    "write a whole number, as in `{list}[0]`; `{INDEX}` counts in the attributes of lists alone"
+                    "write an integer, as in `{list}[0]`; `{INDEX}` is available only in the attributes of \
+                     lists"
                 )),
             };
             return None;
@@ -226,7 +225,7 @@ impl Lists {
         if place.is_none() && count > 0 {
             let error = cx.error(
                 group.span(),
-                format!("`{list}[{value}]` is not there: `{list}` is a list of {count}"),
+                format!("`{list}[{value}]` does not exist: `{list}` is a list of {count}"),
             );
             error.help(format!("its elements are `{list}[0]` to `{list}[{}]`", count - 1));
             if let Some(k) = index {

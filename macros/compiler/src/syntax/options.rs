@@ -64,13 +64,14 @@ pub fn read_options(
     if file.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
-                let error = cx.error(place, format!("`{option}` is an option of a file"));
+                let error = cx.error(place, format!("`{option}` is an option of imported files"));
                 if option == "base" {
-                    error.help(
-                        "what moves freely has a field of its own: `#[joint(ground -> body)] pose: Free`",
-                    );
+                    error.help("a free body has a separate joint: `#[joint(ground -> body)] pose: Free`");
                 }
-                error.help("add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the option");
+                error.help(
+                    "add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the \
+                     option",
+                );
                 arguments.remove_key(option);
             }
         }
@@ -130,7 +131,7 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
         arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
     let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
     if let (Some(place), Some(unsupported)) = (place, unsupported) {
-        cx.error(place, format!("{} does not say what touches what", unsupported.article()))
+        cx.error(place, format!("{} does not declare contacts", unsupported.article()))
             .help(super::contact::CONTACT_HELP);
     }
     from_file && unsupported.is_none()
@@ -212,7 +213,7 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
         ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
         _ => {
             cx.error(e.place.clone(), format!("expected a number above 0, at most {LARGEST_SNAP}"))
-                .help("`snap = 1e-4` rounds what is 0.0001 rad or 0.0001 m off at most");
+                .help("`snap = 1e-4` rounds values with a deviation of at most 0.0001 rad or 0.0001 m");
             None
         }
     }
@@ -272,11 +273,8 @@ fn read_requests(
     for (word, place) in requested {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
-            cx.error(
-                place.clone(),
-                format!("`{word}` has no meaning here: this mechanism has no parameters"),
-            )
-            .help(format!("remove `{word}`: all numbers are known at compile time"));
+            cx.error(place.clone(), format!("`{word}` has no effect here: this mechanism has no parameters"))
+                .help(format!("remove `{word}`: all numbers are known at compile time"));
         }
     }
     for e in arguments.take_plain() {
@@ -293,7 +291,7 @@ fn read_requests(
                 cx.error(e.place.clone(), "expected `name = value`").help(help)
             }
             Some(word) if REQUESTS.contains(&word) => {
-                cx.error(e.place.clone(), format!("`{word}` stands here twice")).help("remove one of the two")
+                cx.error(e.place.clone(), format!("`{word}` is given twice")).help("remove one of the two")
             }
             Some(word) if OPTIONS.contains(&word) => {
                 let value = match word {
@@ -304,19 +302,19 @@ fn read_requests(
                     "inertia" => "trust",
                     _ => "…",
                 };
-                cx.error(e.place.clone(), format!("`{word}` says nothing"))
+                cx.error(e.place.clone(), format!("`{word}` has no value"))
                     .help(format!("write `{word} = {value}`"))
             }
             Some(word) => {
                 let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
-                let error = cx.error(e.place.clone(), format!("unknown word `{word}`"));
+                let error = cx.error(e.place.clone(), format!("unknown option `{word}`"));
                 if words::explain(error, words::REQUESTS, word, &[]) {
                     continue;
                 }
                 if nearest(word, &REQUESTS).is_some() {
                     error.suggest(word, REQUESTS);
                 }
-                error.help(format!("a word asks for more: {}", one_of(&list)))
+                error.help(format!("options that request functions: {}", one_of(&list)))
             }
         };
     }

@@ -80,7 +80,7 @@ pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &m
         {
             cx.error(
                 word.span(),
-                format!("`#[{word}]` says how an element is placed, but `{}` is a parameter", field.text),
+                format!("`#[{word}]` is an attribute of elements, but `{}` is a parameter", field.text),
             )
             .help(match word.to_string().as_str() {
                 "output" | "define" => "give the field the type of a result: `Scalar`, or `Vector`",

@@ -44,7 +44,7 @@ pub fn read_table(
     check_parameter_attributes(name, &field.attrs, cx);
     for unit in field.attrs.iter().filter(|a| element::is_one_of(a, &["unit"])) {
         cx.error(unit.path().span(), "a table has no `#[unit]`")
-            .help("the units of its values and axes follow from where it is called");
+            .help("the units of its values and axes are inferred from its calls");
     }
     field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     match variables {
@@ -53,7 +53,7 @@ pub fn read_table(
         }
         Some(1..=3) => {
             let maximum = MAX_TABLES;
-            cx.error(span_of(&field.ty), format!("a mechanism has {maximum} tables at most"))
+            cx.error(span_of(&field.ty), format!("a mechanism has at most {maximum} tables"))
                 .help("remove some");
         }
         Some(other) => {
@@ -61,7 +61,7 @@ pub fn read_table(
                 .help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
         None => {
-            cx.error(span_of(&field.ty), "a table says of how many variables it is")
+            cx.error(span_of(&field.ty), "a table needs its number of variables")
                 .help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
     }

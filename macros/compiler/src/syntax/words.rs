@@ -157,7 +157,8 @@ pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coo
     } else if is_constant(name) {
         let parameter = name.to_lowercase();
         diagnostic.help(format!(
-            "the macro cannot see the value of a constant: declare a parameter, `{parameter}: f64`, or write the number"
+            "the macro cannot see the value of a constant: declare a parameter, `{parameter}: f64`, or write \
+             the number"
         ));
     } else {
         diagnostic.suggest(name, known.iter().copied());

@@ -238,7 +238,8 @@ impl<'g> Merge<'g> {
         let mut same = |x: Id, y: Id| self.is_similar(a.graph().expr(x), a.graph().expr(y), depth - 1);
         Some(match (a.node(), b.node()) {
             (Node::Symbol(s), Node::Symbol(t)) => {
-                std::mem::discriminant(&Quantity::of(s)) == std::mem::discriminant(&Quantity::of(t))
+                std::mem::discriminant(&Quantity::from_symbol(s))
+                    == std::mem::discriminant(&Quantity::from_symbol(t))
             }
             (Node::Neg(x), Node::Neg(y)) => same(x, y)?,
             (Node::Call(f, x), Node::Call(g, y)) => f == g && same(x, y)?,

@@ -297,7 +297,8 @@ fn words(text: &str) -> Vec<String> {
 #[test]
 fn files_are_read_as_rust_reads_them() {
     let file = File::parse(
-        "use crate::a::{self, b::{C, d as e}}; pub use f::*; // use g;\nimpl<'a> X<'a> { fn y() { z::w(\"use h;\", ':') } }",
+        "use crate::a::{self, b::{C, d as e}}; pub use f::*; // use g;\nimpl<'a> X<'a> { fn y() { z::w(\"use \
+         h;\", ':') } }",
     );
     let imports: Vec<String> =
         file.imports.iter().map(|(name, path, on)| format!("{name} {} {on}", path.join("::"))).collect();

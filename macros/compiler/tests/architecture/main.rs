@@ -170,7 +170,8 @@ fn output_does_not_depend_on_the_order_of_a_hash_table() {
 
 #[test]
 fn imports_are_read_as_rust_reads_them() {
-    let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = crate::emit::f();";
+    let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = \
+                crate::emit::f();";
     assert_eq!(modules(code), ["diag", "expr", "mechanism", "lower", "emit"]);
     assert_eq!(invariants()["import"], ["diag", "syntax"]);
 }

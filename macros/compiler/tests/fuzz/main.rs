@@ -235,7 +235,8 @@ fn words_at_random_are_refused() {
                 0 => inside.clone(),
                 1 => format!("struct S {{ {inside} }}"),
                 2 => format!(
-                    "struct S {{ m: f64, #[body({inside})] b: Body, #[joint(ground -> b, about = z)] j: Pin }}"
+                    "struct S {{ m: f64, #[body({inside})] b: Body, #[joint(ground -> b, about = z)] j: Pin \
+                     }}"
                 ),
                 _ => format!("struct S {{ #[body(mass = {inside})] b: Body, #[joint({inside})] j: Pin }}"),
             };
@@ -320,19 +321,24 @@ fn names_of_any_kind_are_kept() {
         ] {
             for item in [
                 format!(
-                    "struct S {{ {name}: f64, #[body(mass = {name})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}"
+                    "struct S {{ {name}: f64, #[body(mass = {name})] b: Body, \
+                     #[joint(ground -> b, along = x)] j: Sleeve }}"
                 ),
                 format!(
-                    "struct S {{ #[body(mass = 1)] {name}: Body, #[joint(ground -> {name}, along = x)] j: Sleeve }}"
+                    "struct S {{ #[body(mass = 1)] {name}: Body, \
+                     #[joint(ground -> {name}, along = x)] j: Sleeve }}"
                 ),
                 format!(
-                    "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] {name}: Sleeve, #[acts(on = {name})] f: Force }}"
+                    "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] {name}: Sleeve, \
+                     #[acts(on = {name})] f: Force }}"
                 ),
                 format!(
-                    "struct S<{name}> {{ m: {name}, #[body(mass = m)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}"
+                    "struct S<{name}> {{ m: {name}, #[body(mass = m)] b: Body, \
+                     #[joint(ground -> b, along = x)] j: Sleeve }}"
                 ),
                 format!(
-                    "struct {name} {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}"
+                    "struct {name} {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve \
+                     }}"
                 ),
             ] {
                 if let Ok(tokens) = item.parse() {

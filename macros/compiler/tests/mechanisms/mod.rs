@@ -3,7 +3,8 @@
 /// Attribute, name and fields.
 pub const MECHANISMS: [(&str, &str, &str); 11] = [
     (
-        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
+        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
+         regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
         "m: f64,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -12,7 +13,8 @@ pub const MECHANISMS: [(&str, &str, &str); 11] = [
         #[output(hinge)] angle: Scalar,",
     ),
     (
-        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
+        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
+         regressor, sensitivities, packed, prepare, batch, drawing",
         "Closed",
         "m: f64,
         #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
@@ -54,7 +56,8 @@ pub const MECHANISMS: [(&str, &str, &str); 11] = [
         #[acts(on = slide, value = sin(t) - 3 * slide)] pull: Force,",
     ),
     (
-        "gravity = -9.81 * y, derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, packed, prepare, batch",
+        "gravity = -9.81 * y, derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, \
+         packed, prepare, batch",
         "InSpeeds",
         "m: f64,
         #[joint(ground -> cart, along = x)] rail: Sleeve,
@@ -67,7 +70,8 @@ pub const MECHANISMS: [(&str, &str, &str); 11] = [
         #[output(along)] speed: Scalar,",
     ),
     (
-        "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, prepare",
+        "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, \
+         prepare",
         "OfAFile",
         "",
     ),

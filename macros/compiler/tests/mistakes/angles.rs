@@ -24,7 +24,8 @@ const ROWS: &[Row] = &[
         "write `degrees(30)`",
     ),
     (
-        "#[joint(ground -> tool, about = z)] wrist: Pin, #[acts(on = wrist, stiffness = 1, free_angle = 45)] coil: Spring",
+        "#[joint(ground -> tool, about = z)] wrist: Pin, \
+         #[acts(on = wrist, stiffness = 1, free_angle = 45)] coil: Spring",
         "an angle of 45 rad is more than a full turn",
         "`1 * 45`",
     ),
@@ -39,7 +40,8 @@ const ROWS: &[Row] = &[
         "write `degrees(45)`",
     ),
     (
-        "#[joint(ground -> tool, about = z)] wrist: Pin, #[constraint(angle(arm.x, tool.x) = 60)] held: Holonomic",
+        "#[joint(ground -> tool, about = z)] wrist: Pin, \
+         #[constraint(angle(arm.x, tool.x) = 60)] held: Holonomic",
         "an angle of 60 rad is more than a full turn",
         "write `degrees(60)`",
     ),

@@ -77,7 +77,7 @@ const ACTIONS: &[Row] = &[
     (
         "#[acts(on = hinge, stiffness = 1, damping = 1)] coil: Spring",
         "a Spring has no argument `damping`",
-        "a `Dashpot` beside it, a field of its own",
+        "a spring has no damping",
     ),
     ("#[acts(on = hinge, c = 1)] brake: Dashpot", "a Dashpot has no argument `c`", "did you mean `damping`?"),
     ("#[acts(on = hinge, b = 1)] brake: Dashpot", "a Dashpot has no argument `b`", "did you mean `damping`?"),
@@ -89,7 +89,7 @@ const ACTIONS: &[Row] = &[
     (
         "#[acts(on = hinge, stiffness = 1)] brake: Dashpot",
         "a Dashpot has no argument `stiffness`",
-        "a `Spring` beside it, a field of its own",
+        "a dashpot has no stiffness",
     ),
     (
         "#[acts(on = hinge, mass = 1)] wheel: Inerter",
@@ -175,7 +175,7 @@ const ACTIONS: &[Row] = &[
     ),
     (
         "#[acts(ground -> arm, stiffness = 1)] coil: Spring",
-        "a Spring is no joint",
+        "a Spring is not a joint",
         "write `between = (ground, arm)`",
     ),
     ("#[acts(on = hinge, 1)] coil: Spring", "expected `name = value`", "write `stiffness = 1`"),
@@ -185,16 +185,20 @@ const ACTIONS: &[Row] = &[
         "a Spring acts on the coordinate of a joint, but this is a body",
         "`on = hinge`",
     ),
-    ("#[acts(on = hinge)] push: Force", "this coordinate is an angle", "what acts on it is a Torque"),
+    (
+        "#[acts(on = hinge)] push: Force",
+        "this coordinate is an angle",
+        "the element that acts on it is a Torque",
+    ),
     (
         "#[acts(on = \"hinge\")] motor: Torque",
-        "expected an expression for `on`, found a text",
+        "expected an expression for `on`, found a string",
         "write it without quotes",
     ),
     ("#[acts(on = hing)] motor: Torque", "unknown joint or body `hing`", "did you mean `hinge`?"),
     (
         "#[acts(on = hinge, about = z)] motor: Torque",
-        "the joint itself gives the direction",
+        "the joint determines the direction",
         "remove this argument",
     ),
     ("#[acts(on = arm)] motor: Torque", "missing `about`", "on a body it needs a direction"),
@@ -255,24 +259,24 @@ const OTHERS: &[Row] = &[
     ),
     (
         "#[output(rail, rate(rail))] seen: Scalar",
-        "`#[output(…)]` holds one expression, found 2",
+        "`#[output(…)]` takes one expression, found 2",
         "a field for each",
     ),
     ("#[define(2 * rail = 2)] seen: Scalar", "expected `name = value`", "write `#[output(expression)]`"),
     ("#[define(rail = 2)] seen: Scalar", "a Scalar has no argument `rail`", "write `#[output(expression)]`"),
     (
         "#[constraint(v(cart / ground / ground) = 0)] hold: Holonomic",
-        "`v(…)` cannot stand here",
+        "`v(…)` is not allowed here",
         "a constraint on velocities is a `Nonholonomic`",
     ),
     (
         "#[constraint(rate(rail) = 1)] hold: Holonomic",
-        "the rate of `rail` cannot stand here",
+        "the rate of `rail` is not allowed here",
         "a constraint on velocities is a `Nonholonomic`",
     ),
     (
         "#[constraint(rail = 1)] hold: Nonholonomic",
-        "this restricts no velocity",
+        "this does not constrain any velocity",
         "a constraint on coordinates is a `Holonomic` one",
     ),
     (

@@ -72,12 +72,12 @@ const ROWS: &[Row] = &[
     ("#[joint(ground -> arm)] tool: Body", "a `Body` has no `#[joint]`", "expected `#[body(…)]`"),
     (
         "#[unit(\"kg\")] k: f64, #[acts(on = hinge, stiffness = k)] coil: Spring",
-        "expected a unit, found a text",
+        "expected a unit, found a string",
         "write it without quotes: `#[unit(kg)]`",
     ),
     (
         "#[unit = \"kg\"] k: f64, #[acts(on = hinge, stiffness = k)] coil: Spring",
-        "this says no unit",
+        "missing unit",
         "write `#[unit(kg)]`",
     ),
     (

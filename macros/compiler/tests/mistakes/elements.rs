@@ -71,7 +71,7 @@ fn words_of_other_tools_are_understood() {
 
 /// Types without a corresponding element, which are expressed in another way.
 const OTHERS: &[Row] = &[
-    ("Mass", "unknown element type `Mass`", "`Body` if it has a size or turns, `Particle` if it is a point"),
+    ("Mass", "unknown element type `Mass`", "if it is extended or rotates"),
     ("Joint", "unknown element type `Joint`", "`Pin`, `Sleeve`"),
     ("Gear", "unknown element type `Gear`", "`#[constraint(second + ratio * first = 0)] gear: Holonomic`"),
     ("Belt", "unknown element type `Belt`", "Holonomic"),
@@ -83,8 +83,8 @@ const OTHERS: &[Row] = &[
     ("Wheel", "unknown element type `Wheel`", "rolls(wheel.circle(radius, y), ground.plane(z))"),
     ("Controller", "unknown element type `Controller`", "an input, `Force`, `Torque` or `Input`"),
     ("Geometry", "unknown element type `Geometry`", "inertia = cuboid(m, a, b, c)"),
-    ("Ground", "unknown element type `Ground`", "`ground` is there already"),
-    ("World", "unknown element type `World`", "`ground` is there already"),
+    ("Ground", "unknown element type `Ground`", "a joint connects a body to it"),
+    ("World", "unknown element type `World`", "a joint connects a body to it"),
     ("Lagrangian", "unknown element type `Lagrangian`", "`Potential`"),
     (
         "Constraint",
@@ -95,10 +95,10 @@ const OTHERS: &[Row] = &[
     ("Sensor", "unknown element type `Sensor`", "`Scalar` or `Vector` with `#[output(…)]`"),
     ("SpringDamper", "unknown element type `SpringDamper`", "a `Spring` and a `Dashpot`, a field for each"),
     ("Time", "unknown element type `Time`", "time is `t`"),
-    ("bool", "field `other` has a type that a mechanism cannot have", "a field is a parameter"),
+    ("bool", "field `other` has a type that is not supported in a mechanism", "a field is a parameter"),
     ("usize", "the parameter `other` cannot have the type `usize`", "parameters are real numbers"),
-    ("[f64; 3]", "field `other` has a type that a mechanism cannot have", "a field is a parameter"),
-    ("Vector3<f64>", "field `other` has a type that a mechanism cannot have", "three parameters"),
+    ("[f64; 3]", "field `other` has a type that is not supported in a mechanism", "a field is a parameter"),
+    ("Vector3<f64>", "field `other` has a type that is not supported in a mechanism", "three parameters"),
     ("Spaceship", "unknown element type `Spaceship`", "`linkwork::elements` lists them"),
 ];
 

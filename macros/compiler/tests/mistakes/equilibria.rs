@@ -14,20 +14,24 @@ fn pendulum(said: &str) -> (String, String) {
 const ROWS: &[Row] = &[
     (
         "hinge = pi / 2",
-        "`rest` is no equilibrium: the force `-9.81 m l` on `hinge` is left",
+        "`rest` is not an equilibrium: the residual force `-9.81 m l` acts on `hinge`",
         "hold an input at a value that balances it",
     ),
-    ("motor = 2", "`rest` is no equilibrium: the force `2` on `hinge` is left", "choose coordinates"),
+    (
+        "motor = 2",
+        "`rest` is not an equilibrium: the residual force `2` acts on `hinge`",
+        "choose coordinates",
+    ),
     (
         "hinge = pi / 2, motor = 9.81 * m * l / 2",
-        "`rest` is no equilibrium: the force `-4.905 m l` on `hinge` is left",
+        "`rest` is not an equilibrium: the residual force `-4.905 m l` acts on `hinge`",
         "hold an input",
     ),
-    ("hinges = 0", "`hinges` has no value at rest of its own", "did you mean `hinge`?"),
-    ("l = 2", "`l` has no value at rest of its own", "parameters have theirs in the struct"),
-    ("arm = 2", "`arm` has no value at rest of its own", "expected `hinge` or `motor`"),
+    ("hinges = 0", "`hinges` cannot have a value at rest", "did you mean `hinge`?"),
+    ("l = 2", "`l` cannot have a value at rest", "values here can be expressions of parameters"),
+    ("arm = 2", "`arm` cannot have a value at rest", "expected `hinge` or `motor`"),
     ("hinge = 180", "an angle of 180 rad is more than a full turn", "degrees(180)"),
-    ("hinge = motor", "the input `motor` cannot stand here", "only numbers and parameters"),
+    ("hinge = motor", "the input `motor` is not allowed here", "only numbers and parameters"),
     ("hinge = 0, hinge = 1", "`hinge` is given twice", "remove one of the two"),
     ("hinge = x", "expected a scalar, found a vector", "length"),
     ("pi", "expected `name = value`", "#[equilibrium(joint = angle)]"),
@@ -50,8 +54,8 @@ fn carriage(said: &str) -> (String, String) {
 const REFUSED: &[Row] = &[
     (
         "#[acts(on = rail, coulomb = k)] f: Friction, #[equilibrium] rest: Equilibrium",
-        "dry friction has no linear equations about `rest`",
-        "write a `Dashpot` for damping",
+        "dry friction cannot be linearised about `rest`",
+        "or declare the equilibrium in a mechanism",
     ),
     (
         "#[acts(on = rail, value = -k * abs(rail))] f: Force, #[equilibrium] rest: Equilibrium",
@@ -65,12 +69,12 @@ const REFUSED: &[Row] = &[
     ),
     (
         "#[acts(on = rail, value = k * sin(t))] f: Force, #[equilibrium] rest: Equilibrium",
-        "`rest` is no equilibrium: the force `k sin(t)` on `rail` is left",
+        "`rest` is not an equilibrium: the residual force `k sin(t)` acts on `rail`",
         "hold an input",
     ),
     (
         "#[acts(on = rail, value = -k * rail * (2 + sin(t)))] f: Force, #[equilibrium] rest: Equilibrium",
-        "`rest` does not stay at rest: what drives it changes in time",
+        "`rest` does not stay at rest: its prescribed motion depends on time",
         "forces that stay the same",
     ),
     (
@@ -79,8 +83,9 @@ const REFUSED: &[Row] = &[
         "the value at which its rate is zero",
     ),
     (
-        "#[particle(mass = m)] p: Particle, #[joint(cart -> p, along = y)] mast: Sleeve, #[constraint(rail + mast = 2 * k)] held: Holonomic, #[equilibrium] rest: Equilibrium",
-        "`rest` does not fulfil the constraint `held`: `-2 k` is left of it",
+        "#[particle(mass = m)] p: Particle, #[joint(cart -> p, along = y)] mast: Sleeve, \
+         #[constraint(rail + mast = 2 * k)] held: Holonomic, #[equilibrium] rest: Equilibrium",
+        "`rest` does not satisfy the constraint `held`: the residual is `-2 k`",
         "values that fulfil it",
     ),
 ];

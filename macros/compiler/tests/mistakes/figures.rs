@@ -3,20 +3,28 @@
 use super::{Row, answers, messages};
 
 const ROWS: &[Row] = &[
-    ("mass = 1e308, inertia = sphere(1, 1)", "this figure is too large for `f64`: 1e308", "leave room"),
+    (
+        "mass = 1e308, inertia = sphere(1, 1)",
+        "this number is too large for `f64`: 1e308",
+        "products of it overflow",
+    ),
     (
         "mass = -1, inertia = sphere(1, 1)",
         "the mass of `arm` cannot be negative, but it is -1",
         "zero or more",
     ),
-    ("mass = 1e-320, inertia = sphere(1, 1)", "this figure is too small for `f64`: 1e-320", "write 0"),
-    ("mass = 1, com = 1e200 * x", "this length is too large for `f64`: 1e200", "leave room"),
+    ("mass = 1e-320, inertia = sphere(1, 1)", "this number is too small for `f64`: 1e-320", "write 0"),
+    ("mass = 1, com = 1e200 * x", "this length is too large for `f64`: 1e200", "its square overflows"),
     (
         "mass = 1, inertia = diagonal(1e308, 1e308, 1e308)",
-        "this figure is too large for `f64`: 1e308",
-        "leave room",
+        "this number is too large for `f64`: 1e308",
+        "products of it overflow",
     ),
-    ("mass = 1e140, com = 1e70 * x", "the figures of `arm` are too large", "leaves no room"),
+    (
+        "mass = 1e140, com = 1e70 * x",
+        "the inertial parameters of `arm` are too large",
+        "mass times the square of the distance from",
+    ),
 ];
 
 #[test]
@@ -35,7 +43,7 @@ fn figures_leave_room() {
 fn products_of_figures_leave_room() {
     const ROWS: &[Row] = &[(
         "1e200 * hinge * 1e200",
-        "the figures of this mechanism are too large",
+        "the values of this mechanism are too large",
         "a product of masses, lengths or forces in its equations is not a finite number",
     )];
     answers(
@@ -48,8 +56,12 @@ fn products_of_figures_leave_room() {
 }
 
 const SINGLE: &[Row] = &[
-    ("mass = 1e25, inertia = sphere(1, 1)", "this figure is too large for `f32`: 1e25", "leave room"),
-    ("mass = 1, com = 1e20 * x", "this length is too large for `f32`: 1e20", "leave room"),
+    (
+        "mass = 1e25, inertia = sphere(1, 1)",
+        "this number is too large for `f32`: 1e25",
+        "products of it overflow",
+    ),
+    ("mass = 1, com = 1e20 * x", "this length is too large for `f32`: 1e20", "its square overflows"),
     ("mass = 1e300, inertia = sphere(1, 1)", "this number is too large for `f32`: 1e300", "use `f64`"),
     ("mass = 1e-60, inertia = sphere(1, 1)", "this number is too small for `f32`: 1e-60", "use `f64`"),
 ];

@@ -20,7 +20,8 @@ fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
         )
     };
     let text = format!(
-        "<robot name=\"r\"><link name=\"base\"/><link name=\"a\">{}</link><link name=\"b\">{}</link>{}{}</robot>",
+        "<robot name=\"r\"><link name=\"base\"/><link name=\"a\">{}</link>\
+         <link name=\"b\">{}</link>{}{}</robot>",
         inertial(xyz),
         inertial(xyz),
         joint(1, "base", "a"),
@@ -64,22 +65,22 @@ const ROBOT: &str = r#"<robot name="r">
 const PARAMETERS: &[(&str, &str, &str)] = &[
     ("inertial(\"hnad\")", "unknown link `hnad` in `parameters`", "did you mean `hand`?"),
     ("placement(\"tunr\")", "unknown joint `tunr` in `parameters`", "did you mean `turn`?"),
-    ("inertial(\"bare\")", "link `bare` has no mass properties in the file", "leave it out of `parameters`"),
+    ("inertial(\"bare\")", "link `bare` has no mass properties in the file", "remove it from `parameters`"),
     (
         "inertial(\"base\")",
-        "link `base` stands on the ground: its mass properties enter no equation",
-        "leave it out of `parameters`",
+        "link `base` is fixed to the ground: its mass properties appear in no equation",
+        "remove it from `parameters`",
     ),
     ("damping(\"mount\")", "joint `mount` has no damping", "about one axis"),
     ("placement(\"root_joint\")", "joint `root_joint` has no placement", "the root of the file"),
-    ("inertail", "unknown figures `inertail`", "did you mean `inertial`?"),
-    ("mass(\"hand\")", "unknown figures `mass`", "`inertial`, `placement`, `damping` or `friction`"),
-    ("[damping, damping]", "`damping` stands here twice", "name all in one"),
-    ("inertial(\"hand\", \"hand\")", "link `hand` stands here twice", "remove one of the two"),
-    ("\"hand\"", "expected a kind of figures, found a text", "write `inertial(\"hand\")`"),
-    ("inertial(hand)", "expected a name in quotation marks", "names of the file are texts"),
-    ("inertial()", "no name stands in these parentheses", "write `inertial` alone"),
-    ("3", "expected a kind of figures", "write `parameters = inertial(\"link\")`"),
+    ("inertail", "unknown file parameters `inertail`", "did you mean `inertial`?"),
+    ("mass(\"hand\")", "unknown file parameters `mass`", "`inertial`, `placement`, `damping` or `friction`"),
+    ("[damping, damping]", "`damping` is given twice", "list all names in one"),
+    ("inertial(\"hand\", \"hand\")", "link `hand` is given twice", "remove one of the two"),
+    ("\"hand\"", "expected a group of file parameters, found a string", "write `inertial(\"hand\")`"),
+    ("inertial(hand)", "expected a name in quotation marks", "names of the file are strings"),
+    ("inertial()", "missing name in these parentheses", "write `inertial` alone"),
+    ("3", "expected a group of file parameters", "write `parameters = inertial(\"link\")`"),
 ];
 
 #[test]
@@ -105,7 +106,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
         assert_eq!(found, Vec::<String>::new(), "{good}");
     }
     let rest = [
-        ("parameters = inertial", "", "`parameters` is an option of a file"),
+        ("parameters = inertial", "", "`parameters` is an option of imported files"),
         ("urdf = \"figures.urdf\", parameters = inertial", "hand: f64,", "the name `hand` is used twice"),
         ("urdf = \"figures.urdf\", inertia = none, parameters = inertial", "", "`inertial` needs inertia"),
     ];
@@ -133,7 +134,7 @@ fn collision_geometry_is_read_when_it_is_named() {
         ("<sphere radius=\"0\"/>", "foot", "this length must be positive, but it is 0"),
         ("<box size=\"1 2\"/>", "foot", "expected 3 numbers in `size`, found `1 2`"),
         ("<cylinder radius=\"1\"/>", "foot", "`<cylinder>` without `length`"),
-        ("<cone radius=\"1\"/>", "foot", "collision geometry without a shape that is known"),
+        ("<cone radius=\"1\"/>", "foot", "collision geometry without a supported shape"),
         ("<mesh filename=\"foot.stl\"/>", "foot", "the collision geometry of `foot` is a mesh"),
         ("<sphere radius=\"0.1\"/>", "hand", "`hand` has no collision geometry"),
         ("<sphere radius=\"0.1\"/>", "food", "unknown point `food`"),

@@ -17,12 +17,12 @@ fn mechanisms_without_a_form_say_which_they_have() {
     const ROWS: &[Row] = &[
         (
             "equations = hamilton|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
-            "Hamilton's equations are printed for mechanisms without constraints",
+            "Hamilton's equations are printed only for mechanisms without constraints",
             "`equations = lagrange`",
         ),
         (
             "routh|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
-            "Routh's equations are those of mechanisms without constraints",
+            "Routh's equations require a mechanism without constraints",
             "`conserved`",
         ),
         (
@@ -30,27 +30,31 @@ fn mechanisms_without_a_form_say_which_they_have() {
             "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
             "Kane's equations in speeds",
         ),
-        ("equations = routh", "no coordinate of this mechanism is cyclic", "remove the word"),
-        ("routh", "no coordinate of this mechanism is cyclic", "remove the word"),
+        (
+            "equations = routh",
+            "no coordinate of this mechanism is cyclic",
+            "Routh's equations eliminate plain",
+        ),
+        ("routh", "no coordinate of this mechanism is cyclic", "Routh's equations eliminate plain"),
         (
             "equations = routh|#[speed(2 * rate(rail))] u: Speed,",
-            "Routh's equations are those of coordinates, not of declared speeds",
-            "eliminates the rates of cyclic coordinates",
+            "Routh's equations are available in coordinates, not in declared speeds",
+            "the reduction replaces the rates of cyclic",
         ),
         (
             "routh|#[speed(2 * rate(rail))] u: Speed,",
-            "Routh's equations are those of coordinates, not of declared speeds",
-            "eliminates the rates of cyclic coordinates",
+            "Routh's equations are available in coordinates, not in declared speeds",
+            "the reduction replaces the rates of cyclic",
         ),
         (
             "sensitivities|#[speed(m * rate(rail))] u: Speed,",
-            "there are no derivatives by parameters with speeds that contain parameters",
-            "the configuration would move otherwise with other parameters",
+            "derivatives with respect to parameters are not available with speeds that contain parameters",
+            "the motion of the configuration would depend",
         ),
         (
             "sensitivities|#[speed(m * cos(hinge) * rate(rail))] u: Speed,",
-            "there are no derivatives by parameters with speeds that contain parameters",
-            "the configuration would move otherwise with other parameters",
+            "derivatives with respect to parameters are not available with speeds that contain parameters",
+            "the motion of the configuration would depend",
         ),
         (
             "inertia = none|#[output(reaction_force(hinge))] load: Vector,",
@@ -65,7 +69,8 @@ fn mechanisms_without_a_form_say_which_they_have() {
 #[test]
 fn equations_of_routh_that_are_too_long_are_not_printed() {
     fn setting(words: &str) -> (String, String) {
-        let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
+        let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, \
+                          #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
             .to_string();
         for k in 1..5 {
             fields += &format!(
@@ -78,8 +83,9 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
     }
     const ROWS: &[Row] = &[(
         "equations = routh",
-        "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by inertia, or thousands of terms",
-        "the word `routh` gives them as functions",
+        "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by \
+         inertia, or thousands of terms",
+        "the option `routh` generates them",
     )];
     answers(setting, ROWS);
 }
@@ -95,7 +101,7 @@ fn contacts_that_slip_have_no_equations_of_kane() {
     }
     const ROWS: &[Row] = &[(
         "equations = kane",
-        "the equations of a contact that slips hold its normal force, a multiplier",
+        "the equations of a slipping contact contain its normal force, which is a multiplier",
         "write `equations = lagrange`",
     )];
     answers(setting, ROWS);
@@ -120,7 +126,7 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
     const ROWS: &[Row] = &[(
         "equations = kane",
         "Kane's equations of this mechanism have thousands of terms",
-        "or declare generalized speeds in which they are short",
+        "or declare generalized speeds in which the equations are shorter",
     )];
     answers(pins, ROWS);
 }
@@ -146,7 +152,8 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
     }
     const ROWS: &[Row] = &[(
         "equations = kane",
-        "no velocities of this mechanism follow from the others by its constraints everywhere",
+        "no velocities of this mechanism are determined by the others through its constraints in every \
+         configuration",
         "write `equations = lagrange`, which keeps all constraints with multipliers",
     )];
     answers(cranks, ROWS);
@@ -160,11 +167,11 @@ fn forces_of_accelerations_leave_no_momenta() {
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
     }
-    const HAMILTON: &str = "a force that depends on accelerations leaves no Hamilton's equations";
-    const ROUTH: &str = "a force that depends on accelerations leaves no Routh's equations";
-    const SECOND: &str = "a force that depends on accelerations leaves no second derivatives";
-    const MOMENTA: &str = "a force that depends on accelerations leaves no derivatives of momenta";
-    const HELP: &str = "leave the word out that asks for them, or these terms of the force";
+    const HAMILTON: &str = "a force that depends on accelerations excludes Hamilton's equations";
+    const ROUTH: &str = "a force that depends on accelerations excludes Routh's equations";
+    const SECOND: &str = "a force that depends on accelerations excludes second derivatives";
+    const MOMENTA: &str = "a force that depends on accelerations excludes derivatives of momenta";
+    const HELP: &str = "remove the option that requests them, or these terms of the force";
     const ROWS: &[Row] = &[
         ("hamilton", HAMILTON, HELP),
         ("equations = hamilton", HAMILTON, HELP),
@@ -180,7 +187,8 @@ fn forces_of_accelerations_leave_no_momenta() {
 fn carts(count: usize, forces: usize) -> String {
     let cart = |k: usize| {
         format!(
-            "m{k}: f64, #[body(mass = m{k})] cart{k}: Body, #[joint(ground -> cart{k}, along = x)] rail{k}: Sleeve,"
+            "m{k}: f64, #[body(mass = m{k})] cart{k}: Body, \
+             #[joint(ground -> cart{k}, along = x)] rail{k}: Sleeve,"
         )
     };
     let push = |k: usize| format!("#[acts(on = rail{k}, value = -3 * rail{k})] push{k}: Force,");
@@ -189,12 +197,16 @@ fn carts(count: usize, forces: usize) -> String {
 
 #[test]
 fn what_would_be_too_long_is_not_written() {
-    const HELP: &str = "ask for it of a smaller mechanism";
+    const HELP: &str = "request it for a smaller mechanism";
     answers(
         |words| (words.to_string(), carts(68, 68)),
         &[
-            ("sensitivities", "the derivatives by so many parameters would be too long", HELP),
-            ("derivatives", "the derivatives of so many elements would be too long", HELP),
+            (
+                "sensitivities",
+                "the code of the derivatives with respect to this many parameters would be too long",
+                HELP,
+            ),
+            ("derivatives", "the code of the derivatives of this many elements would be too long", HELP),
         ],
     );
 }
@@ -215,8 +227,9 @@ fn equations_of_thousands_of_terms_are_not_printed() {
         setting,
         &[(
             "equations = lagrange",
-            "the equations of this mechanism have thousands of terms, or more symbols and functions than are multiplied out",
-            "`equations = structure` says how they are made up",
+            "the equations of this mechanism have thousands of terms, or more symbols and functions than are \
+             expanded",
+            "`equations = structure` prints their structure",
         )],
     );
 }

@@ -17,11 +17,11 @@ const ROWS: &[Row] = &[
     ("#[body(mass == 1)] tool: Body", "expected `name = value`", "write `mass = 1`"),
     ("#[body(mass += 1)] tool: Body", "expected `=`", "write `mass = …`"),
     ("#[body(mass = 1, mass = 2)] tool: Body", "`mass` is given twice", "remove one"),
-    ("#[body(mass = 1 +)] tool: Body", "nothing stands behind this operator", "remove it"),
+    ("#[body(mass = 1 +)] tool: Body", "missing operand after this operator", "remove it"),
     (
         "#[body(mass = * 1)] tool: Body",
         "expected an expression: a number, a name, a call or a vector",
-        "`*` stands between",
+        "is a binary operator",
     ),
     (
         "#[body(mass = &m)] tool: Body",
@@ -38,16 +38,16 @@ const ROWS: &[Row] = &[
         "expected an expression: a number, a name, a call or a vector",
         "parameters",
     ),
-    ("#[body(mass = 0.5.)] tool: Body", "expected a name behind this dot", "`body.x`"),
-    ("#[body(mass = 1..2)] tool: Body", "expected a name behind this dot", "`body.x`"),
-    ("#[body(\"mass = 1\")] tool: Body", "expected an expression, found a text", "without quotes"),
+    ("#[body(mass = 0.5.)] tool: Body", "expected a name after this dot", "`body.x`"),
+    ("#[body(mass = 1..2)] tool: Body", "expected a name after this dot", "`body.x`"),
+    ("#[body(\"mass = 1\")] tool: Body", "expected an expression, found a string", "without quotes"),
     ("#[body = (mass = 1)] tool: Body", "expected arguments in parentheses", "write `#[body(…)]`"),
-    ("#[body] tool: Body", "nothing holds `tool`", "add a joint"),
-    ("tool: Body", "`tool` does not say how it is placed", "add `#[body("),
+    ("#[body] tool: Body", "no joint connects `tool` to the ground", "add a joint"),
+    ("tool: Body", "`tool` has no attribute that defines it", "add `#[body("),
     ("_: f64", "a field of a mechanism needs a name", "name"),
-    ("arm: f64", "the name `arm` is used twice", "name one of the two otherwise"),
+    ("arm: f64", "the name `arm` is used twice", "rename one of the two"),
     ("x: f64", "the name `x` is taken", "axes"),
-    ("tool: f64", "nothing uses the parameter `tool`", "remove it"),
+    ("tool: f64", "unused parameter `tool`", "remove it"),
 ];
 
 #[test]

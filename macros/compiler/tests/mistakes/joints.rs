@@ -5,53 +5,57 @@ use super::{Row, answers};
 const ROWS: &[Row] = &[
     (
         "#[joint(parent = ground, child = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(child = arm, parent = ground, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(from = ground, to = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(base = ground, follower = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(frame_a = ground, frame_b = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(between = (ground, arm), about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(ground, arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     (
         "#[joint(on = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `parent -> arm`",
     ),
-    ("#[joint(arm, about = z)] hinge: Pin", "a joint says which bodies it joins", "write `parent -> arm`"),
+    (
+        "#[joint(arm, about = z)] hinge: Pin",
+        "a joint needs the two bodies that it connects",
+        "write `parent -> arm`",
+    ),
     (
         "#[joint(about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `#[joint(parent -> child, …)]`",
     ),
     (
         "#[joint(\"ground\" -> \"arm\", about = z)] hinge: Pin",
-        "expected an expression, found a text",
+        "expected an expression, found a string",
         "write it without quotes",
     ),
     ("#[joint(ground --> arm, about = z)] hinge: Pin", "expected `->`", "write `ground -> arm`"),
@@ -61,14 +65,14 @@ const ROWS: &[Row] = &[
     ("#[joint(ground > arm, about = z)] hinge: Pin", "expected `->`", "write `ground -> arm`"),
     (
         "#[joint(ground - arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     ("#[joint(ground to arm, about = z)] hinge: Pin", "expected `->`", "write `ground -> arm`"),
     ("#[joint(ground : arm, about = z)] hinge: Pin", "expected `->`", "write `ground -> arm`"),
     (
         "#[joint(ground = arm, about = z)] hinge: Pin",
-        "a joint says which bodies it joins",
+        "a joint needs the two bodies that it connects",
         "write `ground -> arm`",
     ),
     ("#[joint(world -> arm, about = z)] hinge: Pin", "unknown body `world`", "did you mean `ground`?"),
@@ -77,7 +81,7 @@ const ROWS: &[Row] = &[
     (
         "#[joint(arm -> ground, about = z)] hinge: Pin",
         "the ground cannot be the child of a joint",
-        "turn the joint around",
+        "reverse the joint",
     ),
     ("#[joint(ground -> arm.com, about = z)] hinge: Pin", "expected a body", "`arm.at(vector)`"),
     ("#[joint(ground.x -> arm, about = z)] hinge: Pin", "expected a body", "`ground.at(vector)`"),
@@ -125,7 +129,7 @@ const ROWS: &[Row] = &[
         "a Sleeve has no argument `direction`",
         "did you mean `along`?",
     ),
-    ("#[joint(ground -> arm, along = z)] hinge: Pin", "a Pin takes no `along`", "expected `about`"),
+    ("#[joint(ground -> arm, along = z)] hinge: Pin", "a Pin has no argument `along`", "expected `about`"),
     ("#[joint(ground -> arm)] hinge: Pin", "missing `about`: a Pin has one axis", "write `about = z`"),
     ("#[joint(ground -> arm, z)] hinge: Pin", "expected `name = value`", "write `about = z`"),
     (
@@ -150,7 +154,7 @@ const ROWS: &[Row] = &[
     ),
     (
         "#[joint(ground -> arm, about = \"z\")] hinge: Pin",
-        "expected an expression for `about`, found a text",
+        "expected an expression for `about`, found a string",
         "write it without quotes",
     ),
     ("#[joint(ground -> arm, about = Z)] hinge: Pin", "unknown name `Z`", "did you mean `z`?"),

@@ -10,7 +10,7 @@ const VECTORS: &[Row] = &[
     ("instant_center(arms / ground)", "unknown frame `arms`", "did you mean `arm`?"),
     (
         "instant_center(stone / ground)",
-        "this body may slide along the axis that it turns about: no point of it rests",
+        "this body can slide along its axis of rotation: it has no point at rest",
         "`screw_axis(body / frame)`",
     ),
     (
@@ -20,8 +20,8 @@ const VECTORS: &[Row] = &[
     ),
     (
         "screw_axis(sledge / ground)",
-        "`sledge` does not turn with respect to `ground`",
-        "all its points move alike",
+        "`sledge` does not rotate with respect to `ground`",
+        "a body in pure translation has no centre",
     ),
     ("screw_axis(bead / ground)", "`bead` is a point, which has no axes", "name a body or a frame"),
     (
@@ -32,12 +32,12 @@ const VECTORS: &[Row] = &[
     (
         "center_of_percussion(stone / stone, z)",
         "the centre of mass of `stone` lies on this axis",
-        "a couple turns the body",
+        "a pure torque rotates the body without a",
     ),
     (
         "center_of_percussion(stone / ground, x + y)",
-        "this axis is no principal axis of inertia of `stone`",
-        "wherever it falls",
+        "this axis is not a principal axis of inertia of `stone`",
+        "every impulse then loads the bearings",
     ),
     ("momentum(arm, stone)", "`momentum` takes a body", "`momentum((first, second))`"),
     (
@@ -45,7 +45,7 @@ const VECTORS: &[Row] = &[
         "`angular_momentum` takes a body and a point",
         "`angular_momentum((first, second) / point)`",
     ),
-    ("momentum((arm, stone, arm))", "`arm` stands here twice", "name each body once"),
+    ("momentum((arm, stone, arm))", "`arm` is given twice", "name each body once"),
     ("momentum(())", "expected bodies, found none", "`(first, second)`"),
     ("momentum((arm, rock))", "unknown body `rock`", ""),
     (
@@ -53,29 +53,29 @@ const VECTORS: &[Row] = &[
         "`center_of_mass` takes bodies and a point",
         "`center_of_mass((first, second) / point)`",
     ),
-    ("center_of_mass(shell / ground)", "what has no mass has no centre of mass", "with a `mass`"),
-    ("rate(r(arm / ground))", "the rate of a vector is one as seen from a frame", "`rate(vector / frame)`"),
+    ("center_of_mass(shell / ground)", "a body without mass has no centre of mass", "with a `mass`"),
+    ("rate(r(arm / ground))", "the rate of a vector is relative to a frame", "`rate(vector / frame)`"),
     ("rate(s / ground)", "expected a vector, found a scalar", "`rate(scalar)`"),
     ("rate(r(arm / ground) / grounds)", "unknown name `grounds`", ""),
     ("rate(r(arm / ground) / bead)", "`bead` is a point, which has no axes", "name a body or a frame"),
     ("gradient(s)", "`gradient` takes a scalar and a point", "`gradient(field / point)`"),
     ("gradient(2 * s / bed)", "unknown point `bed`", "did you mean `bead`?"),
-    ("gradient(s * s / stone)", "this does not depend on the place of `stone`", "`r(stone / ground)`"),
+    ("gradient(s * s / stone)", "this does not depend on the position of `stone`", "`r(stone / ground)`"),
     ("gradient(r(bead / ground) / bead)", "expected a scalar, found a vector", ""),
     (
         "gradient(norm(v(bead / ground / ground)) / arm)",
-        "this does not depend on the place of `arm`",
+        "this does not depend on the position of `arm`",
         "`r(arm / ground)`",
     ),
     ("r(arm.at(s * q) / ground)", "unknown name `q`", ""),
-    ("r(arm.at(rate(s) * x) / ground)", "the rate of `s` cannot stand here", "coordinates and time"),
+    ("r(arm.at(rate(s) * x) / ground)", "the rate of `s` is not allowed here", "coordinates and time"),
 ];
 
 /// Scalar outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
 const SCALARS: &[Row] = &[
     ("curvature(wire)", "`curvature` takes a curve and the coordinate along it", "`curvature(curve, s)`"),
-    ("curvature(wire, u)", "`curvature` takes a coordinate, along which the curve is run through", ""),
+    ("curvature(wire, u)", "`curvature` takes the coordinate that parametrises the curve", ""),
     ("curvature(wire, hinge)", "this vector does not depend on `hinge`", "`curvature(curve, s)`"),
     ("torsion(line, s)", "this curve is straight, and has no torsion", "its curvature is zero"),
     ("curvature(s, s)", "expected a vector, found a scalar", ""),
@@ -85,11 +85,11 @@ const SCALARS: &[Row] = &[
         "`cable(a / b, drum.cylinder(radius, axis))`",
     ),
     ("cable(arm / bead, arm)", "expected a sphere or a cylinder", "`ball.sphere(radius)`"),
-    ("cable(arm / bead, arm.cone(1, z))", "a cable does not run around a `cone`", "`sphere(radius)`"),
+    ("cable(arm / bead, arm.cone(1, z))", "a cable cannot wrap around a `cone`", "`sphere(radius)`"),
     (
         "cable(arm / bead, arm.cylinder(1))",
-        "a cylinder that a cable runs around is written `cylinder(radius, axis)`",
-        "right hand",
+        "a cylinder that a cable wraps around is written `cylinder(radius, axis)`",
+        "right-hand rule",
     ),
     (
         "cable(arm / bead, arm.sphere(-1))",
@@ -142,10 +142,14 @@ const MATRICES: &[Row] = &[
     ("x * identity()", "a vector cannot be multiplied by a matrix", "`M * v`"),
     ("1 / identity()", "a scalar cannot be divided by a matrix", "`transpose(M)`"),
     ("identity() / x", "a matrix cannot be divided by a vector", ""),
-    ("rate(identity())", "the rate of a matrix is one as seen from a frame", "`rate(matrix / frame)`"),
+    ("rate(identity())", "the rate of a matrix is relative to a frame", "`rate(matrix / frame)`"),
     ("transpose(x)", "expected a matrix, found a vector", ""),
     ("[[1, 2], [3, 4]]", "expected a 3×3 matrix, found 2 rows", "by its rows"),
-    ("outer(reaction_force(hinge), x)", "a reaction cannot stand here", "stand in outputs"),
+    (
+        "outer(reaction_force(hinge), x)",
+        "a reaction is not allowed here",
+        "forces of joints and contacts are allowed in",
+    ),
 ];
 
 #[test]
@@ -169,8 +173,9 @@ fn matrices() {
             "declare it as a `Matrix`",
         ),
         (
-            "#[body(mass = 1, com = projector(x) * y)] log: Body, #[joint(ground -> log, about = z)] roll: Pin",
-            "a matrix cannot stand here",
+            "#[body(mass = 1, com = projector(x) * y)] log: Body, \
+             #[joint(ground -> log, about = z)] roll: Pin",
+            "a matrix is not allowed here",
             "definitions, outputs and forces",
         ),
     ];
@@ -188,8 +193,8 @@ const FIELDS: &[Row] = &[
     ),
     (
         "#[frame(ground, cylindrical(z))] f: Frame",
-        "this vector lies on the z axis, where `cylindrical` has no directions",
-        "leaves the z axis",
+        "this vector lies on the z axis, on which `cylindrical` has no directions",
+        "the axes are determined by a vector that is",
     ),
     (
         "#[frame(ground, spherical())] f: Frame",
@@ -198,42 +203,44 @@ const FIELDS: &[Row] = &[
     ),
     (
         "#[frame(ground, z(s), cylindrical(wire))] f: Frame",
-        "`cylindrical` stands first among the rotations of a `Frame`",
+        "`cylindrical` must be the first rotation of a `Frame`",
         "`#[frame(ground, cylindrical(…))]`",
     ),
     (
         "#[acts(on = 2 * 3, stiffness = 1)] coil: Spring",
-        "this contains no coordinate: nothing that acts on it has an effect",
+        "this contains no coordinate: a force on it has no effect",
         "`norm(r(a / b))`",
     ),
     (
         "#[acts(on = norm(rate(s) * x), stiffness = 1)] coil: Spring",
-        "the rate of `s` cannot stand here",
+        "the rate of `s` is not allowed here",
         "coordinates and time",
     ),
     (
         "#[acts(on = norm(wire + x), along = x)] push: Force",
-        "the expression itself gives the direction",
+        "the expression determines the direction",
         "remove this argument",
     ),
     ("#[acts(on = wire, stiffness = 1)] coil: Spring", "expected a scalar, found a vector", "norm"),
     (
         "#[acts(between = (ground, stone.at(s * x)), stiffness = 1)] coil: Spring",
-        "the coordinate `s` cannot stand here",
+        "the coordinate `s` is not allowed here",
         "only numbers and parameters",
     ),
     (
         "#[body(mass = 1, about = 0)] log: Body, #[joint(ground -> log, about = z)] roll: Pin",
-        "`about` says which point the inertia is about, and there is no inertia",
+        "`about` is the reference point of the inertia, but there is no inertia",
         "`inertia = …`",
     ),
     (
-        "#[body(mass = 1, inertia = rod(1, 2, x), about = 0)] log: Body, #[joint(ground -> log, about = z)] roll: Pin",
+        "#[body(mass = 1, inertia = rod(1, 2, x), about = 0)] log: Body, \
+         #[joint(ground -> log, about = z)] roll: Pin",
         "the inertia of a `rod` is about its centre",
         "remove `about`",
     ),
     (
-        "#[body(mass = 1, com = x, inertia = diagonal(1, 1.5, 0.6), about = 0)] log: Body, #[joint(ground -> log, about = z)] roll: Pin",
+        "#[body(mass = 1, com = x, inertia = diagonal(1, 1.5, 0.6), about = 0)] log: Body, \
+         #[joint(ground -> log, about = z)] roll: Pin",
         "the inertia of `log` is not positive definite",
         "principal moments",
     ),
@@ -261,7 +268,8 @@ fn units_are_inferred() {
     let wrong = [
         "a: f64, s: Coordinate, #[define(a * cos(s) * x + a * sin(s) * y)] wire: Vector,
             #[particle(mass = 1, at = wire)] bead: Particle, #[output(curvature(wire, s) + a)] seen: Scalar",
-        "r: f64, #[acts(on = cable(arm.at(-y) / ground.at(2 * x), ground.cylinder(r, z)), stiffness = r)] band: Spring",
+        "r: f64, #[acts(on = cable(arm.at(-y) / ground.at(2 * x), ground.cylinder(r, z)), stiffness = r)] \
+         band: Spring",
         "m: f64, #[particle(mass = m, at = arm.at(x))] bead: Particle,
             #[output(norm(rate(momentum((arm, bead)) / ground)) + m)] seen: Scalar",
         "l: f64, #[output(norm(instant_center(arm / ground) + l * l * x) + l)] seen: Scalar",

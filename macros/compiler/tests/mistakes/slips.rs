@@ -153,8 +153,8 @@ const OPTIONS: &[Row] = &[
     ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = (a, b)", "expected a list of strings for `lock`", "write `lock = [\"a\", \"b\"]`"),
     ("lock = 3", "expected a list of strings for `lock`", "write `lock = [\"…\", \"…\"]`"),
-    ("base = \"free\"", "expected a word for `base`", "write it without quotes: `base = free`"),
-    ("inertia = \"none\"", "expected a word for `inertia`", "write it without quotes: `inertia = none`"),
+    ("base = \"free\"", "expected a name for `base`", "write it without quotes: `base = free`"),
+    ("inertia = \"none\"", "expected a name for `inertia`", "write it without quotes: `inertia = none`"),
 ];
 
 #[test]

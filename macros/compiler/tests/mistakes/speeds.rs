@@ -19,10 +19,10 @@ fn speeds_that_are_none() {
             "coordinates and parameters",
         ),
         ("#[speed(rail + a)] u: Speed,", "this speed contains no rate", "rate(psi) * sin(theta)"),
-        ("#[speed(rate(rail) + 1)] u: Speed,", "a speed has no part that is there at rest", "zero at rest"),
+        ("#[speed(rate(rail) + 1)] u: Speed,", "a speed cannot have a term without rates", "zero at rest"),
         (
             "#[speed(rate(rail) * sin(t))] u: Speed,",
-            "what multiplies the rates in a speed cannot depend on time",
+            "the coefficients of rates in a speed cannot depend on time",
             "`#[output(…)]`",
         ),
         (
@@ -36,18 +36,19 @@ fn speeds_that_are_none() {
             "#[speed(rate(hinge))] hinge_rate: Speed",
         ),
         (
-            "#[speed(rate(rail) + rate(hinge))] u: Speed, #[speed(2 * rate(rail) + 2 * rate(hinge))] w: Speed,",
-            "the speed `w` follows from the speeds before it",
+            "#[speed(rate(rail) + rate(hinge))] u: Speed, \
+             #[speed(2 * rate(rail) + 2 * rate(hinge))] w: Speed,",
+            "the speed `w` depends on the speeds before it",
             "independent combinations",
         ),
         (
             "#[speed(rate(rail))] u: Speed, #[speed(2 * rate(rail))] w: Speed,",
-            "the speed `w` follows from the speeds before it",
+            "the speed `w` depends on the speeds before it",
             "independent combinations",
         ),
         ("#[speed(rate(rial))] u: Speed,", "`rate` takes a coordinate", "`rail`"),
         ("#[define(rate(rail))] u: Speed,", "a `Speed` has no `#[define]`", "#[speed(…)]"),
-        ("#[speed] u: Speed,", "`u` says nothing", "#[speed(expression)]"),
+        ("#[speed] u: Speed,", "`u` has no expression", "#[speed(expression)]"),
         (
             "#[speed(rate(rail) * x)] u: Speed,",
             "a speed is a scalar, and this is a vector",
@@ -56,7 +57,7 @@ fn speeds_that_are_none() {
         (
             "#[speed(rate(rail))] u: Speed, #[limit(on = rail, to = 1, max_speed = 2)] stop: Limit,",
             "speeds replace the rate of `rail`, which has a `max_speed`",
-            "it bounds the rate of `rail`, which is none of the velocities any more",
+            "or choose speeds that keep this rate",
         ),
         (
             "#[speed(rate(rail))] u: Speed, #[limit(on = rail, max_effort = 2)] stop: Limit,",

@@ -143,7 +143,7 @@ fn pose(pose: &Pose<'_>) -> String {
 
 /// Evaluates an expression. The parameters have the values 2, 3, 4, …
 fn value(e: Expr<'_>) -> f64 {
-    eval_one(e, &|symbol| match Quantity::of(symbol) {
+    eval_one(e, &|symbol| match Quantity::from_symbol(symbol) {
         Quantity::Parameter(k) => k as f64 + 2.0,
         other => unreachable!("{other:?} in a model of numbers"),
     })
@@ -248,7 +248,8 @@ fn ends_are_placed_and_rotated() {
         "[[0, -1, 0], [0, 0, -1], [1, 0, 0]]",
     ] {
         check(
-            &format!("#[body(mass = 1)] b: Body, #[joint(ground.rotated({rotations}) -> b, along = x)] j: Sleeve,"),
+            &format!("#[body(mass = 1)] b: Body, \
+                      #[joint(ground.rotated({rotations}) -> b, along = x)] j: Sleeve,"),
             "q: j
             link 0 on ground rotated [[0, -1, 0], [0, 0, -1], [1, 0, 0]] slides along [1, 0, 0] by j; mass 1, moment [0, 0, 0]
             frame b on 0",
@@ -273,7 +274,8 @@ fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
     );
     // An axis that depends on parameters is not transformed, and neither is the axis of a sliding joint.
     check(
-        "a: f64, #[body(mass = 1, com = z)] b: Body, #[joint(ground -> b, about = cos(a) * x + sin(a) * y)] pin: Pin,",
+        "a: f64, #[body(mass = 1, com = z)] b: Body, \
+         #[joint(ground -> b, about = cos(a) * x + sin(a) * y)] pin: Pin,",
         "q: pin
         link 0 on ground turns about [-0.416147, 0.909297, 0] by pin; mass 1, moment [0, 0, 1], inertia [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
         frame b on 0",
@@ -307,7 +309,8 @@ fn joints_of_several_motions_are_chains() {
         frame p on 2",
     );
     check(
-        "#[body(mass = 1, com = x, inertia = sphere(1, 0))] nut: Body, #[joint(ground -> nut, about = x, lead = 2 * pi)] j: Screw,",
+        "#[body(mass = 1, com = x, inertia = sphere(1, 0))] nut: Body, \
+         #[joint(ground -> nut, about = x, lead = 2 * pi)] j: Screw,",
         "q: j
         link 0 on ground turns about [1, 0, 0] by j with pitch 1; mass 1, moment [1, 0, 0], inertia [[0, 0, 0], [0, 1, 0], [0, 0, 1]]
         frame nut on 0",
@@ -318,12 +321,14 @@ fn joints_of_several_motions_are_chains() {
 fn followers_share_their_masters_coordinate() {
     let link = |name: &str| {
         format!(
-            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>"
+            "<link name='{name}'><inertial><mass value='1'/>\
+             <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>"
         )
     };
     let joint = |name: &str, kind: &str, parent: &str, child: &str, more: &str| {
         format!(
-            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/>{more}</joint>"
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>\
+             <axis xyz='0 0 1'/>{more}</joint>"
         )
     };
     let text = link("base")
@@ -358,8 +363,8 @@ fn a_link_with_inertia_has_mass() {
     check_urdf(
         &robot("revolute"),
         "r.urdf:2:14: `a` has an inertia and no mass
-         = help: no real body has that: give it a mass, or an inertia of zero
-         = help: mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is",
+         = help: no real body has an inertia without mass: give it a mass, or an inertia of zero
+         = help: correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the inertia unchanged",
     );
     // Bodies that are fixed to the ground appear in no equation.
     let fixed = format!("<robot>{}</robot>", robot("fixed"));
@@ -378,9 +383,9 @@ fn noise_is_no_inertia() {
     };
     let mistake = |moment: &str| {
         format!(
-            "r.urdf:2:14: no real body has the inertia of `a`
+            "r.urdf:2:14: the inertia of `a` is not physically consistent
              = help: its principal moments are 0, 0, {moment}: the largest exceeds the sum of the others
-             = help: mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is"
+             = help: correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the inertia unchanged"
         )
     };
     for (mass, moment, real) in
@@ -409,11 +414,11 @@ fn mistakes_are_reported_together_and_once() {
         this axis has no direction: it is zero
         = help: write `x`, `y`, `z` or another vector of unit length
         the mass of `a` cannot be negative, but it is -1
-        = help: a mass is zero or more, kg; gravity has the sign
+        = help: a mass is zero or more, kg; the sign belongs to gravity
         expected a vector, found a scalar
         = help: multiply it by a direction, as in `length * y`
         this coordinate is an angle
-        = help: what acts on it is a Torque",
+        = help: the element that acts on it is a Torque",
     );
     // A body with a syntax error is still known to its joints.
     check(

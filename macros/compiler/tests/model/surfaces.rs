@@ -40,7 +40,7 @@ fn listed_pairs_of_surfaces_are_supported() {
     let mut wrong = Vec::new();
     let mut check = |attribute: &str, is_listed: bool| {
         let found = errors(attribute);
-        if found.contains("where these surfaces touch is not known") == is_listed {
+        if found.contains("the contact point of these surfaces is not supported") == is_listed {
             wrong.push(format!("{attribute}: {found}"));
         }
     };

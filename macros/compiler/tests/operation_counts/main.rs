@@ -127,7 +127,8 @@ fn contacts_of_legs() {
     }";
     let functions =
         ["contact_rates", "contact_jacobian", "contact_bias", "__contact_responses", "__contact_derivatives"];
-    let arguments = "urdf = \"../../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = ignore, derivatives";
+    let arguments = "urdf = \"../../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = \
+                     ignore, derivatives";
     let all = programs(arguments, item, &functions);
     let in_lanes: Vec<usize> =
         all.iter().map(|p| instructions(p.simd.as_deref().expect("its limbs are alike"))).collect();

@@ -215,7 +215,7 @@ impl Case<'_> {
     fn run(&self, name: &str, s: &State) -> Vec<f64> {
         let f = self.output.functions.iter().find(|f| f.name == name);
         let f = f.unwrap_or_else(|| panic!("{}: no {name}", self.name));
-        let symbol_value = |symbol| match Quantity::of(symbol) {
+        let symbol_value = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => s.q[k],
             Quantity::Velocity(k) => s.v[k],
             Quantity::Acceleration(k) => s.a[k],

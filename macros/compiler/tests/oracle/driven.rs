@@ -195,14 +195,14 @@ fn compare(
         let told = cx.messages();
         // Without sample configurations that satisfy the constraints, dependent speeds cannot be determined.
         assert!(
-            more.contains("speeds") && told.iter().all(|told| told.contains("do not follow")),
+            more.contains("speeds") && told.iter().all(|told| told.contains("do not determine")),
             "seed {seed}{more}: {}\n{item}",
             told.join("\n")
         );
         return;
     };
     assert_eq!((model.freedom.velocities, model.constraints.len()), (0, v.len()), "seed {seed}\n{item}");
-    let symbol = |symbol| match Quantity::of(symbol) {
+    let symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Force(k) => tau[k],
@@ -212,7 +212,7 @@ fn compare(
     };
     let passive = output.functions.iter().find(|f| f.name == "__passive_forces");
     let passive = passive.map_or(Vec::new(), |f| f.program.run(&symbol));
-    let all = |s| match Quantity::of(s) {
+    let all = |s| match Quantity::from_symbol(s) {
         Quantity::PassiveForce(k) => passive[k],
         _ => symbol(s),
     };

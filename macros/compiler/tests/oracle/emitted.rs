@@ -48,7 +48,7 @@ impl Value {
                 let all: Result<Vec<Vec<f64>>> = list.iter().map(|value| value.numbers(lane)).collect();
                 Ok(all?.concat())
             }
-            Value::Operation(name, _) => wrong(format!("{name} is no number")),
+            Value::Operation(name, _) => wrong(format!("{name} is not a number")),
         }
     }
 

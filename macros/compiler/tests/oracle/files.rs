@@ -55,7 +55,7 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
 
 /// Returns the values of a function from the scalar program and from the program with lanes.
 fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
-    let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+    let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],

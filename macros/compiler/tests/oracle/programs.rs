@@ -109,7 +109,7 @@ impl Case<'_> {
             .iter()
             .find(|f| f.name == name)
             .unwrap_or_else(|| panic!("no function {name}"));
-        let state = |s| match Quantity::of(s) {
+        let state = |s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => self.spec.bodies[k].mass,
             Quantity::Configuration(k) => self.point.q[k],
             Quantity::Velocity(k) => self.point.v[k],
@@ -123,7 +123,7 @@ impl Case<'_> {
             let function = self.output.functions.iter().find(|f| f.name == called.function());
             function.map_or_else(Vec::new, |f| f.program.run(&state))
         });
-        let symbol_value = |s| match Quantity::of(s) {
+        let symbol_value = |s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
             _ => state(s),
@@ -228,7 +228,8 @@ impl Case<'_> {
                     let expected = expected[kind * nv + i];
                     assert!(
                         (product - expected).abs() <= TOLERANCE * scale + doubt,
-                        "second derivatives, row {i} of kind {kind}: {product} and {expected} of {scale} with {lambda:?}, {}",
+                        "second derivatives, row {i} of kind {kind}: {product} and {expected} of {scale} \
+                         with {lambda:?}, {}",
                         self.name
                     );
                 }

@@ -68,7 +68,8 @@ impl Link {
         let r: [[f64; 3]; 3] = rotated.map(|row| row.map(|entry| entry.0[0].re));
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
         let inertial = format!(
-            "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
+            "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" \
+             ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
             spaced(com),
             spaced(rpy)
         );
@@ -184,7 +185,8 @@ impl Robot {
         };
         let couplings: String = self.links.iter().filter_map(follows).collect();
         format!(
-            "<mujoco><compiler angle=\"radian\" eulerseq=\"XYZ\"/>\n<worldbody>{}</worldbody>\n<equality>{couplings}</equality>\n{behind}</mujoco>",
+            "<mujoco><compiler angle=\"radian\" eulerseq=\"XYZ\"/>\n<worldbody>{}</worldbody>\n\
+             <equality>{couplings}</equality>\n{behind}</mujoco>",
             self.mjcf_body(0, inside)
         )
     }
@@ -215,7 +217,8 @@ impl Robot {
         let children: String = children.into_iter().map(|child| self.mjcf_body(child, inside)).collect();
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (inertia[0], inertia[1], inertia[2]);
         format!(
-            "<body name=\"{name}\"{place}>{own}<inertial mass=\"{mass:?}\" pos=\"{}\" fullinertia=\"{xx:?} {yy:?} {zz:?} {xy:?} {xz:?} {yz:?}\"/>{}{children}</body>\n",
+            "<body name=\"{name}\"{place}>{own}<inertial mass=\"{mass:?}\" pos=\"{}\" fullinertia=\"{xx:?} \
+             {yy:?} {zz:?} {xy:?} {xz:?} {yz:?}\"/>{}{children}</body>\n",
             spaced(*com),
             inside(k)
         )
@@ -240,7 +243,8 @@ impl Robot {
         });
         let _ = writeln!(
             text,
-            "<joint name=\"{}\" type=\"{}\"><child link=\"{}\"/><axis xyz=\"{}\"/><origin rpy=\"{}\" xyz=\"{}\"/>{}<parent link=\"{}\"/></joint>",
+            "<joint name=\"{}\" type=\"{}\"><child link=\"{}\"/><axis xyz=\"{}\"/>\
+             <origin rpy=\"{}\" xyz=\"{}\"/>{}<parent link=\"{}\"/></joint>",
             joint.name,
             KINDS[joint.kind],
             self.links[child].name,

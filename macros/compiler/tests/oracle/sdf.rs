@@ -126,7 +126,8 @@ impl Writer<'_> {
         let entries: String =
             entries.iter().map(|(i, j, name)| format!("<{name}>{:?}</{name}>", inertia[*i][*j])).collect();
         format!(
-            "<link name=\"l{k}\"><pose{attribute}>{pose}</pose><inertial><pose{of_center}>{center}</pose><mass>{mass:?}</mass><inertia>{entries}</inertia></inertial></link>\n"
+            "<link name=\"l{k}\"><pose{attribute}>{pose}</pose><inertial><pose{of_center}>{center}</pose>\
+             <mass>{mass:?}</mass><inertia>{entries}</inertia></inertial></link>\n"
         )
     }
 
@@ -169,7 +170,8 @@ impl Writer<'_> {
             let leader = self.robot.links[leader].joint.as_ref().map_or("", |joint| &joint.name);
             let _ = write!(
                 text,
-                "<mimic joint=\"{leader}\"><multiplier>{factor:?}</multiplier><offset>{offset:?}</offset></mimic>"
+                "<mimic joint=\"{leader}\"><multiplier>{factor:?}</multiplier><offset>{offset:?}</offset>\
+                 </mimic>"
             );
         }
         text.push_str("</axis>");

@@ -48,7 +48,7 @@ fn forces(text: &str, locked: &[String]) -> Forces {
     let inputs = inputs.collect();
     let function = output.functions.into_iter().find(|f| f.name == "generalized_forces");
     let values = move |q: &[f64], v: &[f64], u: &[f64]| {
-        let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+        let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
             Quantity::Input(k) => u[k],

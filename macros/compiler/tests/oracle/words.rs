@@ -50,7 +50,10 @@ fn write_body(k: usize, body: &Body, symbolic: bool, out: &mut String) {
         let _ = writeln!(
             out,
             "slide{k}: Coordinate,
-             #[particle(mass = {:?}, at = body{k}.at(slide{k} * ground.x + ({x:?}) * ground.y + ({y:?}) * x + ({z:?}) * y))]
+             #[particle(
+                 mass = {:?},
+                 at = body{k}.at(slide{k} * ground.x + ({x:?}) * ground.y + ({y:?}) * x + ({z:?}) * y)
+             )]
              slider{k}: Particle,",
             slider.mass
         );
@@ -113,18 +116,21 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
         }
         Element::Push(end, [x, y, z]) => writeln!(
             out,
-            "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] element{k}: Force,",
+            "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] \
+             element{k}: Force,",
             point(end)
         ),
         Element::Twist(body, [x, y, z]) => writeln!(
             out,
-            "#[acts(on = body{body}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] element{k}: Torque,"
+            "#[acts(on = body{body}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] \
+             element{k}: Torque,"
         ),
         Element::Follow(end, [x, y, z]) => {
             let b = name(end.body);
             writeln!(
                 out,
-                "#[acts(on = {}, value = ({x:?}) * {b}.x + ({y:?}) * {b}.y + ({z:?}) * {b}.z)] element{k}: Force,",
+                "#[acts(on = {}, value = ({x:?}) * {b}.x + ({y:?}) * {b}.y + ({z:?}) * {b}.z)] element{k}: \
+                 Force,",
                 point(end)
             )
         }
@@ -154,7 +160,8 @@ fn law_words(law: Law, free: &str) -> (String, &'static str) {
         Law::Attraction(k) => (format!("strength = {k:?}"), "Attraction"),
         Law::Friction(Friction { coulomb, stiction, stribeck_speed, viscous, speed }) => (
             format!(
-                "coulomb = {coulomb:?}, stiction = {stiction:?}, stribeck_speed = {stribeck_speed:?}, viscous = {viscous:?}, speed = {speed:?}"
+                "coulomb = {coulomb:?}, stiction = {stiction:?}, stribeck_speed = {stribeck_speed:?}, \
+                 viscous = {viscous:?}, speed = {speed:?}"
             ),
             "Friction",
         ),

@@ -65,7 +65,7 @@ impl Derivatives {
     /// # Errors
     ///
     /// [`Error::Unknown`] if the first joint is not free, [`Error::NotFinite`] if a derivative is not finite.
-    pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
+    pub fn at_state<M, const NQ: usize, const NV: usize, const NU: usize>(
         m: &M,
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,

@@ -42,7 +42,7 @@ impl FlightModes {
     /// # Errors
     ///
     /// [`Error::NotConverged`], [`Error::Unknown`] for a system without states of these names.
-    pub fn of(system: &StateSpace) -> Result<Self, Error> {
+    pub fn from_system(system: &StateSpace) -> Result<Self, Error> {
         let is_state = |name: &&str| system.states().iter().any(|state| state.name == *name);
         if !LONGITUDINAL.iter().chain(&LATERAL).any(is_state) {
             let known = system.states().iter().map(|state| state.name.clone()).collect();
@@ -75,7 +75,7 @@ impl FlightModes {
     }
 
     /// Returns the existing modes with their names.
-    pub fn named(&self) -> Vec<(&'static str, &Mode)> {
+    pub fn named_modes(&self) -> Vec<(&'static str, &Mode)> {
         let all = [
             ("short period", &self.short_period),
             ("phugoid", &self.phugoid),

@@ -26,7 +26,7 @@ pub fn modes(modes: &[Mode]) -> Result<String, Error> {
 }
 
 /// Draws [`modes`] with a name before each, as returned by
-/// [`FlightModes::named`](crate::flight::FlightModes::named).
+/// [`FlightModes::named_modes`](crate::flight::FlightModes::named_modes).
 ///
 /// # Errors
 ///
@@ -37,8 +37,10 @@ pub fn named_modes(modes: &[(&str, &Mode)]) -> Result<String, Error> {
     }
     let height = ROW * modes.len() as f64 + 10.0;
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"{height}\" viewBox=\"0 0 720 {height}\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"{height}\" fill=\"white\"/>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"{height}\" viewBox=\"0 0 720 \
+         {height}\" \
+         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"{height}\" \
+             fill=\"white\"/>\n"
     );
     for (k, (name, mode)) in modes.iter().enumerate() {
         write_mode(&mut out, name, mode, ROW * (k as f64 + 0.5) + 5.0);
@@ -51,7 +53,8 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     let x = 90.0;
     let _ = writeln!(
         out,
-        "<circle cx=\"{x}\" cy=\"{y}\" r=\"{RADIUS}\" fill=\"none\" stroke=\"#ccc\"/>\n<g transform=\"translate({x} {y})\"><g>"
+        "<circle cx=\"{x}\" cy=\"{y}\" r=\"{RADIUS}\" fill=\"none\" stroke=\"#ccc\"/>\n<g \
+         transform=\"translate({x} {y})\"><g>"
     );
     let largest = mode.shape.iter().map(|s| s.norm()).fold(0.0, f64::max);
     for (k, part) in mode.shape.iter().enumerate().filter(|_| largest > 0.0) {
@@ -59,7 +62,8 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
         let colour = COLOURS[k % COLOURS.len()];
         let _ = writeln!(
             out,
-            "<line x2=\"{px:.2}\" y2=\"{py:.2}\" stroke=\"{colour}\" stroke-width=\"3\" stroke-linecap=\"round\"/>"
+            "<line x2=\"{px:.2}\" y2=\"{py:.2}\" stroke=\"{colour}\" stroke-width=\"3\" \
+             stroke-linecap=\"round\"/>"
         );
     }
     write_motion(out, mode);
@@ -100,7 +104,8 @@ fn write_motion(out: &mut String, mode: &Mode) {
             let time = if (0.5..20.0).contains(&period) { period } else { TURN };
             let _ = writeln!(
                 out,
-                "<animateTransform attributeName=\"transform\" type=\"rotate\" from=\"0\" to=\"-360\" dur=\"{time:.3}s\" \
+                "<animateTransform attributeName=\"transform\" type=\"rotate\" from=\"0\" to=\"-360\" \
+                 dur=\"{time:.3}s\" \
                  repeatCount=\"indefinite\"/>"
             );
         }

@@ -115,7 +115,7 @@ impl Panel {
         let inner =
             (width.saturating_sub(left + border + units(24)), height.saturating_sub(below + 2 * border));
         let Some((x, y)) = self.axes(inner) else {
-            return Err(Error::Picture("nothing to draw that is finite".into()));
+            return Err(Error::Picture("no finite values to draw".into()));
         };
         let most_x = (inner.0 / units(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
         let most_y = (inner.1 / units(36)).max(2) as usize;

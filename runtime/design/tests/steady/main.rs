@@ -272,7 +272,10 @@ struct Aircraft {
     cl: Scalar,
     #[acts(on = airframe, value = load * cl * (sin(attack) * airframe.x - cos(attack) * airframe.z))]
     lift: Force,
-    #[acts(on = airframe, value = -load * (0.03 + 0.05 * cl * cl) * (cos(attack) * airframe.x + sin(attack) * airframe.z))]
+    #[acts(
+        on = airframe,
+        value = -load * (0.03 + 0.05 * cl * cl) * (cos(attack) * airframe.x + sin(attack) * airframe.z)
+    )]
     drag: Force,
     #[acts(on = airframe, value = load * 1.5 * (0.02 - 0.9 * attack - 1.3 * elevator - 9 * dot(turning, airframe.y) / norm(velocity)) * airframe.y)]
     pitch: Torque,

@@ -482,7 +482,7 @@ pub unsafe extern "C" fn lw_simulate(
             false => unsafe { raw::text(settings.method) }?,
         };
         let positive = |x: f64| (x != 0.0).then_some(x);
-        let method = Method::named(name, positive(settings.setting))?;
+        let method = Method::from_name(name, positive(settings.setting))?;
         let control = settings.control.map(|control| raw::Controller { control, user: settings.user });
         let mut controller = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
             Some(control) => control.call(t, q, v, u),

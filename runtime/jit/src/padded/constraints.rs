@@ -136,7 +136,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         tau: &SVector<f64, NV>,
     ) -> Result<Solution<NV>, ConstraintError> {
         let slipping = self.robot().shared.constraints.slipping.len();
-        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
         let mut more = *tau;
         self.add_free_rates(state, 1.0, &mut more);
         let names = Self::CONSTRAINTS;
@@ -155,7 +155,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         bias: &[f64; NV],
     ) -> SVector<f64, NV> {
         let (n, rows) = (self.robot().nv(), self.rows());
-        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.at(t, q) };
+        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.instant(t, q) };
         let more = SVector::from(*force);
         self.eliminated(Internal::ConstraintCorrection, false, state, &more)
             .unwrap_or_else(|| {
@@ -187,7 +187,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         let count = self.robot().shared.constraints.holonomic;
         match count {
             0 => SVector::zeros(),
-            _ => self.vector(Internal::ConstraintResiduals, self.at(t, q), count, SVector::zeros()),
+            _ => self.vector(Internal::ConstraintResiduals, self.instant(t, q), count, SVector::zeros()),
         }
     }
 
@@ -197,7 +197,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
 
     fn constraint_jacobian(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let size = (self.rows(), self.robot().nv());
-        self.matrix(Internal::ConstraintJacobian, self.at(t, q), size, SMatrix::zeros())
+        self.matrix(Internal::ConstraintJacobian, self.instant(t, q), size, SMatrix::zeros())
     }
 
     fn constraint_bias(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
@@ -217,7 +217,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
             let found = self.slipping_dynamics(t, q, v, tau);
             return found.unwrap_or((undetermined, undetermined));
         }
-        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
         let mut more = *tau;
         self.add_free_rates(state, 1.0, &mut more);
         self.eliminated(Internal::ConstrainedDynamics, constraints.independent, state, &more).unwrap_or_else(

@@ -1,6 +1,6 @@
 //! Contacts of padded robots.
 
-use super::{Padded, put};
+use super::{Padded, write_block};
 use crate::error::Error;
 use crate::internal::Internal;
 use crate::names::{List, numbers};
@@ -165,7 +165,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_gaps(&self, t: f64, q: &Vector<NQ>) -> Vector<NK> {
         let count = self.robot().shared.contacts.len();
-        self.plain.vector(Internal::ContactGaps, self.plain.at(t, q), count, SVector::repeat(FAR))
+        self.plain.vector(Internal::ContactGaps, self.plain.instant(t, q), count, SVector::repeat(FAR))
     }
 
     fn contact_rates(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
@@ -175,7 +175,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_jacobian(&self, t: f64, q: &Vector<NQ>) -> SMatrix<f64, NR, NV> {
         let size = (self.rates(), self.robot().nv());
-        self.plain.matrix(Internal::ContactJacobian, self.plain.at(t, q), size, SMatrix::zeros())
+        self.plain.matrix(Internal::ContactJacobian, self.plain.instant(t, q), size, SMatrix::zeros())
     }
 
     fn contact_bias(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
@@ -189,10 +189,10 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         }
         let (n, rates) = (self.robot().nv(), self.rates());
         let mut found = vec![0.0; rates * (n + rates)];
-        self.plain.call(Internal::ContactResponses, self.plain.at(t, q), &mut found);
+        self.plain.call(Internal::ContactResponses, self.plain.instant(t, q), &mut found);
         let mut all = Responses { velocities: SMatrix::zeros(), rates: SMatrix::zeros() };
-        put(&mut all.velocities, n, &found[..n * rates]);
-        put(&mut all.rates, rates, &found[n * rates..]);
+        write_block(&mut all.velocities, n, &found[..n * rates]);
+        write_block(&mut all.rates, rates, &found[n * rates..]);
         all
     }
 
@@ -201,12 +201,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         let mut laws = vec![0.0; 3 * contacts.len()];
         self.plain.call(Internal::ContactLaws, State::default(), &mut laws);
         std::array::from_fn(|k| {
-            let of = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
+            let coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
             let by_impulses = contacts.get(k).is_some_and(|contact| contact.of_impulses);
             Law {
-                friction: of(0),
-                restitution: of(1),
-                stiction: of(2),
+                friction: coefficient(0),
+                restitution: coefficient(1),
+                stiction: coefficient(2),
                 hypothesis: if by_impulses { Restitution::Poisson } else { Restitution::Newton },
             }
         })

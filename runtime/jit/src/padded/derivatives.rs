@@ -1,6 +1,6 @@
 //! Derivatives of padded robots.
 
-use super::{Padded, put};
+use super::{Padded, write_block};
 use crate::internal::Internal;
 use crate::robot::{Robot, State};
 use linkwork::__private::{
@@ -55,7 +55,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     ) -> [Square<NV>; K] {
         let found = self.matrices(f, state, [self.robot().nv(); K]);
         for (to, (n, block)) in all.iter_mut().zip(found) {
-            put(to, n, &block);
+            write_block(to, n, &block);
         }
         all
     }
@@ -112,7 +112,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Converts a vector between speeds and joint velocities.
     fn converted(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+        let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
         self.vector(f, state, self.robot().nv(), *v)
     }
 
@@ -124,12 +124,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     fn rate_changes(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
-        let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+        let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
         self.matrix(Internal::RateChanges, state, (n, n), Square::zeros())
     }
 
     /// Displacement in joint velocities, and the configuration that it leads to.
-    fn moved(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> (SVector<f64, NV>, SVector<f64, NQ>) {
+    fn displaced(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> (SVector<f64, NV>, SVector<f64, NQ>) {
         let way = self.converted(Internal::RatesOfSpeeds, q, dv);
         let mut there = *q;
         let charts = &self.robot().shared.charts;
@@ -148,8 +148,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     ) -> MotionDerivatives<f64, NV, NV> {
         let n = self.robot().nv();
         let rows = self.robot().shared.constraints.names.len();
-        let state =
-            State { a: self.own(a), other: [&lambda.as_slice()[..rows], &[], &[]], ..self.state(t, q, v) };
+        let state = State {
+            a: self.velocity(a),
+            other: [&lambda.as_slice()[..rows], &[], &[]],
+            ..self.state(t, q, v)
+        };
         let lengths = [n, n, rows, rows, rows, n];
         let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
         self.call(Internal::MotionDerivatives, state, &mut found);
@@ -158,7 +161,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             let (own, others) = rest.split_at(n * rows);
             rest = others;
             let mut all = Square::<NV>::zeros();
-            put(&mut all, rows, own);
+            write_block(&mut all, rows, own);
             all.data.0
         };
         let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] = lengths.map(next);
@@ -221,7 +224,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         if !self.has_speeds() {
             return self.plain_integrate_derivatives(dv);
         }
-        let (way, there) = self.moved(q, dv);
+        let (way, there) = self.displaced(q, dv);
         integrate_derivatives_in_speeds(
             &self.speed_matrix(Internal::RateMatrix, q),
             &self.speed_matrix(Internal::SpeedMatrix, &there),
@@ -240,7 +243,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
             let (by_dv, by_v) = self.plain_rate_derivatives(dv, v);
             return (Square::zeros(), by_dv, by_v);
         }
-        let (way, there) = self.moved(q, dv);
+        let (way, there) = self.displaced(q, dv);
         let rates = self.converted(Internal::RatesOfSpeeds, &there, v);
         let found = self.displacement_rate(q, dv, v);
         displacement_rate_derivatives_in_speeds(
@@ -259,7 +262,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         match self.has_speeds() {
             true => {
                 let n = self.robot().nv();
-                let state = State { q: self.configuration(q), v: self.own(v), ..State::default() };
+                let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
                 self.matrix(Internal::Turning, state, (n, n), Square::zeros())
             }
             false => self.plain_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
@@ -278,7 +281,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
-        let state = State { a: self.own(a), ..self.state(t, q, v) };
+        let state = State { a: self.velocity(a), ..self.state(t, q, v) };
         self.squares(Internal::InverseDynamicsDerivatives, state, [Square::zeros(); 2]).into()
     }
 
@@ -292,7 +295,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         if self.is_constrained() {
             return self.constrained_motion_derivatives(t, q, v, tau);
         }
-        let state = State { tau: self.own(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
         let padding = [Square::zeros(), Square::zeros(), Square::identity()];
         self.squares(Internal::ForwardDynamicsDerivatives, state, padding).into()
     }
@@ -310,11 +313,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         let mut found = self.matrices(Internal::GeneralizedForcesDerivatives, state, [n, n, m]);
         for to in [&mut all.0, &mut all.1] {
             if let Some((n, block)) = found.next() {
-                put(to, n, &block);
+                write_block(to, n, &block);
             }
         }
         if let Some((n, block)) = found.next() {
-            put(&mut all.2, n, &block);
+            write_block(&mut all.2, n, &block);
         }
         all
     }

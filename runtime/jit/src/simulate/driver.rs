@@ -218,7 +218,7 @@ impl<const N: usize> Feed<'_, '_, N> {
 }
 
 impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
-    fn at(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+    fn evaluate(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         self.evaluations.set(self.evaluations.get() + 1);
         match &self.controller {
             Some((Some(_), _)) => self.u,
@@ -284,14 +284,14 @@ impl Driver<'_, '_, '_> {
         S: integrate::Method<f64> + Copy,
     {
         self.sections(start, |driver, section| {
-            driver.along(m, section, section.start, method, &mut |_, _| true)
+            driver.integrate_section(m, section, section.start, method, &mut |_, _| true)
         })
     }
 
     /// Integrates a section with one method, from a state of it. `goes_on` receives each sample, and the
     /// number of evaluations of the dynamics since the sample before; where it returns false the integration
     /// ends.
-    fn along<M, S, const N: usize>(
+    fn integrate_section<M, S, const N: usize>(
         &mut self,
         m: &M,
         section: &Section<N>,
@@ -372,15 +372,16 @@ impl Driver<'_, '_, '_> {
             let mut from = section.start;
             loop {
                 if driver.stiff_from.is_some() {
-                    return driver.along(m, section, from, implicit, &mut |_, _| true);
+                    return driver.integrate_section(m, section, from, implicit, &mut |_, _| true);
                 }
                 // The implicit method is tried on what the explicit one has done with the budget.
                 let (mut total, mut ended) = (0, true);
-                let (reached, result) = driver.along(m, section, from, explicit, &mut |_, count| {
-                    total += count;
-                    ended = total < budget;
-                    ended
-                });
+                let (reached, result) =
+                    driver.integrate_section(m, section, from, explicit, &mut |_, count| {
+                        total += count;
+                        ended = total < budget;
+                        ended
+                    });
                 let until = match &result {
                     Ok(()) if ended => return (reached, result),
                     Ok(()) => {

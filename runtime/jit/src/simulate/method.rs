@@ -62,7 +62,7 @@ impl Method {
     /// # Errors
     ///
     /// There is no such method.
-    pub fn named(name: &str, setting: Option<f64>) -> Result<Method, Error> {
+    pub fn from_name(name: &str, setting: Option<f64>) -> Result<Method, Error> {
         let names = || Self::NAMES.iter().map(|(name, ..)| *name);
         let Some((_, has_step, _)) = Self::NAMES.iter().find(|(known, ..)| *known == name) else {
             return Err(Error::unknown("method", name, names()));

@@ -33,7 +33,7 @@ const DEPTH: usize = 32;
 
 /// A module under construction.
 #[derive(Default)]
-pub struct Module {
+pub struct BinaryModule {
     types: Vec<(Vec<u8>, Vec<u8>)>,
     /// Name and type of each imported function.
     imports: Vec<(String, usize)>,
@@ -43,7 +43,7 @@ pub struct Module {
     pub tables: usize,
 }
 
-impl Module {
+impl BinaryModule {
     /// Adds a function.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl Module {
     /// The program has lanes, or reads values that are no inputs of the layout.
     pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
         let kind = self.kind(vec![I32; layout.len() + 1], Vec::new());
-        let mut writer = Writer {
+        let mut writer = BinaryWriter {
             module: self,
             program,
             layout,
@@ -145,8 +145,8 @@ enum Value {
     Nested(usize),
 }
 
-struct Writer<'a> {
-    module: &'a mut Module,
+struct BinaryWriter<'a> {
+    module: &'a mut BinaryModule,
     program: &'a Program,
     layout: &'a Layout,
     code: Vec<u8>,
@@ -154,7 +154,7 @@ struct Writer<'a> {
     locals: usize,
 }
 
-impl Writer<'_> {
+impl BinaryWriter<'_> {
     fn body(&mut self) -> Result<(), String> {
         let program = self.program;
         for (k, op) in program.instructions.iter().enumerate() {

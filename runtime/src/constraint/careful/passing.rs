@@ -1,6 +1,6 @@
 //! Accelerations in singular configurations, from the motion that passes through them.
 
-use super::{Structure, System, Triangle, Weak, far, zone};
+use super::{Structure, System, Triangle, Weak, safe_distance, zone};
 use crate::Real;
 use crate::constraint::Constrained;
 use crate::constraint::span::{Metric, Span, norm, rounding};
@@ -61,19 +61,21 @@ where
     // do not indicate the direction of motion.
     let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
-    let moves = clear && (!driven || speed * speed > rate * far::<T>() * constant(0.03));
+    let moves = clear && (!driven || speed * speed > rate * safe_distance::<T>() * constant(0.03));
     let way = Way { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
-    let (clear, within) = (far::<T>() * constant(0.4), zone::<T>() * constant(0.5));
+    let (clear, within) = (safe_distance::<T>() * constant(0.4), zone::<T>() * constant(0.5));
     let passed = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
-        let pace = far::<T>() / size(&way.heading);
+        let pace = safe_distance::<T>() / size(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
         steps.into_iter().find_map(|step| way.points(step, clear).interpolated(mechanism, structure))
     };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
     passed(&way, &[1.0, 2.0], clear)
-        .or_else(|| passed(&way.aside(mechanism, structure)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
-        .or_else(|| passed(&way.aside(mechanism, structure)?.across(&way), &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+        .or_else(|| passed(&way.deviating(mechanism, structure)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+        .or_else(|| {
+            passed(&way.deviating(mechanism, structure)?.across(&way), &[1.0, 2.0, 4.0, 8.0, 0.5], clear)
+        })
         .or_else(|| passed(&way, &[4.0, 16.0], clear))
         .or_else(|| passed(&way, &[1.0, 0.5, 0.25], within))?
         .acceleration(structure, system)
@@ -87,7 +89,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     /// Returns another path along the branch, for states with velocities that leave the singular
     /// configuration slowly in comparison with other coordinates. Its direction has components along all
     /// motions that are free shortly before and after.
-    fn aside<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn deviating<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -95,14 +97,14 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let own = far::<T>() / size(&self.heading);
+        let own = safe_distance::<T>() / size(&self.heading);
         let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
         let still = Way { v: SVector::zeros(), moves: false, ..*self };
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
             let points = still.points(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
-            let at = |h: T| points.at(mechanism, structure, h, &course);
-            Some((at(-points.step)?.free + at(points.step)?.free) * any)
+            let accelerations = |h: T| points.accelerations(mechanism, structure, h, &course);
+            Some((accelerations(-points.step)?.free + accelerations(points.step)?.free) * any)
         })?;
         let size = size(&heading);
         (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
@@ -117,7 +119,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
     /// uses the Euclidean metric of the coordinates, because heavy bodies would not move in the metric of the
     /// kinetic energy.
-    fn moved<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn projected<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -137,7 +139,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             let residuals = mechanism.constraint_residuals(t, &q);
             let gap = SVector::<T, NC>::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
             let off = size(&gap);
-            let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), zone());
+            let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), zone());
             q = mechanism.integrate(&q, &room.least(&gap));
             // The last correction is applied even if the residual before it is a rounding error.
             if off <= rounding() || last.is_some_and(|last| off * constant(2.0) > last) {
@@ -145,7 +147,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             }
             last = Some(off);
         }
-        let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), zone());
+        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), zone());
         let mut v = later;
         for _ in 0..2 {
             v += room.least(&mechanism.constraint_rates(t, &q, &v));
@@ -164,7 +166,7 @@ struct Points<'a, T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     /// Returns the permitted accelerations at distance `h` along the path.
-    fn at<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn accelerations<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -174,8 +176,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let (t, q, v) = self.way.moved(mechanism, structure, h, course)?;
-        let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
+        let (t, q, v) = self.way.projected(mechanism, structure, h, course)?;
+        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
         let bend = room.least(&mechanism.constraint_bias(t, &q, &v));
         let possible = Possible { free: room.free(), bend };
         (room.regular && possible.bend.iter().all(|a| a.is_finite())).then_some(possible)
@@ -191,17 +193,18 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
         let (step, half) = (self.step, constant::<T>(0.5));
-        let at = |h: T, course: &Course<T, NV>| self.at(mechanism, structure, h, course);
+        let accelerations =
+            |h: T, course: &Course<T, NV>| self.accelerations(mechanism, structure, h, course);
         let mut course = (SVector::zeros(), SVector::zeros());
         // The path has the smallest curvature that the branch permits.
         for _ in 0..if self.way.moves { 2 } else { 0 } {
-            let (before, after) = (at(-step, &course)?.bend, at(step, &course)?.bend);
+            let (before, after) = (accelerations(-step, &course)?.bend, accelerations(step, &course)?.bend);
             course = ((before + after) * half, (after - before) * (half / step));
         }
         let mut sum = Possible { free: SMatrix::zeros(), bend: SVector::zeros() };
         for (k, weight) in [(1.0, 0.75), (2.0, -0.3), (3.0, 0.05)] {
             for side in [-k, k] {
-                let possible = at(step * constant(side), &course)?;
+                let possible = accelerations(step * constant(side), &course)?;
                 sum.free += possible.free * constant::<T>(weight);
                 sum.bend += possible.bend * constant::<T>(weight);
             }
@@ -220,12 +223,12 @@ struct Room<T, const NV: usize, const NC: usize> {
 
 impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
     /// Factorises the rows above the relative magnitude `clear`, and the smaller ones up to rounding errors.
-    fn of(structure: &Structure<'_, NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
-        let mut span = Span::of(&Metric::of(&SMatrix::identity().data.0), jacobian, &structure.groups);
+    fn new(structure: &Structure<'_, NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
+        let mut span = Span::new(&Metric::new(&SMatrix::identity().data.0), jacobian, &structure.groups);
         span.extend(clear, structure.rank);
         let regular = span.rank >= structure.rank;
         span.extend(rounding(), structure.rank);
-        let triangle = Triangle::of(&span);
+        let triangle = Triangle::new(&span);
         Self { span, triangle, regular }
     }
 

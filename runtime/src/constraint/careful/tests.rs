@@ -160,17 +160,18 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
             let rest = (k + 1..n).fold(rows[k][n], |sum, j| sum - rows[k][j] * x[j]);
             x[k] = rest / rows[k][k];
         }
-        let at = |k: usize| order.iter().position(|o| *o == k).map_or(0.0, |place| x[place].0);
-        (SVector::from_fn(|k, _| at(k)), SVector::from_fn(|k, _| at(NV + k)))
+        let unknown = |k: usize| order.iter().position(|o| *o == k).map_or(0.0, |place| x[place].0);
+        (SVector::from_fn(|k, _| unknown(k)), SVector::from_fn(|k, _| unknown(NV + k)))
     }
 
     fn solved<T: Real>(&self, rank: usize) -> (SVector<f64, NV>, SVector<f64, NC>) {
-        let to = |x: f64| constant::<T>(x);
+        let convert = |x: f64| constant::<T>(x);
         let structure = Structure { groups: core::array::from_fn(|k| k), determining: &[], rank };
-        let (mass, jacobian) = (self.mass.map(to), self.jacobian.map(to));
-        let (a, lambda) = System { mass, jacobian, force: self.force.map(to), bias: self.bias.map(to) }
-            .solve(&structure, zone(), Weak::Taken)
-            .0;
+        let (mass, jacobian) = (self.mass.map(convert), self.jacobian.map(convert));
+        let (a, lambda) =
+            System { mass, jacobian, force: self.force.map(convert), bias: self.bias.map(convert) }
+                .solve(&structure, zone(), Weak::Taken)
+                .0;
         (a.map(crate::private::to_f64), lambda.map(crate::private::to_f64))
     }
 }
@@ -182,12 +183,12 @@ fn check<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near
     for case in 0..300 {
         let all = Sample::<NV, NC>::random(&mut random, spread, near);
         // Numbers rounded to `T`.
-        let to = |x: f64| crate::private::to_f64(constant::<T>(x));
+        let round = |x: f64| crate::private::to_f64(constant::<T>(x));
         let system = Sample {
-            mass: all.mass.map(to),
-            jacobian: all.jacobian.map(to),
-            force: all.force.map(to),
-            bias: all.bias.map(to),
+            mass: all.mass.map(round),
+            jacobian: all.jacobian.map(round),
+            force: all.force.map(round),
+            bias: all.bias.map(round),
         };
         let (a, lambda) = system.exact();
         let (mut a_error, mut lambda_error) = (10.0 * epsilon * a.amax(), 10.0 * epsilon * lambda.amax());

@@ -38,7 +38,7 @@ pub fn rows<'g>(model: &Model<'g>, balance: &[Expr<'g>], at: &Equilibrium<'g>) -
 
 /// Returns the rank of a symbol of the linear equations, which determines its position in a printed product.
 pub fn rank(symbol: Symbol) -> Rank {
-    match Quantity::of(symbol) {
+    match Quantity::from_symbol(symbol) {
         Quantity::Deviation(_) => Rank::Position,
         Quantity::Velocity(_) | Quantity::Laplace => Rank::Rate,
         Quantity::Acceleration(_) => Rank::Acceleration,

@@ -48,14 +48,14 @@ impl<'g> Rest<'g> {
     pub fn evaluate(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
-        let moved = replace_exactly(e, &|s| match Quantity::of(s) {
+        let moved = replace_exactly(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.configuration.get(k).copied(),
             Quantity::Input(k) => self.inputs.get(k).copied(),
             Quantity::Given(Supplied::Multiplier, k) => self.multipliers.get(k).copied(),
             Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero),
             _ => None,
         });
-        replace_exactly(&moved, &|s| match Quantity::of(s) {
+        replace_exactly(&moved, &|s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => self.states.iter().find(|(of, _)| *of == k).map(|(_, value)| *value),
             _ => None,
         })
@@ -109,12 +109,13 @@ fn checked<'g>(
     let mut rest = Rest::new(at);
     let name = &at.name;
     if !model.frictions.is_empty() || model.constraints.iter().any(|c| !c.friction.is_empty()) {
-        return Err((format!("dry friction has no linear equations about `{name}`"), DRY_FRICTION));
+        return Err((format!("dry friction cannot be linearised about `{name}`"), DRY_FRICTION));
     }
     if let Some(k) = not_unit(model, &rest, normal) {
         return Err((
             format!("the quaternion of `{}` in `{name}` has not the length one", model.configuration[k]),
-            "its components are those of a unit quaternion; what is not named is an orientation along the axes",
+            "its components are those of a unit quaternion; what is not named is an orientation along the \
+             axes",
         ));
     }
     let kept = linear_rows(model, balance, at).split_off(balance.len());
@@ -139,8 +140,9 @@ fn checked<'g>(
         is_zero(-force, normal, model).map_err(|left| {
             let velocity = &model.velocities[k].0;
             (
-                format!("`{name}` is no equilibrium: the force {left} on `{velocity}` is left"),
-                "choose coordinates where it is zero, or hold an input at a value that balances it: `#[equilibrium(joint = angle, motor = value)]`",
+                format!("`{name}` is not an equilibrium: the residual force {left} acts on `{velocity}`"),
+                "choose coordinates where it is zero, or hold an input at a value that balances it: \
+                 `#[equilibrium(joint = angle, motor = value)]`",
             )
         })?;
     }
@@ -159,8 +161,9 @@ fn check_kept<'g>(
     for (c, row) in model.constraints.iter().zip(rest.evaluate(kept)) {
         is_zero(row, normal, model).map_err(|left| {
             (
-                format!("`{name}` does not fulfil the constraint `{}`: {left} is left of it", c.name),
-                "give the coordinates values that fulfil it: `#[equilibrium(joint = value)]`, with expressions of the parameters",
+                format!("`{name}` does not satisfy the constraint `{}`: the residual is {left}", c.name),
+                "give the coordinates values that fulfil it: `#[equilibrium(joint = value)]`, with \
+                 expressions of the parameters",
             )
         })?;
     }
@@ -265,7 +268,10 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let moves = |e: &Expr<'_>| {
         let symbols = crate::kinematics::symbols_in(&[*e]);
         symbols.into_iter().any(|s| {
-            matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Velocity(_) | Quantity::Input(_))
+            matches!(
+                Quantity::from_symbol(s),
+                Quantity::Configuration(_) | Quantity::Velocity(_) | Quantity::Input(_)
+            )
         })
     };
     suspects.retain(|(_, argument)| moves(argument));
@@ -346,5 +352,8 @@ pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
         (values.iter().all(|value| value.is_finite()) && largest < HUGE).then_some(largest)
     };
     let finite = trials(largest).len() >= ENOUGH;
-    (!finite).then_some("a distance or an angle from which they are computed is singular there: declare the equilibrium elsewhere, or give the force otherwise")
+    (!finite).then_some(
+        "a distance or an angle from which they are computed is singular there: declare the equilibrium \
+         elsewhere, or write the force differently",
+    )
 }

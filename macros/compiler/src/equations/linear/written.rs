@@ -55,7 +55,7 @@ impl<'a, 'g> Words<'a, 'g> {
             state.cloned().unwrap_or_default()
         };
         let deviation_name = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
-        match Quantity::of(symbol) {
+        match Quantity::from_symbol(symbol) {
             Quantity::Deviation(k) => (deviation_name(k), 0),
             Quantity::Velocity(k) => (deviation_name(k), 1),
             Quantity::Acceleration(k) => (deviation_name(k), 2),
@@ -170,7 +170,7 @@ fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {
         [] => format!("{}: all coordinates and inputs at zero.", words.at.name),
-        all => format!("{}: {}; what is not named is zero.", words.at.name, all.join(", ")),
+        all => format!("{}: {}; other values are zero.", words.at.name, all.join(", ")),
     };
     let mut out = filled(&header) + "\n\n";
     out.extend(lines.equations.iter().map(|(motion, force)| line(&format!("{motion} = {force}"))));
@@ -200,7 +200,8 @@ fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
         false => {
             let all = all_of(&divided);
             format!(
-                "Motions like exp({root} t), with the roots {root} of (divided by {all}, taken to be positive)"
+                "Motions like exp({root} t), with the roots {root} of (divided by {all}, taken to be \
+                 positive)"
             )
         }
     }
@@ -215,7 +216,7 @@ fn verdict(stability: &Stability) -> &'static str {
         Verdict::Oscillation(_) => "Stable, all deviations oscillate, where",
         Verdict::NotAsymptotic => "Not asymptotically stable: some deviations do not die away.",
         Verdict::Unstable => "Unstable: some deviations grow.",
-        Verdict::Nothing => "All roots are zero: nothing brings deviations back.",
+        Verdict::Nothing => "All roots are zero: deviations are not restored.",
         Verdict::Long => "The conditions of stability are too long to be read.",
     }
 }
@@ -226,7 +227,8 @@ fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
     match stability.zeros {
         1 => format!("One root is {root} = 0: that is said of the others; there is a deviation that stays."),
         n => format!(
-            "{n} roots are {root} = 0: that is said of the others; there are deviations that stay or grow in proportion to time."
+            "{n} roots are {root} = 0: that is said of the others; there are deviations that stay or grow in \
+             proportion to time."
         ),
     }
 }
@@ -238,7 +240,7 @@ fn legend(words: &Words<'_, '_>) -> String {
     let mut sentences = Vec::new();
     if primes || !words.at.states.is_empty() {
         sentences.push(
-            "In the equations names stand for deviations from the values at rest, primes mark their rates."
+            "In the equations names denote deviations from the values at rest, primes their rates."
                 .to_string(),
         );
     } else {

@@ -103,7 +103,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 own - (0..nc).map(|i| shares[i] * j[i * nv + c]).sum::<f64>()
             })
             .collect();
-        let moving = |s: Symbol| match Quantity::of(s) {
+        let moving = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             _ => at(s),
         };
@@ -131,7 +131,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 let of_rates: Vec<Expr<'_>> = speeds.of_rates().concat();
                 let y = eval(&of_rates, &moving);
                 let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
-                let in_speeds = |s: Symbol| match Quantity::of(s) {
+                let in_speeds = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => w[k],
                     _ => at(s),
                 };
@@ -142,7 +142,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 (w, rates)
             }
         };
-        let values = |s: Symbol| match Quantity::of(s) {
+        let values = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             Quantity::Acceleration(k) => a[k],
             _ => at(s),

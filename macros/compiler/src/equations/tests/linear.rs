@@ -40,7 +40,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     balance.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
     balance.extend(at.states.iter().map(|state| -state.rate));
     let value = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
-        eval(&balance, &|s| match Quantity::of(s) {
+        eval(&balance, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
             Quantity::Input(k) => u[k],
@@ -61,7 +61,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     };
     let still = vec![0.0; nv];
     let coefficients = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
-        let one = |s: Symbol| match Quantity::of(s) {
+        let one = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Parameter(_) => parameter(s),
             _ => f64::from(u8::from(s == what.symbol())),
         };
@@ -129,7 +129,7 @@ fn a_pendulum() {
         &[
             "m l² hinge'' + c hinge' - g m l hinge = motor\n",
             "    -g l > 0\n",
-            "up: hinge = pi; what is not named is zero.\n",
+            "up: hinge = pi; other values are zero.\n",
         ],
     );
     // At a right angle gravity has no stiffness.

@@ -50,7 +50,7 @@ fn state_values<'a>(
     tau: &'a [f64],
 ) -> impl Fn(Symbol) -> f64 + use<'a> {
     let symbol = state(model, seed);
-    move |s| match Quantity::of(s) {
+    move |s| match Quantity::from_symbol(s) {
         Quantity::Momentum(k) => p[k],
         Quantity::Force(k) => tau[k],
         _ => symbol(s),
@@ -154,7 +154,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 let value = state_values(&model, seed, &p, &tau);
                 let (a, w) = (acceleration.values(&value), velocity.values(&value));
                 let displaced_value = |h: f64| {
-                    let value = |s: Symbol| match Quantity::of(s) {
+                    let value = |s: Symbol| match Quantity::from_symbol(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
                                 .iter()
@@ -176,7 +176,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
-                let full = |s: Symbol| match Quantity::of(s) {
+                let full = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => {
                         cyclic.iter().position(|c| *c == k).map_or_else(|| value(s), |c| w[c])
                     }
@@ -214,13 +214,13 @@ fn printed_reduction_is_that_of_the_functions() {
                 let tau = eval(&inputs, &symbol);
                 let symbol = state_values(&model, seed, &p, &tau);
                 let a = eval(&functions.acceleration, &symbol);
-                let one = |s: Symbol| match Quantity::of(s) {
+                let one = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(_) => 1.0,
                     _ => symbol(s),
                 };
                 let inertias: Vec<f64> =
                     printed.determinants.iter().map(|d| printed.ring.evaluate(d, &one)).collect();
-                let value = |s: Symbol| match Quantity::of(s) {
+                let value = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(k) => inertias[k],
                     Quantity::Acceleration(k) => {
                         others.iter().position(|o| *o == k).map_or(f64::NAN, |o| a[o])

@@ -71,7 +71,7 @@ fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
 
 /// Returns the definition of the local constant of an argument or parameter.
 fn input(symbol: Symbol, scope: &Scope<'_>) -> String {
-    let quantity = Quantity::of(symbol);
+    let quantity = Quantity::from_symbol(symbol);
     match (quantity, local_name(quantity, scope)) {
         (Quantity::Time, _) => String::new(),
         (Quantity::Parameter(k), Some(name)) => {
@@ -150,7 +150,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Returns the index of the statement that reads an argument or parameter, after those of the instructions.
+    /// Returns the index of the statement that reads an argument or parameter, after those of the
+    /// instructions.
     fn reading(&self, symbol: Symbol) -> Vec<usize> {
         let at = self.read.iter().position(|known| *known == symbol);
         at.map(|at| self.program.instructions.len() + at).into_iter().collect()
@@ -205,7 +206,7 @@ impl Writer<'_> {
         match o {
             Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
             Operand::Const(c) => Piece::plain(constant(c)),
-            Operand::Symbol(s) => match local_name(Quantity::of(s), self.scope) {
+            Operand::Symbol(s) => match local_name(Quantity::from_symbol(s), self.scope) {
                 Some(name) => Piece { needs: self.reading(s), ..Piece::plain(name) },
                 None => self.missing(),
             },

@@ -259,7 +259,8 @@ fn called_linear(
         products(body, n, "inverse", &[("more_by_q", n), ("more_by_v", n)], support);
         let _ = writeln!(
             body,
-            "    for (int k = 0; k < {}; ++k) {{\n        by_q[k] -= more_by_q[k];\n        by_v[k] -= more_by_v[k];\n    }}",
+            "    for (int k = 0; k < {}; ++k) {{\n        by_q[k] -= more_by_q[k];\n        by_v[k] \
+             -= more_by_v[k];\n    }}",
             n * n
         );
     } else {

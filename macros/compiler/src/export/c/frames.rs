@@ -26,20 +26,23 @@ const ACCESSES: [Access; 4] = [
     Access {
         name: "frame_placement",
         arguments: &[Argument::Q],
-        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in ground axes), then the position of its origin, m",
+        result: "out: 12 numbers, the rotation matrix column by column (the frame's axes in ground axes), \
+                 then the position of its origin, m",
         docs: "Placement of a frame in the ground.",
     },
     Access {
         name: "frame_velocity",
         arguments: &[Argument::Q, Argument::V],
         result: "out: 6 numbers, m/s, then rad/s",
-        docs: "Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then angular velocity.",
+        docs: "Velocity of a frame relative to the ground, in ground axes: velocity of its origin, then \
+               angular velocity.",
     },
     Access {
         name: "frame_acceleration",
         arguments: &[Argument::Q, Argument::V, Argument::A],
         result: "out: 6 numbers, m/s^2, then rad/s^2",
-        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: acceleration of its origin, then angular acceleration.",
+        docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: acceleration \
+               of its origin, then angular acceleration.",
     },
     Access {
         name: "frame_jacobian",
@@ -293,7 +296,8 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         if acceleration {
             let _ = write!(
                 body,
-                "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n"
+                "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        \
+                 lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n"
             );
             copy(&mut body, "        ", "p[12 + i]", "next[i]", 12);
         }

@@ -216,7 +216,7 @@ pub fn place(results: &[Given], mut k: usize) -> Option<String> {
 /// Writes the call of a function whose results are inputs of the program, if the program uses them.
 fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) {
     let argument = Argument::Called(called);
-    if !f.program.symbols().iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
+    if !f.program.symbols().iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
         return;
     }
     let (name, [forces, derivatives]) = (argument.name(), o.passive);

@@ -22,13 +22,16 @@ const SPACE: [Space; 3] = [
         name: "integrate",
         arguments: &["q", "dv"],
         results: &["result"],
-        docs: "The configuration that is reached from `q` in one unit of time with the constant joint velocities to which the generalized speeds `dv` correspond at `q`, with normalised quaternions. The result may be stored in `q`.",
+        docs: "The configuration that is reached from `q` in one unit of time with the constant joint \
+               velocities to which the generalized speeds `dv` correspond at `q`, with normalised \
+               quaternions. The result may be stored in `q`.",
     },
     Space {
         name: "difference",
         arguments: &["from", "to"],
         results: &["result"],
-        docs: "The generalized speeds, at `from`, that lead from one configuration to another in one unit of time.",
+        docs: "The generalized speeds, at `from`, that lead from one configuration to another in one unit of \
+               time.",
     },
     Space {
         name: "displacement_rate",
@@ -43,7 +46,8 @@ const TO_FIRST_ORDER: [Space; 2] = [
         name: "integrate_derivatives",
         arguments: &["q", "dv"],
         results: &["by_q", "by_dv"],
-        docs: "Derivatives of the result of `integrate` by `q` and `dv`, in generalized speeds at the result: NV by NV each, column by column.",
+        docs: "Derivatives of the result of `integrate` by `q` and `dv`, in generalized speeds at the \
+               result: NV by NV each, column by column.",
     },
     Space {
         name: "displacement_rate_derivatives",

@@ -13,7 +13,8 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     (
         "integrate",
         ["q", "dv"],
-        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time, with normalised quaternions. The result may be stored in `q`.",
+        "The configuration that is reached from `q` with the constant velocity `dv` in one unit of time, \
+         with normalised quaternions. The result may be stored in `q`.",
     ),
     (
         "difference",
@@ -130,14 +131,17 @@ const TO_FIRST_ORDER: [ToFirstOrder; 2] = [
         arguments: &["dv"],
         results: ["by_q", "by_dv"],
         plain: "1.0",
-        docs: "Derivatives of the result of `integrate` by `q` and `dv`, which are the same for all `q`, with displacements of ball and free joints in body axes: NV by NV each, column by column; identities for plain coordinates.",
+        docs: "Derivatives of the result of `integrate` by `q` and `dv`, which are the same for all `q`, \
+               with displacements of ball and free joints in body axes: NV by NV each, column by column; \
+               identities for plain coordinates.",
     },
     ToFirstOrder {
         name: "tangent_rate",
         arguments: &["dv", "v"],
         results: ["by_dv", "by_v"],
         plain: "0.0",
-        docs: "Derivatives of `tangent_rate`: NV by NV each, column by column; zero and the identity for plain coordinates.",
+        docs: "Derivatives of `tangent_rate`: NV by NV each, column by column; zero and the identity for \
+               plain coordinates.",
     },
 ];
 
@@ -158,7 +162,8 @@ fn define_derivatives(
 ) {
     let [first, second] = of.results;
     let mut body = format!(
-        "    for (int k = 0; k < {0} * {0}; ++k) {{\n        {first}[k] = k % {1} == 0 ? {2} : 0.0;\n        {second}[k] = k % {1} == 0 ? 1.0 : 0.0;\n    }}\n",
+        "    for (int k = 0; k < {0} * {0}; ++k) {{\n        {first}[k] = k % {1} == 0 ? {2} : 0.0;\n        \
+         {second}[k] = k % {1} == 0 ? 1.0 : 0.0;\n    }}\n",
         o.nv,
         o.nv + 1,
         of.plain
@@ -168,7 +173,9 @@ fn define_derivatives(
         let given: Vec<String> = of.arguments.iter().map(|name| format!("{name} + {at}")).collect();
         let _ = writeln!(
             body,
-            "    {{\n        double a[{0}], b[{0}];\n        lw_{kind}_{1}_derivatives({2}, a, b);\n        for (int k = 0; k < {0}; ++k) {{\n            const int at = ({at} + k / {n}) * {3} + {at} + k % {n};\n            {first}[at] = a[k];\n            {second}[at] = b[k];\n        }}\n    }}",
+            "    {{\n        double a[{0}], b[{0}];\n        lw_{kind}_{1}_derivatives({2}, a, b);\n        \
+             for (int k = 0; k < {0}; ++k) {{\n            const int at = ({at} + k / {n}) * {3} + {at} + k \
+             % {n};\n            {first}[at] = a[k];\n            {second}[at] = b[k];\n        }}\n    }}",
             n * n,
             of.name,
             given.join(", "),

@@ -79,10 +79,12 @@ mod tests {
 
     #[test]
     fn words_and_numbers_become_single() {
-        let code = "/* 1.5 double */ double x[3] = {1.5, -2e-7, 1e300}; y = sqrt(x[0]) + my_sin(x) + self->sin + 0.1;";
+        let code = "/* 1.5 double */ double x[3] = {1.5, -2e-7, 1e300}; y = sqrt(x[0]) + my_sin(x) + \
+                    self->sin + 0.1;";
         assert_eq!(
             in_single_precision(code),
-            "/* 1.5 double */ float x[3] = {1.5f, -2e-7f, HUGE_VALF}; y = sqrtf(x[0]) + my_sin(x) + self->sin + 0.1f;"
+            "/* 1.5 double */ float x[3] = {1.5f, -2e-7f, HUGE_VALF}; y = sqrtf(x[0]) + my_sin(x) + \
+             self->sin + 0.1f;"
         );
     }
 }

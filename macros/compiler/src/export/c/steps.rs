@@ -20,13 +20,16 @@ use std::fmt::Write;
 const METHODS: [(&str, &str); 2] = [
     (
         "semi_implicit_euler",
-        "the semi-implicit Euler method, which updates the velocity with the accelerations at the start, then the configuration with the new velocity",
+        "the semi-implicit Euler method, which updates the velocity with the accelerations at the start, \
+         then the configuration with the new velocity",
     ),
     ("rk4", "the classical method of Runge and Kutta"),
 ];
 
 const PUT_H: &str = "        by_h[k] = motion[LW_BY_H + k];\n        by_h[@N@ + k] = v[LW_BY_H + k];\n";
-const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[LW_BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[LW_BY_U + j * @N@ + k];\n        }\n";
+const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = \
+                          motion[LW_BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = \
+                          v[LW_BY_U + j * @N@ + k];\n        }\n";
 
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
@@ -100,7 +103,8 @@ impl<'a> Steps<'a> {
         let mut text = String::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
             let says = format!(
-                "One step of {about}, of `h` seconds, with constant inputs `u`: configuration and velocity after it. The results may be stored in `q` and `v`."
+                "One step of {about}, of `h` seconds, with constant inputs `u`: configuration and velocity \
+                 after it. The results may be stored in `q` and `v`."
             );
             text.push_str(&docs::function(&[says], &o.timed(&STATE), &next(o), o));
             let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_step"), &NEXT));
@@ -109,7 +113,10 @@ impl<'a> Steps<'a> {
             }
             let by_h = if o.time { "" } else { ", and `by_h` is its derivative by the length of the step" };
             let says = format!(
-                "The step of `{method}_step` with its Jacobians, exact to rounding: with `x` the displacement of the configuration (as `integrate` takes it), then the change of the velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the change of the inputs{by_h}."
+                "The step of `{method}_step` with its Jacobians, exact to rounding: with `x` the \
+                 displacement of the configuration (as `integrate` takes it), then the change of the \
+                 velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the \
+                 change of the inputs{by_h}."
             );
             text.push_str(&docs::function(&[says], &o.timed(&STATE), &transition_results(o), o));
             let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_transition"), &transition(o)));
@@ -221,7 +228,8 @@ impl<'a> Steps<'a> {
         }
         let _ = writeln!(
             text,
-            "    for (int k = 0; k < {}; ++k) {{\n        by_u[k] = 0.0;\n    }}\n    lw_add_products({}, by_tau, force_by_u, by_u);",
+            "    for (int k = 0; k < {}; ++k) {{\n        by_u[k] = 0.0;\n    }}\n    lw_add_products({}, \
+             by_tau, force_by_u, by_u);",
             o.nv * o.nu,
             o.nu
         );
@@ -246,13 +254,23 @@ impl<'a> Steps<'a> {
             let _ = match function {
                 "integrate" => writeln!(
                     text,
-                    "    {{\n        double by_q[{0}], by_dv[{0}];\n        lw_{kind}_integrate_derivatives(displacement + {at}, by_q, by_dv);\n        lw_moved_block({n}, {at}, by_dv, displacement, motion);\n        for (int k = 0; k < {0}; ++k) {{\n            motion[(1 + {at} + k / {n}) * {1} + {at} + k % {n}] += by_q[k];\n        }}\n    }}",
+                    "    {{\n        double by_q[{0}], by_dv[{0}];\n        \
+                     lw_{kind}_integrate_derivatives(displacement + {at}, by_q, by_dv);\n        \
+                     lw_moved_block({n}, {at}, by_dv, displacement, motion);\n        for (int k = 0; k < \
+                     {0}; ++k) {{\n            motion[(1 + {at} + k / {n}) * {1} + {at} + k % {n}] += \
+                     by_q[k];\n        }}\n    }}",
                     n * n,
                     o.nv
                 ),
                 _ => writeln!(
                     text,
-                    "    {{\n        double by_dv[{0}], by_v[{0}], of_v[{1}];\n        lw_{kind}_tangent_rate_derivatives(displacement + {at}, v + {at}, by_dv, by_v);\n        lw_{kind}_tangent_rate(displacement + {at}, v + {at}, rate + {at});\n        lw_moved_block({n}, {at}, by_dv, displacement, rate);\n        lw_moved_block({n}, {at}, by_v, v, of_v);\n        for (int j = 1; j <= @COLUMNS@; ++j) {{\n            for (int k = {at}; k < {at} + {n}; ++k) {{\n                rate[j * {2} + k] += of_v[j * {2} + k];\n            }}\n        }}\n    }}",
+                    "    {{\n        double by_dv[{0}], by_v[{0}], of_v[{1}];\n        \
+                     lw_{kind}_tangent_rate_derivatives(displacement + {at}, v + {at}, by_dv, \
+                     by_v);\n        lw_{kind}_tangent_rate(displacement + {at}, v + {at}, rate + \
+                     {at});\n        lw_moved_block({n}, {at}, by_dv, displacement, rate);\n        \
+                     lw_moved_block({n}, {at}, by_v, v, of_v);\n        for (int j = 1; j <= @COLUMNS@; ++j) \
+                     {{\n            for (int k = {at}; k < {at} + {n}; ++k) {{\n                rate[j * \
+                     {2} + k] += of_v[j * {2} + k];\n            }}\n        }}\n    }}",
                     n * n,
                     (1 + 2 * o.nv + o.nu + 1) * o.nv,
                     o.nv

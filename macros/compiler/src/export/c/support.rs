@@ -119,7 +119,8 @@ impl Support {
         let asked = QUANTITIES.iter().zip(self.atmosphere).filter(|(_, asked)| *asked);
         texts.extend(asked.map(|((name, variable), _)| {
             format!(
-                "static double lw_{name}(double h) {{\n    double temperature, pressure, rate;\n    lw_atmosphere(h, &temperature, &pressure, &rate);\n    return {variable};\n}}\n"
+                "static double lw_{name}(double h) {{\n    double temperature, pressure, rate;\n    \
+                 lw_atmosphere(h, &temperature, &pressure, &rate);\n    return {variable};\n}}\n"
             )
         }));
         texts.join("\n").replace("@NV@", &nv.max(1).to_string()).replace("@PREFIX@", prefix)

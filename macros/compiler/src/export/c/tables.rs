@@ -9,7 +9,15 @@ pub fn kind(o: &Outline<'_>) -> String {
     if o.tables.is_empty() {
         return String::new();
     }
-    let text = "/* A function of one to three variables by its values on a grid. Between the points it is linear in each variable, or\n * smooth: cubic along each axis, with slopes of the parabolas through three points. Beyond the grid it keeps the value\n * of the edge, or is extrapolated in straight lines. Points increase strictly, two on each axis or more. */\ntypedef struct @PREFIX@_table {\n    const double *axes[3]; /* the points of each axis; variables that it does not have need none */\n    int points[3]; /* how many there are */\n    const double *values; /* in the order of the points, those along the last axis side by side */\n    int smooth; /* 1 for continuous slopes, else 0 */\n    int extrapolated; /* 1 to go on in straight lines, else 0 */\n} @PREFIX@_table;\n\n";
+    let text = "/* A function of one to three variables by its values on a grid. Between the points it is \
+                linear in each variable, or\n * smooth: cubic along each axis, with slopes of the parabolas \
+                through three points. Beyond the grid it keeps the value\n * of the edge, or is extrapolated \
+                in straight lines. Points increase strictly, two on each axis or more. */\ntypedef struct \
+                @PREFIX@_table {\n    const double *axes[3]; /* the points of each axis; variables that it \
+                does not have need none */\n    int points[3]; /* how many there are */\n    const double \
+                *values; /* in the order of the points, those along the last axis side by side */\n    int \
+                smooth; /* 1 for continuous slopes, else 0 */\n    int extrapolated; /* 1 to go on in \
+                straight lines, else 0 */\n} @PREFIX@_table;\n\n";
     text.replace("@PREFIX@", &o.prefix)
 }
 

@@ -81,10 +81,14 @@ mod tests {
 
     #[test]
     fn functions_become_templates() {
-        let code = "static const int lw_of[2] = {0, 1};\nstatic void lw_x(int n, const double *a, double b[3],\n    double *c) {\n    double *d = c + 1;\n    d[2] = 0.0;\n}\nvoid p_y(void) {\n}\n";
+        let code = "static const int lw_of[2] = {0, 1};\nstatic void lw_x(int n, const double *a, double \
+                    b[3],\n    double *c) {\n    double *d = c + 1;\n    d[2] = 0.0;\n}\nvoid p_y(void) {\n\
+                    }\n";
         assert_eq!(
             device_functions(code),
-            "LW_TABLE const int lw_of[2] = {0, 1};\ntemplate <class T0, class T1, class T2> LW_DEVICE void lw_x(int n, T0 a, T1 b, T2 c) {\n    auto d = c + 1;\n    d[2] = lw_zero();\n}\nLW_DEVICE void p_y() {\n}\n"
+            "LW_TABLE const int lw_of[2] = {0, 1};\ntemplate <class T0, class T1, class T2> LW_DEVICE void \
+             lw_x(int n, T0 a, T1 b, T2 c) {\n    auto d = c + 1;\n    d[2] = lw_zero();\n}\nLW_DEVICE void \
+             p_y() {\n}\n"
         );
     }
 }

@@ -59,7 +59,8 @@ fn launch(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
     };
     let _ = writeln!(
         text,
-        "inline lw_error {p}_{0}_batch({1}, lw_stream stream = 0) {{\n{check}    LW_LAUNCH({p}_{0}_kernel, {2});\n}}\n#endif\n",
+        "inline lw_error {p}_{0}_batch({1}, lw_stream stream = 0) {{\n{check}    LW_LAUNCH({p}_{0}_kernel, \
+         {2});\n}}\n#endif\n",
         f.name,
         declared.join(", "),
         passed.join(", ")

@@ -55,7 +55,9 @@ impl<'a> Products<'a> {
             let by = ["by_q", "by_v", ["by_a", "by_tau"][k]];
             batch.results = by.map(|name| Array::new(name, self.nv)).to_vec();
             batch.docs = vec![format!(
-                "Products of a row vector `w` with the Jacobians of `{of}` by its arguments: the gradient of a loss by them, with `w` the gradient of the loss by the result. The gradient by `q` is along displacements, as `integrate` takes them."
+                "Products of a row vector `w` with the Jacobians of `{of}` by its arguments: the gradient of \
+                 a loss by them, with `w` the gradient of the loss by the result. The gradient by `q` is \
+                 along displacements, as `integrate` takes them."
             )];
             all.push(batch);
         }

@@ -6,11 +6,13 @@
 mod description;
 mod model;
 mod units;
+mod values;
 mod variables;
 
 use super::c::{self, Signatures, Unfit};
 use crate::derive::Output;
 use crate::mechanism::Model;
+pub use values::{StartValues, TableValues};
 use variables::Variables;
 
 /// Handwritten sources, which need no other file than `lw_model.h` and the functions in C. No identifier of a
@@ -27,36 +29,6 @@ const SOURCES: [(&str, &str); 7] = [
 
 /// Source file that includes all headers.
 const MAIN: &str = "lw_fmi3.c";
-
-/// Values of a table on a grid.
-#[derive(Clone, Debug, Default)]
-pub struct TableValues {
-    /// Grid points along each axis.
-    pub axes: Vec<Vec<f64>>,
-    /// Values in the order of the grid points, with the last axis varying fastest.
-    pub values: Vec<f64>,
-    /// Whether the table is interpolated by splines.
-    pub smooth: bool,
-    /// Whether the table is extrapolated beyond its grid.
-    pub extrapolated: bool,
-}
-
-/// Start values of the variables.
-#[derive(Clone, Debug, Default)]
-pub struct StartValues {
-    /// Parameters, among them the states of first order.
-    pub parameters: Vec<f64>,
-    /// Configuration.
-    pub q: Vec<f64>,
-    /// Velocity.
-    pub v: Vec<f64>,
-    /// Inputs.
-    pub u: Vec<f64>,
-    /// Tables, which are constant.
-    pub tables: Vec<TableValues>,
-    /// States of first order: their indices among the parameters.
-    pub states: Vec<usize>,
-}
 
 /// Texts of the files of an FMU, and features that it does not have.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 //! names that the handwritten sources call.
 
 use super::super::c::{Signatures, mentions, safe};
+use super::values::{StartValues, TableValues};
 use super::variables::{OutputFunction, VariableRole, Variables};
-use super::{StartValues, TableValues};
 use crate::derive::Output;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;

@@ -1,7 +1,8 @@
 //! Variables of an FMU, in the order of their value references.
 
 use super::super::c::Signatures;
-use super::{StartValues, units};
+use super::units;
+use super::values::StartValues;
 use crate::mechanism::Model;
 
 /// VariableRole of a variable.

@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
             let group = any.number("group", cx).map_or(0.0, |group| group.value);
             let disabled = self.settings.disabled_groups.contains(&group);
             if disabled && !off {
-                self.count("actuators of groups that are switched off", 1);
+                self.count("actuators of disabled groups", 1);
             }
             if !off && !disabled {
                 self.actuator(&any, tendons, (&mut names, &mut efforts), cx);
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         match said.as_slice() {
             [_] | ["slidersite", "cranksite"] => {}
             [] => {
-                let message = "an actuator that acts on nothing";
+                let message = "an actuator without a target";
                 cx.error(&place(element.node, cx), message, |d| {
                     d.help("expected `joint`, `tendon` or `site`").help(OTHER_INPUTS)
                 });
@@ -142,7 +142,7 @@ impl<'a> Reader<'a> {
             }
             several => {
                 let message =
-                    format!("an actuator acts on one thing, but here are `{}`", several.join("` and `"));
+                    format!("an actuator has one target, but here are `{}`", several.join("` and `"));
                 cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
                 return None;
             }
@@ -182,7 +182,7 @@ impl<'a> Reader<'a> {
         let Some((_, at)) = laws.first() else { return };
         if element.node.has_attribute("site") {
             let message = "`damping` and `armature` of an actuator on a site are not supported";
-            cx.error(at, message, |d| d.help("MuJoCo has them on joints and tendons alone"));
+            cx.error(at, message, |d| d.help("MuJoCo has them only on joints and tendons"));
             return;
         }
         if let Some(rotor) = rotor.filter(|rotor| rotor.value < 0.0) {
@@ -216,7 +216,7 @@ impl<'a> Reader<'a> {
         let inherits = element.nonzero("inheritrange", cx).is_some();
         let is_servo = force.bias != [0.0; 3];
         let servos = usize::from((by_input.is_some() || inherits) && is_servo);
-        self.count("ranges of what servos are told", servos);
+        self.count("ranges of servo commands", servos);
         let by_input = by_input
             .filter(|_| !is_servo)
             .map(|found| Placed { value: found.value * force.gain.abs(), ..found });

@@ -16,7 +16,7 @@ use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind,
 /// MuJoCo's name of the fixed body.
 pub(super) const WORLD: &str = "world";
 
-const WRITTEN_OUT: &str = "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`";
+const WRITTEN_OUT: &str = "MuJoCo can write the expanded model: `mj_saveLastXML`, or its program `compile`";
 
 /// Body that remains to be read.
 struct Open<'a> {
@@ -118,7 +118,10 @@ impl<'a> Reader<'a> {
             let message = format!("`base = free` does not fit this file: {found}");
             let place = self.options.path.place.clone();
             cx.error(&place, message, |d| {
-                d.help("bodies of an MJCF file are held as the file says: write `<freejoint/>` into a body, and remove `base`")
+                d.help(
+                    "an MJCF file determines the base itself: write `<freejoint/>` into a body, and remove \
+                     `base`",
+                )
             });
         }
     }
@@ -188,7 +191,7 @@ impl<'a> Reader<'a> {
             body.text = unused("ground_link", |name| self.link_names.contains(name));
         }
         if body.text == WORLD {
-            let help = "`world` is what does not move: choose another name";
+            let help = "`world` is the fixed world: choose another name";
             cx.error(&body.place, "a body with the name `world`", |d| d.help(help));
         }
         self.link_names.insert(body.text.clone());
@@ -273,8 +276,8 @@ impl<'a> Reader<'a> {
         let free = joints.iter().find(|joint| joint.kind == JointKind::Free);
         if let Some(free) = free.filter(|_| number > 1 || parent.text != GROUND) {
             let message =
-                format!("free joint {} of a body that is held otherwise, too", quote(&free.name.text));
-            let help = "a free body stands in `<worldbody>` and has no other joint";
+                format!("free joint {} of a body with other joints or a parent", quote(&free.name.text));
+            let help = "a free body is a child of `<worldbody>` and has no other joint";
             cx.error(&free.name.place, message, |d| d.help(help));
             return;
         }

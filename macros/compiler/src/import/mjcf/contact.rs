@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
             return;
         }
         if !self.settings.contacts() {
-            self.left_out.push("contacts, which the file switches off".to_string());
+            self.left_out.push("contacts, which the file disables".to_string());
             return;
         }
         if self.planes.is_empty() {
@@ -97,11 +97,9 @@ impl<'a> Reader<'a> {
         }
         if self.robot.contacts.is_empty() {
             let place = &self.options.path.place;
-            cx.error(place, "no body of the file has a shape that may touch a plane of its world", |d| {
-                d.help(
-                    "meshes touch nothing here, nor do shapes whose `contype` and `conaffinity` exclude it",
-                )
-                .help("to leave the contacts of the file out, remove `contacts = file`")
+            cx.error(place, "no body of the file has a shape that can touch a plane of its world", |d| {
+                d.help("meshes have no contacts, nor do shapes excluded by `contype` and `conaffinity`")
+                    .help("to ignore the contacts of the file, remove `contacts = file`")
             });
         }
     }

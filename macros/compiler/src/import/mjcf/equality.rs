@@ -12,7 +12,7 @@ use crate::syntax::{
     WrittenArguments,
 };
 
-const LEAVE_OUT: &str = "to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`";
+const LEAVE_OUT: &str = "to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`";
 
 impl<'a> Reader<'a> {
     /// Reads all elements of `<equality>`.
@@ -158,7 +158,7 @@ impl<'a> Reader<'a> {
         let Some([first, second]) = self.ends(element, kind, cx) else { return };
         for (body, _) in [&first, &second] {
             if self.mocap.contains(&body.text) {
-                let message = format!("{} is a mocap body, which nothing here moves", quote(&body.text));
+                let message = format!("{} is a mocap body, which does not move here", quote(&body.text));
                 cx.error(&body.place, message, |d| d.help(LEAVE_OUT));
                 return;
             }

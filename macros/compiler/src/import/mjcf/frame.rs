@@ -24,7 +24,7 @@ pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<
     let Some(node) = element.with_any(&ORIENTATIONS) else { return IDENTITY };
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
     let [one] = said.as_slice() else {
-        let message = format!("an orientation is said once, but here are `{}`", said.join("` and `"));
+        let message = format!("an orientation is given once, but here are `{}`", said.join("` and `"));
         cx.error(&element.place(said.first().copied().unwrap_or_default(), cx), message, |d| d);
         return IDENTITY;
     };
@@ -57,8 +57,8 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
                     _ => [0.0, 0.0, 1.0],
                 };
                 let turn = axis_rotation(unit, settings.angle(angle));
-                // Rotations axis_rotation moving axes are multiplied from the right, those axis_rotation fixed axes from the
-                // left.
+                // Rotations about moving axes are multiplied from the right, those about
+                // fixed axes from the left.
                 if axis.is_ascii_lowercase() { product(&whole, &turn) } else { product(&turn, &whole) }
             }))
         }
@@ -70,7 +70,7 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let x = scale([a, b, c], 1.0 / size);
             let y = add([d, e, f], scale(x, -dot(x, [d, e, f])));
             let size = length(y);
-            check_length(size, "the y axis, without what it has of x,", &found, cx)?;
+            check_length(size, "the y axis, orthogonalised against x,", &found, cx)?;
             let y = scale(y, 1.0 / size);
             Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
@@ -90,7 +90,8 @@ fn check_turns(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'
     }
 }
 
-const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or `angle=\"degree\"`";
+const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, \
+                       or `angle=\"degree\"`";
 
 /// Reports vectors whose length is zero or not finite.
 fn check_length<const N: usize>(

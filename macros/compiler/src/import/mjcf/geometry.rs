@@ -290,4 +290,6 @@ fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
     None
 }
 
-pub(super) const NEEDS_INERTIAL: &str = "give the body an `<inertial pos=\"…\" mass=\"…\" diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` writes a file that has them";
+pub(super) const NEEDS_INERTIAL: &str = "give the body an `<inertial pos=\"…\" mass=\"…\" \
+                                         diaginertia=\"…\"/>`, or the shape `mass=\"0\"`; MuJoCo's `compile` \
+                                         writes a file that has them";

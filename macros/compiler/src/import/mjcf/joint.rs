@@ -18,7 +18,7 @@ const TYPES: [(&str, JointKind); 4] = [
 ];
 
 pub(super) const IGNORE_PASSIVE: &str =
-    "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+    "to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
 /// Joint of a body.
 pub(super) struct BodyJoint {
@@ -159,7 +159,7 @@ impl<'a> Reader<'a> {
         match (said, &found) {
             (Some(false), _) | (None, None) => return None,
             (None, Some(found)) if !self.settings.autolimits => {
-                let message = format!("`{range}` without `{limited}`, which nothing uses");
+                let message = format!("`{range}` without `{limited}` has no effect");
                 cx.error(&found.place, message, |d| {
                     d.help(format!(
                         "write `{limited}=\"true\"` or `\"false\"`, or remove `autolimits=\"false\"`"
@@ -205,7 +205,7 @@ impl<'a> Reader<'a> {
         }
         let message = format!("`armature` of a `{}` joint is not supported", joint.word);
         cx.error(&armature.place, message, |d| {
-            d.help("it adds to the mass matrix what no body does: write `armature=\"0\"` into the joint")
+            d.help("it adds to the mass matrix as no body does: write `armature=\"0\"` into the joint")
         });
     }
 

@@ -17,7 +17,7 @@ pub(super) struct Force {
 }
 
 pub(super) const OTHER_INPUTS: &str =
-    "to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`";
+    "to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
 
 /// Parameters of an actuator without attributes.
 const PLAIN: Record<'static> = Record {

@@ -211,11 +211,11 @@ fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
                 "msh" => msh(&bytes),
                 _ => {
                     return Err(format!(
-                        "mesh {shown} is of a format that is not read: expected `.stl`, `.obj` or `.msh`"
+                        "mesh {shown} has an unsupported format: expected `.stl`, `.obj` or `.msh`"
                     ));
                 }
             };
-            triangles.ok_or_else(|| format!("mesh {shown} is damaged, or not what its name says"))
+            triangles.ok_or_else(|| format!("mesh {shown} is damaged, or has the wrong extension"))
         });
     match found {
         Ok(triangles) => Some(triangles),

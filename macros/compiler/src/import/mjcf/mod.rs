@@ -123,7 +123,7 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     for link in &robot.links {
         if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(literals) {
             let message = format!(
-                "body {} is too large, too heavy or too far away for numbers",
+                "body {} is too large, too heavy or too far away for floating-point numbers",
                 quote(&link.name.text)
             );
             cx.error(&link.name.place, message, |d| d);
@@ -131,20 +131,27 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     }
     for joint in &robot.joints {
         if !joint.origin.xyz.value.iter().chain(&joint.origin.rpy.value).all(|x| x.is_finite()) {
-            let message = format!("joint {} is too far away for numbers", quote(&joint.name.text));
+            let message =
+                format!("joint {} is too far away for floating-point numbers", quote(&joint.name.text));
             cx.error(&joint.name.place, message, |d| d);
         }
     }
     for joint in &robot.joints {
         let follows = joint.mimic.as_ref().map_or([0.0; 2], |mimic| [mimic.multiplier, mimic.offset]);
         if !follows.into_iter().chain(joint.held).all(f64::is_finite) {
-            let message = format!("what joint {} follows is too large for numbers", quote(&joint.name.text));
+            let message = format!(
+                "the value that joint {} follows is too large for floating-point numbers",
+                quote(&joint.name.text)
+            );
             cx.error(&joint.name.place, message, |d| d);
         }
     }
     for constraint in &robot.constraints {
         if ![Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten().all(literals) {
-            let message = format!("the coupling {} is too large for numbers", quote(&constraint.name.text));
+            let message = format!(
+                "the coupling {} is too large for floating-point numbers",
+                quote(&constraint.name.text)
+            );
             cx.error(&constraint.name.place, message, |d| d);
         }
     }
@@ -165,7 +172,8 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
             DriveOn::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
         };
         if !law || !on {
-            let message = format!("a force of {} is too large for numbers", quote(&drive.name.text));
+            let message =
+                format!("a force of {} is too large for floating-point numbers", quote(&drive.name.text));
             cx.error(&drive.name.place, message, |d| d);
         }
     }

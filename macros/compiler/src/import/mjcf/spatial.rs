@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
         let kind = shape.text("type").unwrap_or("sphere");
         if !["sphere", "cylinder"].contains(&kind) {
             let message =
-                format!("a tendon runs around spheres and cylinders, but {} is none", quote(&said.text));
+                format!("a tendon wraps around spheres and cylinders, but {} is neither", quote(&said.text));
             cx.error(&said.place, message, |d| d);
             return None;
         }

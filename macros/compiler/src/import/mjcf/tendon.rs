@@ -38,8 +38,7 @@ impl Tendon {
         match &Tendon::find(name, tendons, cx)?.path {
             Ok(DriveOn::Sum(terms)) => Some(terms.clone()),
             _ => {
-                let message =
-                    format!("tendon {} goes through space, where none is coupled", quote(&name.text));
+                let message = format!("tendon {} is spatial and cannot be coupled", quote(&name.text));
                 cx.error(&name.place, message, |d| d.help(help));
                 None
             }
@@ -168,7 +167,7 @@ impl<'a> Reader<'a> {
         };
         if !found.has_coordinate() {
             let message = format!(
-                "joint {} is `{}`: what can {verb} it has one coordinate",
+                "joint {} is `{}`: a joint with several coordinates cannot {verb}",
                 quote(&joint.text),
                 found.word
             );

@@ -43,11 +43,9 @@ impl Law {
         for which in ["adhesion", "surfacevel"] {
             let found = shape.some(which, [0.0; 6], cx);
             if let Some(found) = found.filter(|found| found.value != [0.0; 6]) {
-                cx.error(
-                    &found.place,
-                    format!("`{which}` of a shape that touches others is not supported"),
-                    |d| d.help("to leave the contacts of the file out, remove `contacts = file`"),
-                );
+                cx.error(&found.place, format!("`{which}` of a colliding shape is not supported"), |d| {
+                    d.help("to ignore the contacts of the file, remove `contacts = file`")
+                });
             }
         }
         let mut of =

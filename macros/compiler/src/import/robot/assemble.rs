@@ -178,7 +178,7 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
             let from = given.origin.xyz.value;
             let at = [0, 1, 2].map(|k| from[k] + coordinate * shift[k]);
             if !at.iter().all(|x| x.is_finite()) {
-                let message = format!("joint {} stands infinitely far away", quote(&given.name.text));
+                let message = format!("joint {} has an infinite position", quote(&given.name.text));
                 cx.error(&given.name.place, message, |d| d);
             }
             end.at = (at != [0.0; 3]).then(|| Expr::vector(at, &given.origin.xyz.place));

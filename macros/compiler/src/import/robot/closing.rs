@@ -18,11 +18,13 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
     for (_, joint) in closing {
         let driven = robot.drives.iter().any(|drive| drive.name.text == joint.name.text);
         if driven || joint.damping.is_some() || joint.friction.is_some() || joint.mimic.is_some() {
-            let message =
-                format!("joint {} closes a loop, and has forces or a leader", quote(&joint.name.text));
+            let message = format!(
+                "joint {} closes a loop, and has forces or follows another joint",
+                quote(&joint.name.text)
+            );
             cx.error(&joint.name.place, message, |d| {
-                d.help("another joint of the loop may close it: write the one that does last")
-                    .help("or leave them out: `#[mechanism(…, passive = ignore, mimic = independent)]`")
+                d.help("another joint of the loop can close it: write that joint last")
+                    .help("or ignore them: `#[mechanism(…, passive = ignore, mimic = independent)]`")
             });
         }
         if joint.limits.bounds() {

@@ -31,11 +31,14 @@ fn without_locked(
     let (Some(value), Some(other)) = (number(&constraint.value), other) else { return Some(constraint) };
     if (value - other).abs() > ROUNDING * (1.0 + value.abs() + other.abs()) {
         let message = format!(
-            "the coupling {} contradicts others: the joints that it couples cannot move, and it is violated by {}",
+            "the coupling {} contradicts others: the joints that it couples cannot move, and it is violated \
+             by {}",
             quote(&constraint.name.text),
             value - other
         );
-        cx.error(&constraint.name.place, message, |d| d.help("remove it, or what holds these joints"));
+        cx.error(&constraint.name.place, message, |d| {
+            d.help("remove it, or the constraints that fix these joints")
+        });
     }
     None
 }

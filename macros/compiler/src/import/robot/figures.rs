@@ -43,14 +43,14 @@ fn inertials(
     for body in bodies {
         let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
         let missing = match () {
-            () if stands(body) => Some("stands on the ground: its mass properties enter no equation"),
+            () if stands(body) => Some("is fixed to the ground: its mass properties appear in no equation"),
             () if body.mass.is_none() => Some("has no mass properties in the file"),
             () => None,
         };
         if let Some(missing) = missing {
             if figures.of.is_some() {
                 let message = format!("{link} {} {missing}", quote(&name.text));
-                cx.error(&name.place, message, |d| d.help("leave it out of `parameters`"));
+                cx.error(&name.place, message, |d| d.help("remove it from `parameters`"));
             }
             continue;
         }
@@ -99,7 +99,7 @@ fn of_joints(
             if figures.of.is_some() {
                 let message = format!("joint {} has no {word}", quote(&name.text));
                 cx.error(&name.place, message, |d| match word {
-                    PLACEMENT => d.help("it holds the root of the file"),
+                    PLACEMENT => d.help("it connects the root of the file to the ground"),
                     _ => d.help("a joint that moves along or about one axis has one, unless it is locked"),
                 });
             }
@@ -161,7 +161,7 @@ fn chosen(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_
             let known = known.iter().map(String::as_str);
             cx.error(&name.place, message, |d| d.suggest(&name.text, known));
         } else if of[..k].iter().any(|other| other.text == name.text) {
-            let message = format!("{what} {} stands here twice", quote(&name.text));
+            let message = format!("{what} {} is given twice", quote(&name.text));
             cx.error(&name.place, message, |d| d.help("remove one of the two"));
         }
     }

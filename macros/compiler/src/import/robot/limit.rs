@@ -18,7 +18,7 @@ pub(in crate::import) struct FileLimits {
 
 /// Help text for invalid limits.
 pub(in crate::import) const IGNORE_LIMITS: &str =
-    "to leave limits out, write `#[mechanism(…, limits = ignore)]`";
+    "to ignore limits, write `#[mechanism(…, limits = ignore)]`";
 
 impl FileLimits {
     /// Returns true if any limit is specified.

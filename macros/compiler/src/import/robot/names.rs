@@ -83,7 +83,7 @@ pub(in crate::import) fn check_ends(robot: &Robot, format: FileFormat, cx: &mut 
             }
         }
         if joint.parent.text == joint.child.text {
-            let message = format!("joint {} joins a link to itself", quote(&joint.name.text));
+            let message = format!("joint {} connects a link to itself", quote(&joint.name.text));
             cx.error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
             // Repeated joint names are reported by `check_names`.

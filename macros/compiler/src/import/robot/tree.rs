@@ -40,7 +40,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
     if let Some(second) = roots.next() {
         let all = [root, second].into_iter().chain(roots);
         let names = quote_all(all.map(|link| robot.links[link].name.text.as_str()));
-        let message = format!("expected one link that is no joint's child, found {names}");
+        let message = format!("expected one link that is not the child of a joint, found {names}");
         let help = "every link but one needs a joint that has it as its child";
         cx.error(&robot.links[second].name.place, message, |d| d.help(help));
         return None;
@@ -79,8 +79,8 @@ fn report_cycle(
     };
     let rest = std::iter::successors(up(&link), up).take_while(|l| *l != link);
     let links = std::iter::once(link).chain(rest).map(|l| robot.links[l].name.text.as_str());
-    let message = format!("links {} hang from one another", quote_all(links));
-    let help = format!("joint {} closes the circle; a tree has a root", quote(&joint.name.text));
+    let message = format!("links {} form a cycle", quote_all(links));
+    let help = format!("joint {} closes the cycle; a tree has a root", quote(&joint.name.text));
     cx.error(&joint.parent.place, message, |d| d.help(help));
 }
 

@@ -119,7 +119,8 @@ pub(super) fn origin_in(
     Some(origin(&pose_in(node, link, frames, cx)?, &place(node, cx)))
 }
 
-const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, everywhere in the file";
+const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
+                       everywhere in the file";
 
 fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     if node.attribute("rotation_format") == Some("quat_xyzw") {

@@ -166,7 +166,10 @@ fn plain_copy(
 
 fn undeclared(node: Node<'_>, cx: &mut Cx<'_>) {
     cx.error(&place(node, cx), "prefixes of names are not declared", |d| {
-        d.help("files that include others, or are included, declare them: `<sdf xmlns:gz=\"http://gazebosim.org/schema\">`")
+        d.help(
+            "files that include others, or are included, declare them: `<sdf \
+             xmlns:gz=\"http://gazebosim.org/schema\">`",
+        )
     });
 }
 
@@ -224,7 +227,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
     check_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
         cx.error(&place(node, cx), "`merge` of an `<include>` is not supported", |d| {
-            d.help("write the whole: `gz sdf -p robot.sdf > whole.sdf`")
+            d.help("write the expanded file: `gz sdf -p robot.sdf > whole.sdf`")
         });
         return None;
     }
@@ -246,7 +249,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
                 if in_world(node) {
                     return None;
                 }
-                cx.error(&place(child, cx), "the included model is static: nothing of it moves", |d| {
+                cx.error(&place(child, cx), "the included model is static and cannot move", |d| {
                     d.help("remove `<static>`")
                 });
             }
@@ -316,9 +319,9 @@ fn find(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read>
     let there = all.iter().find(|(path, _)| path.is_file());
     if there.is_none() && include.uri.text.contains("://") {
         let first = all.first().map_or(String::new(), |(path, _)| path.display().to_string());
-        cx.error(include.uri.place.clone(), format!("{} is not beside the file", quote(&include.uri.text)))
+        cx.error(include.uri.place.clone(), format!("{} is not next to the file", quote(&include.uri.text)))
             .help(format!("looked for `{first}`, and one folder above"))
-            .help("or write the whole: `gz sdf -p robot.sdf > whole.sdf`");
+            .help("or write the expanded file: `gz sdf -p robot.sdf > whole.sdf`");
         return None;
     }
     let (path, shown) = there.or(all.first())?;

@@ -32,11 +32,13 @@ const TYPES: [(&str, JointKind, usize); 8] = [
 const ENDLESS: f64 = 1e15;
 
 const IGNORE_PASSIVE: &str =
-    "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+    "to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
 const JOINT_HELP: &str = "a joint has `<pose>`, `<parent>`, `<child>` and `<axis>`";
 
-const AXIS_HELP: &str = "an axis has `<xyz>`, `<limit>` with `<lower>`, `<upper>`, `<velocity>` and `<effort>`, `<dynamics>` with `<damping>`, `<friction>`, `<spring_stiffness>` and `<spring_reference>`, and `<mimic>`";
+const AXIS_HELP: &str = "an axis has `<xyz>`, `<limit>` with `<lower>`, `<upper>`, `<velocity>` and \
+                         `<effort>`, `<dynamics>` with `<damping>`, `<friction>`, `<spring_stiffness>` and \
+                         `<spring_reference>`, and `<mimic>`";
 
 /// First version in which an axis is expressed in the axes of its joint. Earlier versions express it in the
 /// axes of the model.
@@ -139,7 +141,7 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
 fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
         cx.error(&place(node, cx), "screw without `<screw_thread_pitch>`", |d| {
-            d.help("it is what the joint advances in a turn, m")
+            d.help("it is the advance of the joint per turn, m")
         });
         return None;
     };
@@ -147,7 +149,7 @@ fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: 
     let [value] = found.value;
     if lead.is_none() && value == 0.0 {
         cx.error(&found.place, "a screw with `<thread_pitch>` zero advances infinitely far in a turn", |d| {
-            d.help("write `<screw_thread_pitch>`: what the joint advances in a turn, m")
+            d.help("write `<screw_thread_pitch>`: the advance of the joint per turn, m")
         });
         return None;
     }

@@ -42,7 +42,7 @@ pub(super) fn read_link(
     misplaced::check(
         node,
         &LINK,
-        "mass properties belong to `<inertial>`, and what joins links to `<joint>`",
+        "mass properties belong to `<inertial>`, and connections of links to `<joint>`",
         cx,
     );
     if options.inertias == Inertias::None {
@@ -80,7 +80,7 @@ pub(super) fn read_link(
     };
     give(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
     if !body.inertia.iter().flat_map(Expr::parts).filter_map(Expr::literal).all(f64::is_finite) {
-        cx.error(&at, "an inertia that is too large for numbers", |d| d);
+        cx.error(&at, "an inertia that is too large for floating-point numbers", |d| d);
     }
     Some(body)
 }
@@ -101,7 +101,7 @@ fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
                 .any(|rate| word(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0)));
         if decays && options.honour_passive {
             cx.error(&place(child, cx), "`<velocity_decay>` of a link is not supported", |d| {
-                d.help("to leave it out, write `#[mechanism(…, passive = ignore)]`")
+                d.help("to ignore it, write `#[mechanism(…, passive = ignore)]`")
             });
         }
     }

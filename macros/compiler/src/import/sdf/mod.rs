@@ -65,12 +65,12 @@ const GRAVITY_OF_WORLD: (u32, u32) = (1, 6);
 /// Elements that are skipped unless the options request them, with the text that the generated documentation
 /// lists for each.
 const ASIDE: [(&str, &str); 12] = [
-    ("include", "models that the world includes and that are not beside the file"),
+    ("include", "models that the world includes and that are not next to the file"),
     ("visual", "visual geometry of links"),
     ("collision", "geometry of links, for contact"),
     ("sensor", "sensors"),
     ("light", "lights"),
-    ("plugin", "plug-ins, and what they do to the motion"),
+    ("plugin", "plug-ins, and their effect on the motion"),
     ("battery", "batteries"),
     ("particle_emitter", "emitters of particles"),
     ("actor", "actors"),
@@ -192,7 +192,8 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
         cx.error(&place(root, cx), message, |d| match kind {
             "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`"),
             "gazebo" => d.help(
-                "files of versions 1.0 and 1.2 begin so: convert the file, `gz sdf -p robot.sdf > converted.sdf`, after writing `<sdf version=\"…\">`",
+                "files of versions 1.0 and 1.2 begin so: convert the file, `gz sdf -p robot.sdf > \
+                 converted.sdf`, after writing `<sdf version=\"…\">`",
             ),
             "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`"),
             _ => d.suggest(kind, ["sdf"]),
@@ -234,7 +235,8 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
         }),
         [_, second, ..] => cx.error(&place(*second, cx), "SDF file with several models", |d| {
             d.help(
-                "a mechanism is one model, or several that joints of their world connect: put the others into files of their own",
+                "a mechanism is one model, or several that joints of their world connect: put the others \
+                 into files of their own",
             )
         }),
     }
@@ -338,7 +340,7 @@ impl<'a> Reader<'a> {
                             && word(child, cx)
                                 .is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
                     {
-                        cx.error(&place(child, cx), "the model is static: nothing of it moves", |d| {
+                        cx.error(&place(child, cx), "the model is static and cannot move", |d| {
                             d.help("remove `<static>`")
                         });
                     }
@@ -385,7 +387,7 @@ impl<'a> Reader<'a> {
         }
         if self.frames.known.insert(part.text.clone(), frame).is_some() && kind != "link" {
             let message = format!("second link, joint or frame with the name {}", quote(&part.text));
-            cx.error(&part.place, message, |d| d.help("all of them are frames: names of frames differ"));
+            cx.error(&part.place, message, |d| d.help("they are all frames: choose different names"));
         }
         match kind {
             _ if is_fixed => {}

@@ -27,7 +27,7 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     let at = cx.place(version.range_value().start);
     match parse(version.value()) {
         None => {
-            let message = format!("{} is no version of SDF", quote(version.value()));
+            let message = format!("{} is not a version of SDF", quote(version.value()));
             cx.error(&at, message, |d| d.help("expected a number, as in `version=\"1.9\"`"));
         }
         Some(found) if found < FIRST => report_first(root, cx),

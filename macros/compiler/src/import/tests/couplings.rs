@@ -54,7 +54,7 @@ fn a_joint_follows_or_is_held() {
     check_model(
         &model("<flex flex='b'/>"),
         "r.xml:2:154: the coupling `<flex>` is not supported
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+         = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
 }
 
@@ -97,7 +97,7 @@ fn sums_and_polynomials_are_conditions() {
         &model("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
         &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", start(" = 1 j + 1")),
     );
-    let help = "= help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`";
+    let help = "= help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`";
     for (equality, expected) in [
         (
             "<tendon tendon1='v'/>",
@@ -105,7 +105,7 @@ fn sums_and_polynomials_are_conditions() {
         ),
         (
             "<tendon tendon1='u'/>",
-            format!("r.xml:2:409: tendon `u` goes through space, where none is coupled\n{help}"),
+            format!("r.xml:2:409: tendon `u` is spatial and cannot be coupled\n{help}"),
         ),
     ] {
         let cable = "<spatial name='u'><site site='o'/><site site='p'/></spatial></tendon>";
@@ -190,12 +190,13 @@ fn what_newer_versions_have_is_refused() {
         )
     };
     let passive =
-        "= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+        "= help: to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
     let inputs =
-        "= help: to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`";
+        "= help: to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
     let poly = |which: &str| {
         format!(
-            "`{which}` is a polynomial, as MuJoCo reads it since version 3.7\n= help: expected one number: a linear coefficient"
+            "`{which}` is a polynomial, as MuJoCo reads it since version 3.7\n= help: expected one number: a \
+             linear coefficient"
         )
     };
     for (joint, motor, expected) in [
@@ -206,7 +207,8 @@ fn what_newer_versions_have_is_refused() {
             "stiffness='5' springyield='1'",
             "",
             format!(
-                "r.xml:2:70: `springyield` is not supported: a spring that yields has a state of its own\n{passive}"
+                "r.xml:2:70: `springyield` is not supported: a spring that yields has a state of its own\n\
+                 {passive}"
             ),
         ),
         ("", "delay='0.1'", format!("r.xml:2:107: `delay` of an actuator is not supported\n{inputs}")),
@@ -244,12 +246,12 @@ fn loops_are_closed() {
     check_model(
         &model("<connect site1='s' site2='s'/>"),
         "r.xml:2:194: body `d` closes a loop with itself
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+         = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
     check_model(
         &model("<weld body1='c' body2='b'/>"),
-        "r.xml:2:181: `c` is a mocap body, which nothing here moves
-         = help: to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`",
+        "r.xml:2:181: `c` is a mocap body, which does not move here
+         = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
     check_model(
         &model("<weld body1='e'/>"),
@@ -340,7 +342,7 @@ fn actuators_that_do_not_act() {
          Pin j: ground -> b about [0, 0, 1]
          j: inerter 0.5 on 1 j
          n: input in N·m on 1 j
-         left out actuators of groups that are switched off: 1",
+         left out actuators of disabled groups: 1",
     );
     check_model(
         &model("actuatorgroupdisable='1 31'"),
@@ -370,7 +372,8 @@ fn springs_of_tendons_are_free_where_they_say() {
                  <worldbody><body name='b'><joint name='j' springref='17'/></body></worldbody>\
                  <tendon><fixed name='t' stiffness='10' springlength='{length}'><joint joint='j' coef='2'/></fixed></tendon>"
             ),
-            &format!("the root is the ground\nbody b\nPin j: ground -> b about [0, 0, 1]\nt: {expected} on 2 j"),
+            &format!("the root is the ground\nbody b\nPin j: ground -> b about [0, 0, 1]\nt: {expected} on 2 \
+                      j"),
         );
     }
 }
@@ -413,7 +416,7 @@ fn couplings_of_joints_that_stand_still() {
     check_model(
         &model("<joint name='g' joint1='k' polycoef='3'/>"),
         "r.xml:3:117: the coupling `g` contradicts others: the joints that it couples cannot move, and it is violated by -2
-         = help: remove it, or what holds these joints",
+         = help: remove it, or the constraints that fix these joints",
     );
     check_model(
         &model("<joint name='g' joint1='k' polycoef='1'/>"),

@@ -85,9 +85,9 @@ fn passive_elements_count_unless_ignored() {
     check(
         &chain(&[("revolute", "<dynamics damping='-2'/>"), ("planar", "<dynamics friction='1'/>")]),
         "r.urdf:3:90: negative damping `-2`
-         = help: to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`
+         = help: to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`
          r.urdf:5:89: `friction` of a `planar` joint is not supported
-         = help: to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+         = help: to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`",
     );
 }
 
@@ -279,7 +279,7 @@ fn a_slide_cannot_stand_infinitely_far_away() {
     check_with(
         &locked(&["j2"]),
         &chain(&[("prismatic", inside), ("revolute", "")]),
-        "r.urdf:3:14: joint `j1` stands infinitely far away",
+        "r.urdf:3:14: joint `j1` has an infinite position",
     );
 }
 
@@ -314,7 +314,8 @@ fn a_joint_says_what_it_joins_and_how() {
 /// An axis or origin in wrong notation is an error and not replaced by the default.
 #[test]
 fn parts_of_joints_are_attributes_of_their_elements() {
-    let elements = "= help: a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
+    let elements = "= help: a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin \
+                    xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
     let axis = "= help: expected `<axis xyz=\"…\"/>`";
     let origin = "= help: expected `<origin xyz=\"…\" rpy=\"…\"/>`";
     for (inside, expected) in [
@@ -327,25 +328,28 @@ fn parts_of_joints_are_attributes_of_their_elements() {
             format!("r.urdf:3:89: unknown attribute `rpy` of `<axis>`\n{axis}"),
         ),
         ("<origin>0 0 1</origin>", format!("r.urdf:3:79: unexpected text `0 0 1` in `<origin>`\n{origin}")),
-        (
-            "<origin pos='0 0 1'/>",
-            format!("r.urdf:3:79: unknown attribute `pos` of `<origin>`\n{origin}"),
-        ),
+        ("<origin pos='0 0 1'/>", format!("r.urdf:3:79: unknown attribute `pos` of `<origin>`\n{origin}")),
         (
             "<origin xyz='0 0 1'><rpy>0 0 1</rpy></origin>",
             format!("r.urdf:3:91: unexpected `<rpy>` in `<origin>`\n{origin}"),
         ),
         (
             "<dynamics><damping>3</damping></dynamics>",
-            "r.urdf:3:81: unexpected `<damping>` in `<dynamics>`\n= help: expected `<dynamics damping=\"…\" friction=\"…\"/>`".to_string(),
+            "r.urdf:3:81: unexpected `<damping>` in `<dynamics>`\n= help: expected `<dynamics damping=\"…\" \
+             friction=\"…\"/>`"
+                .to_string(),
         ),
         (
             "<dynamics stiffness='3'/>",
-            "r.urdf:3:81: unknown attribute `stiffness` of `<dynamics>`\n= help: expected `<dynamics damping=\"…\" friction=\"…\"/>`".to_string(),
+            "r.urdf:3:81: unknown attribute `stiffness` of `<dynamics>`\n= help: expected `<dynamics \
+             damping=\"…\" friction=\"…\"/>`"
+                .to_string(),
         ),
         (
             "<limit min='3' effort='1'/>",
-            "r.urdf:3:78: unknown attribute `min` of `<limit>`\n= help: expected `<limit lower=\"…\" upper=\"…\" velocity=\"…\" effort=\"…\"/>`".to_string(),
+            "r.urdf:3:78: unknown attribute `min` of `<limit>`\n= help: expected `<limit lower=\"…\" \
+             upper=\"…\" velocity=\"…\" effort=\"…\"/>`"
+                .to_string(),
         ),
         ("<pose>0 0 1 0 0 0</pose>", format!("r.urdf:3:71: unexpected `<pose>` in `<joint>`\n{elements}")),
         ("0 0 1", format!("r.urdf:3:71: unexpected text `0 0 1` in `<joint>`\n{elements}")),

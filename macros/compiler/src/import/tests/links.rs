@@ -142,7 +142,7 @@ fn a_number_is_a_finite_number() {
     check_inertial(
         &format!("<origin xyz='0 0'/><mass value=''/>{INERTIA}"),
         "r.urdf:2:39: expected 3 numbers in `xyz`, found `0 0`
-         = help: write as many numbers, with spaces between them
+         = help: write that many numbers, separated by spaces
          r.urdf:2:58: expected a number in `value`, found ``
          = help: write one number, with a decimal point",
     );
@@ -171,7 +171,7 @@ fn every_bad_number_has_its_own_place() {
     check_inertial(
         &format!("<origin xyz='1,2,3'/><mass value='1'/>{INERTIA}"),
         "r.urdf:2:39: expected 3 numbers in `xyz`, found `1,2,3`
-         = help: write spaces between the numbers instead of commas, and a decimal point; so everywhere in the file",
+         = help: write spaces between the numbers instead of commas, and a decimal point, everywhere in the file",
     );
 }
 
@@ -239,7 +239,7 @@ fn parts_of_links_are_attributes_of_their_elements() {
         &format!("<mass value='1'/>{asymmetric}"),
         "r.urdf:2:105: `iyx` differs from `ixy`: an inertia matrix is symmetric\n= help: remove `iyx`",
     );
-    let help = "= help: a link has mass properties by `<inertial>`, and its place by a joint";
+    let help = "= help: a link has mass properties by `<inertial>`, and its position by a joint";
     for (inside, expected) in [
         ("<origin xyz='0 0 1'/>", "r.urdf:2:16: unexpected `<origin>` in `<link>`"),
         ("<pose>0 0 1 0 0 0</pose>", "r.urdf:2:16: unexpected `<pose>` in `<link>`"),
@@ -254,7 +254,8 @@ fn parts_of_links_are_attributes_of_their_elements() {
     );
     check_robot(
         "<link name='a'/><inertial><mass value='1'/></inertial>",
-        "r.urdf:2:17: unexpected `<inertial>` in `<robot>`\n= help: expected `<link>` and `<joint>`, which hold all that moves",
+        "r.urdf:2:17: unexpected `<inertial>` in `<robot>`\n= help: expected `<link>` and `<joint>`, which \
+         describe all moving parts",
     );
     // Elements of other tools, and an identity pose, are accepted.
     check_robot(

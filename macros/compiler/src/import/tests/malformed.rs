@@ -17,7 +17,7 @@ fn malformed_xml_has_a_place() {
         ("<robot a='&x;'/>", "r.urdf:1:11: malformed XML: unknown entity `&x;`"),
         (
             "<robot a='& b'/>",
-            "r.urdf:1:11: malformed XML: this `&` begins no entity\n= help: write `&amp;` for `&`",
+            "r.urdf:1:11: malformed XML: this `&` does not begin an entity\n= help: write `&amp;` for `&`",
         ),
         ("<a:robot b:c='1'/>", "r.urdf:1:2: malformed XML: unknown namespace prefix `a`"),
         ("<robot a='<'/>", "r.urdf:1:11: malformed XML: expected ``` not `<`"),
@@ -56,7 +56,8 @@ fn prefixes_need_no_declaration() {
     }
     // Prefixes that are declared in some elements and used without declaration in others.
     check(
-        "<robot xmlns:s ='s'><p:x xmlns:p='u'/><p:y s:a='1'/><q:z xmlns:r='r' r:a='1' t:a='1'/><link name='a'/></robot>",
+        "<robot xmlns:s ='s'><p:x xmlns:p='u'/><p:y s:a='1'/><q:z xmlns:r='r' r:a='1' t:a='1'/>\
+         <link name='a'/></robot>",
         "body a\nWeld root_joint: ground -> a",
     );
     // Errors on the line of the root, where the declarations are inserted, and before them.
@@ -69,7 +70,8 @@ fn prefixes_need_no_declaration() {
         "r.urdf:1:14: malformed XML: this element is never closed",
     );
     check(
-        "<robot><d:x/><link name='a'><inertial><mass value='0 0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='z'/></inertial></link></robot>",
+        "<robot><d:x/><link name='a'><inertial><mass value='0 0'/>\
+         <inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='z'/></inertial></link></robot>",
         "r.urdf:1:52: expected a number in `value`, found `0 0`
          = help: write one number, with a decimal point
          r.urdf:1:112: `z` is not a number
@@ -159,7 +161,7 @@ fn entities_are_refused() {
 #[test]
 fn deep_nesting_is_refused() {
     let deep = "<a>".repeat(100_000);
-    let expected = "r.urdf:1:193: more than 64 elements inside one another";
+    let expected = "r.urdf:1:193: more than 64 nested elements";
     check(&deep, expected);
     check(&(deep + &"</a>".repeat(100_000)), expected);
     // Markup inside comments, instructions, character data and attributes is ignored.

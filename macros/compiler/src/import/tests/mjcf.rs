@@ -52,8 +52,7 @@ fn what_has_no_name_gets_one() {
 
 #[test]
 fn classes_are_handed_down() {
-    let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/>\
-         <default class='c'><joint type='slide'/></default></default></default>";
+    let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/><default class='c'><joint type='slide'/></default></default></default>";
     let body = |inside: &str| {
         format!("{classes}<worldbody><body name='b' childclass='a'>{inside}{BALL}</body></worldbody>")
     };
@@ -86,7 +85,7 @@ fn what_is_not_supported_is_said() {
             "<joint type='ball' stiffness='1'/>",
             "1'",
             "`stiffness` of a `ball` joint is not supported",
-            "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`",
         ),
         ("<joint type='hing'/>", "hing'", "unknown joint type `hing`", "did you mean `hinge`?"),
         ("<geom type='mesh' mesh='m'/>", "m'/>", "unknown mesh `m`", ""),
@@ -108,7 +107,7 @@ fn what_is_not_supported_is_said() {
             "<composite type='grid'/>",
             "<comp",
             "`<composite>` is not supported",
-            "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`",
+            "MuJoCo can write the expanded model: `mj_saveLastXML`, or its program `compile`",
         ),
         ("<joint axis='0 0 0'/>", "0 0", "axis of zero length has no direction", ""),
         (
@@ -122,13 +121,13 @@ fn what_is_not_supported_is_said() {
             "<joint range='2 1'/>",
             "2 1",
             "`range` from 2 to 1, which is not above it",
-            "to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+            "to ignore limits, write `#[mechanism(…, limits = ignore)]`",
         ),
         (
             "<freejoint/><joint/>",
             "<freejoint",
-            "free joint `b_free` of a body that is held otherwise, too",
-            "a free body stands in `<worldbody>` and has no other joint",
+            "free joint `b_free` of a body with other joints or a parent",
+            "a free body is a child of `<worldbody>` and has no other joint",
         ),
         (
             "<inertial pos='0 0 0'/>",
@@ -139,7 +138,7 @@ fn what_is_not_supported_is_said() {
         (
             "<geom size='1' euler='0 0 1' quat='1 0 0 0'/>",
             "1 0 0 0",
-            "an orientation is said once, but here are `quat` and `euler`",
+            "an orientation is given once, but here are `quat` and `euler`",
             "",
         ),
         ("<geom size='1' quat='0 0 0 0'/>", "0 0 0 0", "a quaternion of length 0 has no direction", ""),
@@ -159,15 +158,18 @@ fn sections() {
         ),
         (
             "<worldbody/><option density='1' wind='1 0 0'/>",
-            "r.xml:2:39: the `wind` of a medium that bodies move through is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "r.xml:2:39: the `wind` of a medium that bodies move through is not supported\n= help: to ignore \
+             springs, damping and friction, write `#[mechanism(…, passive = ignore)]`",
         ),
         (
             "<worldbody/><option viscosity='-1'/>",
-            "r.xml:2:32: a medium of the density 0 and the viscosity -1\n= help: expected numbers that are not negative\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "r.xml:2:32: a medium of the density 0 and the viscosity -1\n= help: expected numbers that are \
+             not negative\n= help: to ignore springs, damping and friction, write `#[mechanism(…, passive = \
+             ignore)]`",
         ),
         (
             "<option density='1'/><worldbody><body><joint/><geom size='1' fluidshape='ellipsoid'/></body></worldbody>",
-            "r.xml:2:47: `fluidshape` in a medium is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "r.xml:2:47: `fluidshape` in a medium is not supported\n= help: to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`",
         ),
         (
             "<worldbody/><compiler eulerseq='xyw'/>",
@@ -179,7 +181,8 @@ fn sections() {
         ),
         (
             "<worldbody/><actuator><muscle joint='j'/></actuator>",
-            "r.xml:2:23: actuator `<muscle>` is not supported\n= help: to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`",
+            "r.xml:2:23: actuator `<muscle>` is not supported\n= help: to ignore the actuators of the file, \
+             write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {
         check_model(inside, expected);
@@ -211,7 +214,7 @@ fn a_free_base_needs_a_body_that_nothing_holds() {
         &free,
         "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>",
         "`base = free` does not fit this file: its outermost body has joints
-         = help: bodies of an MJCF file are held as the file says: write `<freejoint/>` into a body, and remove `base`",
+         = help: an MJCF file determines the base itself: write `<freejoint/>` into a body, and remove `base`",
     );
 }
 
@@ -239,7 +242,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
         ("<include file='broken.xml'/>", "broken.xml:2:4: malformed XML: expected `</y>`, found `</x>`"),
         (
             "<include file='a.xml'/>",
-            "b.xml:2:16: `a.xml` includes itself\n\n= help: by way of `b.xml` at a.xml:1:19",
+            "b.xml:2:16: `a.xml` includes itself\n\n= help: through `b.xml` at a.xml:1:19",
         ),
         ("<include file='hand.xml'/><include file='hand.xml'/>", "r.xml:2:42: `hand.xml` is included twice"),
         ("<include file='parts'/>", "r.xml:2:16: `parts` is a directory, expected an MJCF file"),
@@ -263,18 +266,21 @@ fn meshes_that_cannot_be_read() {
     let folder = Folder::new("meshes", &files);
     for (asset, expected) in [
         ("file='a.obj'", "r.xml:1:28: mesh `a.obj` has no volume"),
-        ("file='b.stl'", "r.xml:1:28: mesh `b.stl` is damaged, or not what its name says"),
+        ("file='b.stl'", "r.xml:1:28: mesh `b.stl` is damaged, or has the wrong extension"),
         (
             "file='c.dae'",
-            "r.xml:1:28: mesh `c.dae` is of a format that is not read: expected `.stl`, `.obj` or `.msh`",
+            "r.xml:1:28: mesh `c.dae` has an unsupported format: expected `.stl`, `.obj` or `.msh`",
         ),
         ("file='no.stl'", "r.xml:1:28: cannot read the mesh `no.stl`: "),
         ("name='no'", "r.xml:1:16: the mass of a mesh without `file` is not computed"),
     ] {
         let stem = asset.split(['\'', '.']).nth(1).unwrap_or_default();
-        let answer = folder.answer(&mjcf(), &format!(
-            "<mujoco><asset><mesh {asset}/></asset><worldbody><body><geom type='mesh' mesh='{stem}'/></body></worldbody></mujoco>"
-        ));
+        let answer = folder.answer(
+            &mjcf(),
+            &format!(
+                "<mujoco><asset><mesh {asset}/></asset><worldbody><body><geom type='mesh' mesh='{stem}'/></body></worldbody></mujoco>"
+            ),
+        );
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -283,7 +289,7 @@ fn meshes_that_cannot_be_read() {
 fn hostile_files_get_an_answer() {
     let deep =
         format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(300), "</body>".repeat(300));
-    assert!(run(&mjcf(), &deep).contains("more than 256 elements inside one another"));
+    assert!(run(&mjcf(), &deep).contains("more than 256 nested elements"));
     let chain = format!(
         "<mujoco><worldbody>{}{}</worldbody></mujoco>",
         "<body><joint type='slide'/>".repeat(250),
@@ -296,7 +302,7 @@ fn hostile_files_get_an_answer() {
     assert!(run(&mjcf(), entity).contains("an MJCF file has no document type and no entities of its own"));
     check_body(
         "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
-        "r.xml:2:24: body `b` is too large, too heavy or too far away for numbers",
+        "r.xml:2:24: body `b` is too large, too heavy or too far away for floating-point numbers",
     );
 }
 
@@ -361,7 +367,7 @@ fn planes_are_touched() {
     );
     for force in ["adhesion='1'", "surfacevel='1 0 0'"] {
         let refused = contacts(&format!("<geom type='plane' {force}/>"));
-        assert!(refused.contains("of a shape that touches others is not supported"), "{refused}");
+        assert!(refused.contains("of a colliding shape is not supported"), "{refused}");
     }
     let none = contacts("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
@@ -486,16 +492,16 @@ fn what_mujoco_refuses() {
     for (text, message) in [
         (
             format!("<compiler autolimits='false'/>{}", body("range='0 1'")),
-            "`range` without `limited`, which nothing uses",
+            "`range` without `limited` has no effect",
         ),
         (
             format!("<compiler autolimits='false'/>{}", motor("joint='j' ctrlrange='0 1'")),
-            "`ctrlrange` without `ctrllimited`, which nothing uses",
+            "`ctrlrange` without `ctrllimited` has no effect",
         ),
         (body("range='0 x' limited='true'"), "`x` is not a number"),
         (body("limited='true'"), "`limited=\"true\"` without `range`"),
-        (motor(""), "an actuator that acts on nothing"),
-        (motor("joint='j' site='s'"), "an actuator acts on one thing, but here are `joint` and `site`"),
+        (motor(""), "an actuator without a target"),
+        (motor("joint='j' site='s'"), "an actuator has one target, but here are `joint` and `site`"),
         (
             fixed("><joint joint='j' coef='1'/><joint joint='j' coef='2'/>"),
             "joint `j` occurs twice in one tendon",
@@ -527,7 +533,9 @@ fn what_mujoco_refuses() {
     for text in [
         body("range='0 0' limited='auto'"),
         format!("<compiler autolimits='false'/>{}", body("range='0 1' limited='false'")),
-        "<compiler alignfree='true'/><worldbody><body><freejoint align='false'/><geom size='1'/></body></worldbody>".to_string(),
+        "<compiler alignfree='true'/><worldbody><body><freejoint align='false'/><geom size='1'/></body>\
+         </worldbody>"
+            .to_string(),
         "<worldbody><body><freejoint align='true'/><geom size='1'/><body/></body></worldbody>".to_string(),
     ] {
         assert!(run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>")).contains("the root is"), "{text}");
@@ -583,7 +591,7 @@ fn planes_that_nothing_touches() {
     assert!(contacts_with("").starts_with("the root is the ground\n"));
     let found = contacts_with("contype='2' conaffinity='2'");
     assert!(
-        found.starts_with("no body of the file has a shape that may touch a plane of its world\n"),
+        found.starts_with("no body of the file has a shape that can touch a plane of its world\n"),
         "{found}"
     );
 }

@@ -115,7 +115,7 @@ fn joints_join_links_that_are_there() {
         &format!("{}{}\n{joints}", link("base"), link("arm")),
         "r.urdf:3:64: unknown link `arms`
          = help: did you mean `arm`?
-         r.urdf:4:63: joint `k` joins a link to itself",
+         r.urdf:4:63: joint `k` connects a link to itself",
     );
     check("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
 }
@@ -173,7 +173,7 @@ fn joints_close_loops() {
     let first = tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
     check_with(&options, &file(&[cb.clone(), ab, bc.clone()]), &first);
     let without_root = run(&options, &file(&[bc, cb]));
-    assert!(without_root.contains("links `b`, `c` hang from one another"), "{without_root}");
+    assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }
 
 #[test]
@@ -181,14 +181,13 @@ fn there_is_one_root() {
     let links = ["a", "b", "c", "d"].map(link).join("\n");
     check_robot(
         &(links.clone() + &joint("j", "fixed", "a", "b", "")),
-        "r.urdf:4:13: expected one link that is no joint's child, found `a`, `c`, `d`
+        "r.urdf:4:13: expected one link that is not the child of a joint, found `a`, `c`, `d`
          = help: every link but one needs a joint that has it as its child",
     );
     let many: String = (0..20).map(|k| link(&format!("l{k}"))).collect();
     check_robot(
         &many,
-        "r.urdf:2:30: expected one link that is no joint's child, found `l0`, `l1`, \
-         `l2`, `l3`, `l4`, `l5`, `l6`, `l7`, …
+        "r.urdf:2:30: expected one link that is not the child of a joint, found `l0`, `l1`, `l2`, `l3`, `l4`, `l5`, `l6`, `l7`, …
          = help: every link but one needs a joint that has it as its child",
     );
 }
@@ -202,8 +201,8 @@ fn links_do_not_hang_from_one_another() {
         joint("ac", "fixed", "a", "c", ""),
     ];
     let circle = format!("{links}\n{}", joints.join("\n"));
-    let expected = "r.urdf:3:45: links `a`, `b`, `c` hang from one another
-                    = help: joint `ba` closes the circle; a tree has a root";
+    let expected = "r.urdf:3:45: links `a`, `b`, `c` form a cycle
+                    = help: joint `ba` closes the cycle; a tree has a root";
     check_robot(&circle, expected);
     let tail = link("root") + &link("tail") + &joint("at", "fixed", "a", "tail", "");
     check_robot(&(circle + &tail), expected);
@@ -225,5 +224,5 @@ fn a_crowd_is_refused() {
     let crowd = "<joint/>".repeat(2000);
     let messages = run(&defaults(), &format!("<robot>{crowd}</robot>"));
     assert_eq!(messages.matches("r.urdf:1:").count(), 32);
-    assert!(messages.ends_with("`r.urdf` has more mistakes; these are the first 32"), "{messages}");
+    assert!(messages.ends_with("`r.urdf` has more errors; these are the first 32"), "{messages}");
 }

@@ -107,7 +107,8 @@ fn attributes_that_change_no_motion_are_accepted() {
     {
         let text = |said: &str| {
             answer(&format!(
-                "<mujoco><worldbody><body><joint/><geom size='1'/><{element} {said}/></body></worldbody></mujoco>"
+                "<mujoco><worldbody><body><joint/><geom size='1'/><{element} {said}/></body></worldbody>\
+                 </mujoco>"
             ))
         };
         let said = format!("{attribute}=\"1\"");
@@ -179,11 +180,13 @@ fn names_are_taken_once() {
         ),
         ("<worldbody><body name='s'/><body name='s'/></worldbody>", "second body with the name `s`"),
         (
-            "<worldbody><body><joint name='j'/></body></worldbody><actuator><motor name='m' joint='j'/><position name='m' joint='j'/></actuator>",
+            "<worldbody><body><joint name='j'/></body></worldbody><actuator><motor name='m' joint='j'/>\
+             <position name='m' joint='j'/></actuator>",
             "second actuator with the name `m`",
         ),
         (
-            "<worldbody><body><joint name='j'/></body></worldbody><equality><joint name='m' joint1='j'/><joint name='m' joint1='j'/></equality>",
+            "<worldbody><body><joint name='j'/></body></worldbody><equality><joint name='m' joint1='j'/>\
+             <joint name='m' joint1='j'/></equality>",
             "second equality with the name `m`",
         ),
     ] {

@@ -14,8 +14,8 @@ fn check_model(inside: &str, expected: &str) {
 #[test]
 fn what_is_not_said_is_what_the_format_says() {
     check_model(
-        "<link name='a'/><link name='b'><pose>0 0 2 0 0 0</pose></link>\
-         <joint name='j' type='revolute'><parent>a</parent><child>b</child><axis/></joint>",
+        "<link name='a'/><link name='b'><pose>0 0 2 0 0 0</pose></link><joint name='j' type='revolute'>\
+         <parent>a</parent><child>b</child><axis/></joint>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          Weld root_joint: ground -> a
@@ -26,11 +26,11 @@ fn what_is_not_said_is_what_the_format_says() {
 #[test]
 fn frames_carry_joints_and_joints_close_loops() {
     check_model(
-        "<link name='a'/><frame name='f' attached_to='a'><pose>1 0 0 0 0 0</pose></frame><link name='b'/><link name='c'/>\
-         <joint name='i' type='fixed'><parent>f</parent><child>b</child></joint>\
+        "<link name='a'/><frame name='f' attached_to='a'><pose>1 0 0 0 0 0</pose></frame><link name='b'/>\
+         <link name='c'/><joint name='i' type='fixed'><parent>f</parent><child>b</child></joint>\
          <joint name='j' type='ball'><parent>a</parent><child>c</child></joint>\
-         <joint name='k' type='revolute'><parent>b</parent><child>c</child><axis><limit><lower>0</lower></limit></axis></joint>\
-         <plugin name='p'/>",
+         <joint name='k' type='revolute'><parent>b</parent><child>c</child><axis><limit><lower>0</lower>\
+         </limit></axis></joint><plugin name='p'/>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body f
          body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -41,7 +41,7 @@ fn frames_carry_joints_and_joints_close_loops() {
          Ball j: a -> c
          Pin k: b -> c about [0, 0, 1]
          left out limits of k, which closes a loop
-         left out plug-ins, and what they do to the motion: 1",
+         left out plug-ins, and their effect on the motion: 1",
     );
 }
 
@@ -49,8 +49,8 @@ fn frames_carry_joints_and_joints_close_loops() {
 fn what_stands_in_the_world_is_listed() {
     check_with(
         &sdf(),
-        "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/></model>\
-         <model name='m'><link name='a'/></model></world></sdf>",
+        "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/>\
+         </model><model name='m'><link name='a'/></model></world></sdf>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          Weld root_joint: ground -> a
          left out static models of the world: 1",
@@ -70,7 +70,8 @@ fn poses_name_frames_that_there_are() {
         ("<pose relative_to='a'/>", "r.sdf:2:35: the frame `a` is placed relative to itself"),
         (
             "<pose>1 2 3</pose>",
-            "r.sdf:2:22: expected 6 numbers in `pose`, found `1 2 3`\n= help: write as many numbers, with spaces between them",
+            "r.sdf:2:22: expected 6 numbers in `pose`, found `1 2 3`\n= help: write that many numbers, \
+             separated by spaces",
         ),
         (
             "<pose>1 2 3 4 5 x</pose>",
@@ -92,33 +93,39 @@ fn poses_name_frames_that_there_are() {
 fn what_is_not_supported_is_said() {
     let joint = |inside: &str| {
         format!(
-            "<link name='a'/><link name='b'/><joint name='j' {inside}<parent>a</parent><child>b</child></joint>"
+            "<link name='a'/><link name='b'/><joint name='j' {inside}<parent>a</parent><child>b</child>\
+             </joint>"
         )
     };
     for (inside, expected) in [
         (
             "<link name='a'/><include/>".to_string(),
-            "r.sdf:2:17: `<include>` without a `<uri>`\n= help: expected `<uri>model://…</uri>` or the path of a file",
+            "r.sdf:2:17: `<include>` without a `<uri>`\n= help: expected `<uri>model://…</uri>` or the path \
+             of a file",
         ),
         (
             "<include merge='true'><uri>a</uri></include>".to_string(),
-            "r.sdf:2:1: `merge` of an `<include>` is not supported\n= help: write the whole: `gz sdf -p robot.sdf > whole.sdf`",
+            "r.sdf:2:1: `merge` of an `<include>` is not supported\n= help: write the expanded file: `gz sdf \
+             -p robot.sdf > whole.sdf`",
         ),
         (
             "<static>true</static><link name='a'/>".to_string(),
-            "r.sdf:2:1: the model is static: nothing of it moves\n= help: remove `<static>`",
+            "r.sdf:2:1: the model is static and cannot move\n= help: remove `<static>`",
         ),
         (
             "<link name='a'><gravity>0</gravity></link>".to_string(),
-            "r.sdf:2:16: `<gravity>` of a link is not supported\n= help: remove it: gravity acts on all links, and forces move them",
+            "r.sdf:2:16: `<gravity>` of a link is not supported\n= help: remove it: gravity acts on all \
+             links, and forces move them",
         ),
         (
             "<link name='a'><inertial auto='true'/></link>".to_string(),
-            "r.sdf:2:16: mass properties by collision geometry are not supported\n= help: write `<mass>` and `<inertia>` instead of `auto`",
+            "r.sdf:2:16: mass properties by collision geometry are not supported\n= help: write `<mass>` and \
+             `<inertia>` instead of `auto`",
         ),
         (
             "<link name='a'/><frame name='a'/>".to_string(),
-            "r.sdf:2:30: second link, joint or frame with the name `a`\n= help: all of them are frames: names of frames differ",
+            "r.sdf:2:30: second link, joint or frame with the name `a`\n= help: they are all frames: choose \
+             different names",
         ),
         ("<lnk name='a'/>".to_string(), "r.sdf:2:1: unknown element `<lnk>`\n= help: did you mean `<link>`?"),
         (String::new(), "r.sdf:1:6: model without a link\n= help: expected `<link name=\"…\"/>`"),
@@ -136,7 +143,8 @@ fn what_is_not_supported_is_said() {
         ),
         (
             joint("type='screw'><axis/>"),
-            "r.sdf:2:33: screw without `<screw_thread_pitch>`\n= help: it is what the joint advances in a turn, m",
+            "r.sdf:2:33: screw without `<screw_thread_pitch>`\n= help: it is the advance of the joint per \
+             turn, m",
         ),
         (
             joint("type='revolute'><axis><xyz>0 0 0</xyz></axis>"),
@@ -144,11 +152,13 @@ fn what_is_not_supported_is_said() {
         ),
         (
             joint("type='universal'><axis><dynamics><damping>-1</damping></dynamics></axis><axis2/>"),
-            "r.sdf:2:91: negative damping `-1`\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "r.sdf:2:91: negative damping `-1`\n= help: to ignore springs, damping and friction, write \
+             `#[mechanism(…, passive = ignore)]`",
         ),
         (
             joint("type='revolute'><axis><limit><lower>1</lower><upper>0</upper></limit></axis>"),
-            "r.sdf:2:85: `lower` is 1, above `upper`, which is 0\n= help: to leave limits out, write `#[mechanism(…, limits = ignore)]`",
+            "r.sdf:2:85: `lower` is 1, above `upper`, which is 0\n= help: to ignore limits, write \
+             `#[mechanism(…, limits = ignore)]`",
         ),
     ] {
         check_model(&inside, expected);
@@ -160,19 +170,23 @@ fn another_format_is_named() {
     for (text, expected) in [
         (
             "<robot/>",
-            "r.sdf:1:1: expected `<sdf>`, found `<robot>`\n= help: this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`",
+            "r.sdf:1:1: expected `<sdf>`, found `<robot>`\n= help: this is a URDF file: write `urdf = \"…\"` \
+             instead of `sdf = \"…\"`",
         ),
         (
             "<mujoco/>",
-            "r.sdf:1:1: expected `<sdf>`, found `<mujoco>`\n= help: this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`",
+            "r.sdf:1:1: expected `<sdf>`, found `<mujoco>`\n= help: this is an MJCF file: write `mjcf = \
+             \"…\"` instead of `sdf = \"…\"`",
         ),
         (
             "<sdf/>",
-            "r.sdf:1:1: SDF file without a model\n= help: expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`",
+            "r.sdf:1:1: SDF file without a model\n= help: expected `<sdf version=\"…\"><model name=\"…\"> … \
+             </model></sdf>`",
         ),
         (
             "<sdf><world><model name='a'/><model name='b'/></world></sdf>",
-            "r.sdf:1:30: SDF file with several models\n= help: a mechanism is one model, or several that joints of their world connect: put the others into files of their own",
+            "r.sdf:1:30: SDF file with several models\n= help: a mechanism is one model, or several that \
+             joints of their world connect: put the others into files of their own",
         ),
     ] {
         check_with(&sdf(), text, expected);
@@ -205,7 +219,8 @@ fn every_beginning_of_a_file_gets_an_answer() {
 /// result equals that of a file which contains the model.
 #[test]
 fn included_models_stand_in_the_place_of_their_elements() {
-    let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'><pose>0 0 1 0 0 0</pose></link></model></sdf>";
+    let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'>\
+                 <pose>0 0 1 0 0 0</pose></link></model></sdf>";
     let files = [
         (
             "parts/model.config",
@@ -221,14 +236,16 @@ fn included_models_stand_in_the_place_of_their_elements() {
     ];
     let folder = Folder::new("sdf-includes", &files);
     let model = |inside: &str| format!("<sdf><model name='m'>\n{inside}</model></sdf>");
-    let joints = "<link name='hull'/><joint name='i' type='revolute'><parent>hull</parent><child>left::rim</child><axis/></joint>\
-         <joint name='j' type='revolute'><parent>hull</parent><child>wheel::rim</child><axis/></joint>";
+    let joints = "<link name='hull'/><joint name='i' type='revolute'><parent>hull</parent>\
+                  <child>left::rim</child><axis/></joint><joint name='j' type='revolute'>\
+                  <parent>hull</parent><child>wheel::rim</child><axis/></joint>";
     let written = |name: &str, pose: &str| {
         format!("<model name='{name}'>{pose}<link name='rim'><pose>0 0 1 0 0 0</pose></link></model>")
     };
     let (near, far) = ("<pose>1 0 0 0 0 0</pose>", "<pose>9 9 9 0 0 0</pose>");
     let included = format!(
-        "{joints}<include><name> left </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
+        "{joints}<include><name> left \
+         </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
     );
     let whole = format!("{joints}{}{}", written("left", near), written("wheel", far));
     let answer = folder.answer(&sdf(), &model(&included));
@@ -236,9 +253,10 @@ fn included_models_stand_in_the_place_of_their_elements() {
     assert_eq!(answer, expected);
     assert!(answer.contains("Pin i: hull.at([1, 0, 1]) -> left::rim"), "{answer}");
     // Nested includes, and includes in a world, which may refer to missing files.
-    let world = "<sdf><world name='w'><include><uri>model://ground_plane</uri></include><include><uri>two.sdf</uri></include></world></sdf>";
+    let world = "<sdf><world name='w'><include><uri>model://ground_plane</uri></include><include>\
+                 <uri>two.sdf</uri></include></world></sdf>";
     let answer = folder.answer(&sdf(), world);
-    assert!(answer.contains("body wheel::rim") && answer.contains("not beside the file: 1"), "{answer}");
+    assert!(answer.contains("body wheel::rim") && answer.contains("not next to the file: 1"), "{answer}");
     for (inside, expected) in [
         ("<include><uri>bad.sdf</uri></include>", "bad.sdf:2:17: unknown element `<lnk>`"),
         (
@@ -246,7 +264,7 @@ fn included_models_stand_in_the_place_of_their_elements() {
             "none.sdf:1:1: expected an SDF file with one model, found no model",
         ),
         ("<include><uri>a.sdf</uri></include>", "b.sdf:2:15: `a.sdf` includes itself"),
-        ("<include><uri>model://arm</uri></include>", "r.sdf:2:15: `model://arm` is not beside the file"),
+        ("<include><uri>model://arm</uri></include>", "r.sdf:2:15: `model://arm` is not next to the file"),
         (
             "<include><uri>wheal.sdf</uri></include>",
             "r.sdf:2:15: there is no file `wheal.sdf`\n\n= help: did you mean `wheel.sdf`?",
@@ -265,8 +283,9 @@ const ONE: &str = "mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
 fn axes_of_old_versions_are_in_the_model() {
     let text = |version: &str, axis: &str| {
         format!(
-            "<sdf version='{version}'><model name='m'><link name='a'/><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose></link>\
-             <joint name='j' type='prismatic'><parent>a</parent><child>b</child><axis>{axis}</axis></joint></model></sdf>"
+            "<sdf version='{version}'><model name='m'><link name='a'/><link name='b'>\
+             <pose>0 0 0 0 0 1.5707963267948966</pose></link><joint name='j' type='prismatic'>\
+             <parent>a</parent><child>b</child><axis>{axis}</axis></joint></model></sdf>"
         )
     };
     let plain = "<xyz>1 0 0</xyz>";
@@ -287,14 +306,16 @@ fn axes_of_old_versions_are_in_the_model() {
         ("1.12", "<xyz expressed_in='__model__'>1 0 0</xyz>", "[0, -1, 0]"),
     ] {
         let expected = format!(
-            "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: a.rotated(z(1.5707963267948966)) -> b along {along}"
+            "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: \
+             a.rotated(z(1.5707963267948966)) -> b along {along}"
         );
         check_with(&sdf(), &text(version, axis), &expected);
     }
     check_with(
         &sdf(),
         &text("1.7", &of_model),
-        "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write `<xyz expressed_in=\"__model__\">`",
+        "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write \
+         `<xyz expressed_in=\"__model__\">`",
     );
 }
 
@@ -303,8 +324,9 @@ fn axes_of_old_versions_are_in_the_model() {
 fn included_files_are_read_in_their_own_version() {
     let arm = |version: &str| {
         format!(
-            "<sdf version='{version}'><model name='arm'><link name='a'/><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose></link>\
-             <joint name='j' type='prismatic'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"
+            "<sdf version='{version}'><model name='arm'><link name='a'/><link name='b'>\
+             <pose>0 0 0 0 0 1.5707963267948966</pose></link><joint name='j' type='prismatic'>\
+             <parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"
         )
     };
     let folder = Folder::new("sdf-versions", &[("old.sdf", &arm("1.4")), ("new.sdf", &arm("1.9"))]);
@@ -326,8 +348,9 @@ fn poses_of_old_versions_name_frames() {
     let text = |version: &str, pose: &str, inertial: &str| {
         format!(
             "<sdf version='{version}'><model name='m'><link name='a'><pose>0 0 1 0 0 0</pose></link>\
-             <link name='b'><frame name='f'><pose>0 3 0 0 0 0</pose></frame>{pose}<inertial>{inertial}<mass>2</mass></inertial></link>\
-             <joint name='j' type='fixed'><parent>a</parent><child>b</child></joint></model></sdf>"
+             <link name='b'><frame name='f'><pose>0 3 0 0 0 0</pose>\
+             </frame>{pose}<inertial>{inertial}<mass>2</mass></inertial></link><joint name='j' type='fixed'>\
+             <parent>a</parent><child>b</child></joint></model></sdf>"
         )
     };
     let expected = |at: &str, com: &str| {
@@ -359,20 +382,22 @@ fn poses_of_old_versions_name_frames() {
 fn joints_of_the_world_hold_models() {
     let world = |inside: &str| {
         format!(
-            "<sdf version='1.10'><world name='w'><gravity>0 0 -1</gravity>{inside}\
-             <model name='m'><pose>0 0 1 0 0 0</pose><link name='a'><pose>1 0 0 0 0 0</pose></link></model></world></sdf>"
+            "<sdf version='1.10'><world name='w'><gravity>0 0 -1</gravity>{inside}<model name='m'>\
+             <pose>0 0 1 0 0 0</pose><link name='a'><pose>1 0 0 0 0 0</pose></link></model></world></sdf>"
         )
     };
     let slide = |parent: &str, more: &str| {
         format!(
-            "<joint name='a' type='prismatic'>{more}<parent>{parent}</parent><child>m::a</child><axis><xyz>1 0 0</xyz></axis></joint>"
+            "<joint name='a' type='prismatic'>{more}<parent>{parent}</parent><child>m::a</child><axis>\
+             <xyz>1 0 0</xyz></axis></joint>"
         )
     };
     for (inside, expected) in [
         (
             slide("world", ""),
             format!(
-                "body world\nbody a {ONE}\nWeld root_joint: ground -> world\nSleeve world::a: world.at([1, 0, 1]) -> a along [1, 0, 0]"
+                "body world\nbody a {ONE}\nWeld root_joint: ground -> world\nSleeve world::a: world.at([1, \
+                 0, 1]) -> a along [1, 0, 0]"
             ),
         ),
         // A frame of the world is fixed, and a static model belongs to the world.
@@ -408,7 +433,8 @@ fn joints_of_the_world_hold_models() {
                 slide("n::a", "").replace("name='a'", "name='i'")
             ),
             format!(
-                "body n::a {ONE}\nbody m::a {ONE}\nWeld root_joint: ground -> n::a\nSleeve i: n::a.at([1, 0, 1]) -> m::a along [1, 0, 0]"
+                "body n::a {ONE}\nbody m::a {ONE}\nWeld root_joint: ground -> n::a\nSleeve i: n::a.at([1, 0, \
+                 1]) -> m::a along [1, 0, 0]"
             ),
         ),
     ] {
@@ -433,8 +459,9 @@ fn joints_of_the_world_hold_models() {
 fn screws_of_old_versions_advance_by_their_thread() {
     let text = |pitch: &str| {
         format!(
-            "<sdf version='1.5'><model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'><parent>a</parent>\
-             <child>b</child><axis/><thread_pitch>{pitch}</thread_pitch></joint></model></sdf>"
+            "<sdf version='1.5'><model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'>\
+             <parent>a</parent><child>b</child><axis/><thread_pitch>{pitch}</thread_pitch></joint></model>\
+             </sdf>"
         )
     };
     let imported = import_text(&text("-4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
@@ -447,10 +474,14 @@ fn screws_of_old_versions_advance_by_their_thread() {
 fn versions_are_numbers() {
     let model = "<model name='m'><link name='a'/></model>";
     for (version, expected) in [
-        ("1.x", "r.sdf:1:15: `1.x` is no version of SDF\n= help: expected a number, as in `version=\"1.9\"`"),
+        (
+            "1.x",
+            "r.sdf:1:15: `1.x` is not a version of SDF\n= help: expected a number, as in `version=\"1.9\"`",
+        ),
         (
             "1.0",
-            "r.sdf:1:1: version 1.0 of SDF is not supported\n= help: convert the file: `gz sdf -p robot.sdf > converted.sdf`",
+            "r.sdf:1:1: version 1.0 of SDF is not supported\n= help: convert the file: `gz sdf -p robot.sdf \
+             > converted.sdf`",
         ),
     ] {
         check_with(&sdf(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
@@ -466,7 +497,8 @@ fn versions_are_numbers() {
             "unknown attribute `ixx` of `<inertia>`",
         ),
         (
-            "<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis xyz='1 0 0'/></joint>",
+            "<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent>\
+             <child>b</child><axis xyz='1 0 0'/></joint>",
             "unknown attribute `xyz` of `<axis>`",
         ),
     ] {
@@ -495,8 +527,9 @@ fn gravity_of_old_worlds_is_that_of_their_physics() {
 #[test]
 fn comments_do_not_hide_values() {
     check_model(
-        "<link name='a'><pose><!-- m, rad -->0 0 3 0 0 0</pose><inertial><mass><!-- kg -->2</mass></inertial></link>\
-         <link name='b'/><joint name='j' type='ball'><parent><!-- link --> a</parent><child>b</child></joint>",
+        "<link name='a'><pose><!-- m, rad -->0 0 3 0 0 0</pose><inertial><mass><!-- kg -->2</mass></inertial>\
+         </link><link name='b'/><joint name='j' type='ball'><parent><!-- link --> a</parent><child>b</child>\
+         </joint>",
         "body a mass=2 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          Weld root_joint: ground.at([0, 0, 3]) -> a
@@ -516,7 +549,7 @@ fn comments_do_not_hide_values() {
 #[test]
 fn parts_in_the_place_of_others_are_errors() {
     let model = "= help: a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
-    let link = "= help: mass properties belong to `<inertial>`, and what joins links to `<joint>`";
+    let link = "= help: mass properties belong to `<inertial>`, and connections of links to `<joint>`";
     let inertial = "= help: expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
     for (inside, found, help) in [
         ("<mass>5</mass>", "r.sdf:2:1: unexpected `<mass>` in `<model>`", model),
@@ -539,7 +572,8 @@ fn parts_in_the_place_of_others_are_errors() {
     }
     let joint = |inside: &str| {
         format!(
-            "<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent><child>b</child>{inside}</joint>"
+            "<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>\
+             <child>b</child>{inside}</joint>"
         )
     };
     for (inside, found) in [
@@ -560,9 +594,8 @@ fn parts_in_the_place_of_others_are_errors() {
 #[test]
 fn ends_without_names_are_errors() {
     check_model(
-        "<link name='a'/><link name='b'/>\
-         <joint name='i' type='ball'><parent>a</parent><child>b</child></joint>\
-         <joint name='j' type='ball'><parent/><child>b</child></joint>",
+        "<link name='a'/><link name='b'/><joint name='i' type='ball'><parent>a</parent><child>b</child>\
+         </joint><joint name='j' type='ball'><parent/><child>b</child></joint>",
         "r.sdf:2:131: `<parent>` without a name
          = help: expected the name of a link or a frame",
     );
@@ -571,13 +604,13 @@ fn ends_without_names_are_errors() {
 #[test]
 fn what_a_joint_cannot_have_is_listed() {
     check_model(
-        "<link name='a'/><link name='b'/><link name='c'/>\
-         <joint name='i' type='screw'><parent>a</parent><child>b</child><screw_thread_pitch>1</screw_thread_pitch>\
-         <axis><limit><lower>-1</lower><upper>2</upper></limit></axis></joint>\
-         <joint name='j' type='ball'><parent>b</parent><child>c</child><axis/><axis2/></joint>\
-         <link name='d'/><joint name='k' type='prismatic'><parent>c</parent><child>d</child><axis/></joint>\
-         <link name='e'/><joint name='l' type='prismatic'><parent>d</parent><child>e</child>\
-         <axis><mimic joint='k'><multiplier>2</multiplier></mimic></axis></joint>",
+        "<link name='a'/><link name='b'/><link name='c'/><joint name='i' type='screw'><parent>a</parent>\
+         <child>b</child><screw_thread_pitch>1</screw_thread_pitch><axis><limit><lower>-1</lower>\
+         <upper>2</upper></limit></axis></joint><joint name='j' type='ball'><parent>b</parent>\
+         <child>c</child><axis/><axis2/></joint><link name='d'/><joint name='k' type='prismatic'>\
+         <parent>c</parent><child>d</child><axis/></joint><link name='e'/><joint name='l' type='prismatic'>\
+         <parent>d</parent><child>e</child><axis><mimic joint='k'><multiplier>2</multiplier></mimic></axis>\
+         </joint>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body c mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -597,8 +630,8 @@ fn what_a_joint_cannot_have_is_listed() {
 /// Gravity is that of the world which has the model.
 #[test]
 fn gravity_is_that_of_the_models_world() {
-    let text = "<sdf><world name='a'><gravity>0 0 -1</gravity></world>\
-         <world name='b'><gravity>0 0 -5</gravity><model name='m'><link name='a'/></model></world></sdf>";
+    let text = "<sdf><world name='a'><gravity>0 0 -1</gravity></world><world name='b'>\
+                <gravity>0 0 -5</gravity><model name='m'><link name='a'/></model></world></sdf>";
     let imported = import_text(text, &sdf(), &mut Diagnostics::new()).expect("a robot");
     assert_eq!(imported.gravity.map(|e| render_expr(&e)).as_deref(), Some("[0, 0, -5]"));
 }
@@ -610,7 +643,7 @@ fn plugins_of_included_models_are_listed() {
     let folder = Folder::new("plugins", &[("arm.sdf", arm)]);
     let text = "<sdf><model name='m'><include><uri>arm.sdf</uri><plugin name='p'/></include></model></sdf>";
     let answer = folder.answer(&sdf(), text);
-    assert!(answer.contains("left out plug-ins, and what they do to the motion: 1\n"), "{answer}");
+    assert!(answer.contains("left out plug-ins, and their effect on the motion: 1\n"), "{answer}");
     let twice = text.replace("<plugin name='p'/>", "<uri>leg.sdf</uri>");
     let answer = folder.answer(&sdf(), &twice);
     assert!(answer.starts_with("r.sdf:1:49: second `<uri>` of one element\n"), "{answer}");

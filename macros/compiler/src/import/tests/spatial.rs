@@ -44,7 +44,8 @@ fn paths_are_lengths_of_cables() {
 /// A pulley divides the length after it by its divisor; a gear ratio multiplies the whole length.
 #[test]
 fn pulleys_and_gears_are_factors() {
-    let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/><site site='side'/></spatial>";
+    let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/>\
+                  <site site='side'/></spatial>";
     let length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
     assert_eq!(
         drives(tendon, "<motor tendon='t' name='m' gear='3'/>"),
@@ -78,9 +79,8 @@ fn sites_are_pushed_and_turned() {
     assert_eq!(site("gear='1 2 0 0 0 3'"), ["m: input in N on b.at([3, 0, 0]) by 1 2 0, 0 0 3"]);
     assert_eq!(
         site("refsite='w' gear='1 0 -2'"),
-        [
-            "m: input in N on dot(r((b.at([3, 0, 0]) / ground.at([0, 0, 1]))), ((1 * ground.x) + (-2 * ground.z)))"
-        ]
+        ["m: input in N on dot(r((b.at([3, 0, 0]) / ground.at([0, 0, 1]))), ((1 * ground.x) + (-2 * \
+          ground.z)))"]
     );
     assert_eq!(
         site("refsite='w' gear='0 0 0 0 1 0'"),
@@ -107,13 +107,13 @@ fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
         let found = found.join("\n");
         assert!(found.contains(message), "{found}");
     };
-    let inputs = "= help: to leave the actuators of the file out, write";
+    let inputs = "= help: to ignore the actuators of the file, write";
     last(
         drives(side, "<motor tendon='t'/>"),
         "the side on which a tendon passes the sphere `ball` is not supported",
     );
     last(drives(side, "<motor tendon='t'/>"), inputs);
-    last(cable("<geom geom='box'/>"), "a tendon runs around spheres and cylinders, but `box` is none");
+    last(cable("<geom geom='box'/>"), "a tendon wraps around spheres and cylinders, but `box` is neither");
     last(cable("<geom geom='bal'/>"), "unknown geom `bal`");
     last(cable("<geom geom='ball'/><geom geom='drum'/>"), "a tendon runs around a shape between two sites");
     last(cable("<site site='x'/>"), "unknown site `x`");

@@ -16,7 +16,8 @@ fn what_is_left_within_a_turn_turns_as_far() {
 fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
     let degrees = text.replace('…', "90");
     let said = format!(
-        "{place}: an angle of 90 rad is more than a full turn: 90° are {} rad, 90 rad turn like {} rad\n= help: {help}",
+        "{place}: an angle of 90 rad is more than a full turn: 90° are {} rad, 90 rad is the same rotation \
+         as {} rad\n= help: {help}",
         std::f64::consts::FRAC_PI_2,
         SAME_TURN,
     );
@@ -46,7 +47,8 @@ fn degrees_in_a_urdf_are_told_once() {
 fn degrees_in_an_sdf_say_so() {
     let options = FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() };
     let model = |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
-    let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, everywhere in the file";
+    let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
+                everywhere in the file";
     check_turns(&options, &model("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
     let answer = run(&options, &model("<pose degrees='true'>0 0 0 0 0 90</pose>"));
     assert!(answer.contains("body a mass=1"), "{answer}");
@@ -61,7 +63,8 @@ fn degrees_in_an_mjcf_are_what_the_file_says() {
              <geom size='.1' mass='1'/></body></worldbody></mujoco>"
         )
     };
-    let help = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or `angle=\"degree\"`";
+    let help = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or \
+                `angle=\"degree\"`";
     for (turn, place) in [("euler='0 … 0'", "r.xml:2:23"), ("axisangle='0 0 20 …'", "r.xml:2:27")] {
         check_turns(&options, &model("radian", turn), place, help);
         let answer = run(&options, &model("degree", &turn.replace('…', "90")));

@@ -47,8 +47,8 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
         }
         (.., Some(_)) => Shape::Mesh,
         _ => {
-            let message = "collision geometry without a shape that is known";
-            let help = "known are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
+            let message = "collision geometry without a supported shape";
+            let help = "supported are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
             cx.error(&place(geometry, cx), message.to_string(), |d| d.help(help));
             return None;
         }

@@ -26,7 +26,8 @@ const TYPES: [(&str, JointKind); 7] = [
 /// Child elements of `<joint>` that are read.
 const PARTS: [&str; 7] = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
 
-const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
+const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin \
+                        xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
 
 /// Attributes of `<dynamics>` that parametrise the controllers of other tools.
 const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
@@ -138,7 +139,7 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
     })
 }
 
-const IGNORE_PASSIVE: &str = "to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+const IGNORE_PASSIVE: &str = "to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
 fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_only(node, &["joint"], &["multiplier", "offset"], &[], cx);

@@ -36,7 +36,7 @@ pub(super) fn read_link(
     misplaced::check(
         node,
         &["inertial"],
-        "a link has mass properties by `<inertial>`, and its place by a joint",
+        "a link has mass properties by `<inertial>`, and its position by a joint",
         cx,
     );
     let name = name(node, "name", cx);

@@ -71,7 +71,7 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     misplaced::check(
         node,
         &["link", "joint"],
-        "expected `<link>` and `<joint>`, which hold all that moves",
+        "expected `<link>` and `<joint>`, which describe all moving parts",
         cx,
     );
     for child in elements(node) {

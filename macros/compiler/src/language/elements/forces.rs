@@ -84,7 +84,8 @@ table! {
         /// A spring.
         Spring = ForceRow {
             name: "Spring",
-            synonyms: "torsionspring torsionalspring rotationalspring linearspring coilspring elastic elasticity compliance",
+            synonyms: "torsionspring torsionalspring rotationalspring linearspring coilspring elastic \
+                       elasticity compliance",
             arguments: &[Key::Stiffness, Key::Force, Key::Energy, FreeLength, FreeAngle],
             laws: &[Key::Force, Key::Energy, Key::Stiffness],
             required: &[(Key::Stiffness, "k")],
@@ -92,7 +93,7 @@ table! {
                 FreeAngle,
                 &[FreeLength],
                 "a spring has one of `free_length` and `free_angle`",
-                "`free_length` goes with what slides, `free_angle` with what turns",
+                "`free_length` applies to translations, `free_angle` to rotations",
             )],
             locals: Locals::Stretch,
             pieces: Some([PieceKind::Coil, PieceKind::Spiral]),
@@ -100,11 +101,12 @@ table! {
                 (ON, "on"),
                 ("points ends connects", "between"),
                 ("k stiff springconstant springrate rate constant coefficient", "stiffness"),
-                ("length l l0 x0 restlength naturallength unstretchedlength freelen rest natural free equilibrium", "free_length"),
+                ("length l l0 x0 restlength naturallength unstretchedlength freelen rest natural free \
+                  equilibrium", "free_length"),
                 ("angle theta0 phi0 restangle naturalangle q0 rest natural free equilibrium", "free_angle"),
                 ("inertance inerter", NO_INERTANCE),
                 ("damping c d damper",
-                    "a spring does not damp: put a `Dashpot` beside it, a field of its own"),
+                    "a spring has no damping: add a separate `Dashpot`"),
                 ("f law", "force"),
                 ("potential u", "energy"),
             ],
@@ -125,9 +127,9 @@ table! {
                 ("points ends connects", "between"),
                 ("c d b damp dampingcoefficient coefficient viscosity viscous resistance", "damping"),
                 ("inertance inerter", NO_INERTANCE),
-                ("coulomb friction mu dry", "dry friction is a `Friction`, a field of its own"),
+                ("coulomb friction mu dry", "dry friction is a separate `Friction`"),
                 ("stiffness k",
-                    "a dashpot does not spring back: put a `Spring` beside it, a field of its own"),
+                    "a dashpot has no stiffness: add a separate `Spring`"),
                 ("f law", "force"),
             ],
             example: "#[acts(on = joint, damping = c)]",
@@ -152,7 +154,8 @@ table! {
             words: &[
                 (ON, "on"),
                 ("mu coefficient f friction force torque kinetic dynamic sliding normal",
-                    "did you mean `coulomb`? it is a force or a torque: the coefficient times the normal force"),
+                    "did you mean `coulomb`? it is a force or a torque: the coefficient times the normal \
+                     force"),
                 ("static breakaway stick fs", "stiction"),
                 ("damping c d b", "viscous"),
                 ("stribeck vs", "stribeck_speed"),

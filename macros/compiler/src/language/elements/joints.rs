@@ -72,7 +72,8 @@ table! {
     JointKind: JointRow {
         /// Rotation about an axis (revolute, hinge).
         Pin = row("Pin",
-            "revolute hinge continuous rotary rotational rotation rotating pivot axle bearing turn turning swivel",
+            "revolute hinge continuous rotary rotational rotation rotating pivot axle bearing turn turning \
+             swivel",
             &["about"], ANGLE, HINGE, ABOUT);
         /// Translation along an axis (prismatic).
         Sleeve = row("Sleeve",
@@ -167,21 +168,24 @@ pub const JOINT_WORDS: Words = &[
     ("rpy orientation angle rotation axes rotated euler quat quaternion tilt", TURNED),
     (
         "damping damper c viscous",
-        "a joint moves freely; a damper is a field of its own: `#[acts(on = NAME, damping = c)] damper: Dashpot`",
+        "a joint moves freely; a damper is a separate field: `#[acts(on = NAME, damping = c)] damper: \
+         Dashpot`",
     ),
     (
         "stiffness spring k",
-        "a joint moves freely; a spring is a field of its own: `#[acts(on = NAME, stiffness = k)] spring: Spring`",
+        "a joint moves freely; a spring is a separate field: `#[acts(on = NAME, stiffness = k)] spring: \
+         Spring`",
     ),
     (
         "friction coulomb frictionloss",
-        "a joint moves freely; friction is a field of its own: `#[acts(on = NAME, coulomb = f)] friction: Friction`",
+        "a joint moves freely; friction is a separate field: `#[acts(on = NAME, coulomb = f)] friction: \
+         Friction`",
     ),
     (
         "torque motor actuator effort drive",
-        "what drives a joint is a field of its own: `#[acts(on = NAME)] motor: Torque`",
+        "the drive of a joint is a separate field: `#[acts(on = NAME)] motor: Torque`",
     ),
-    ("force", "what drives a joint is a field of its own: `#[acts(on = NAME)] motor: Force`"),
+    ("force", "the drive of a joint is a separate field: `#[acts(on = NAME)] motor: Force`"),
     (
         "limit limits lower upper range min max from to maxspeed maxvelocity maxeffort maxtorque maxforce",
         LIMITED,
@@ -193,6 +197,6 @@ pub const JOINT_WORDS: Words = &[
     ),
     (
         "driven prescribed",
-        "a motion that is given is a body placed by time: `#[body(massive, at = …, frame = …)]`",
+        "a prescribed motion is a body placed by time: `#[body(massive, at = …, frame = …)]`",
     ),
 ];

@@ -48,10 +48,10 @@ const BODY_WORDS: Words = &[
     ("ixx iyy izz ixy ixz iyz jxx jyy jzz", MATRIX),
     ("length size l height width", "a size belongs to a solid, as in `inertia = rod(m, l, y)`"),
     ("radius diameter r", "a size belongs to a solid, as in `inertia = sphere(m, r)`"),
-    ("density rho", "the mass is given itself: `mass = density * volume`"),
+    ("density rho", "the mass is given directly: `mass = density * volume`"),
     ("position pos origin xyz translation location", PLACED),
     ("parent child joint on base", ENDS),
-    ("color colour visual name", "nothing is drawn: remove it"),
+    ("color colour visual name", "colours and visuals are not used: remove it"),
     (
         "rotation axes rpy orientation",
         "rotate an end of the joint or an inertia: `body.rotated(z(angle))`, `rod(m, l, x).rotated(z(angle))`",
@@ -62,7 +62,7 @@ const BODY_WORDS: Words = &[
 const PARTICLE_WORDS: Words = &[
     ("m weight", "mass"),
     ("position pos xyz r where point location place", "at"),
-    ("on body parent", "the body stands before the vector: `at = body.at(length * x)`"),
+    ("on body parent", "the body is written before the vector: `at = body.at(length * x)`"),
     ("com inertia", "a particle is a point; a `Body` has a centre of mass and an inertia"),
 ];
 

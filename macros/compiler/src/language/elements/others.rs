@@ -56,7 +56,8 @@ table! {
     OtherKind: OtherRow {
         /// A generalized coordinate of its own.
         Coordinate = row("Coordinate",
-            "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate variable dof unknown",
+            "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate \
+             variable dof unknown",
             &[], &[], "name: Coordinate");
         /// An entry of `u` of its own.
         Input = row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
@@ -76,8 +77,8 @@ table! {
             relations: &[Relation::needs(
                 Restitution,
                 &[From, To],
-                "there is no bound to strike",
-                "write where it is: `from = …`, `to = …`, or both",
+                "a restitution needs a bound",
+                "add `from = …`, `to = …`, or both",
             )],
             ..row("Limit", "limits range bounds jointlimit jointlimits",
             &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]")
@@ -131,7 +132,8 @@ table! {
         Equilibrium = row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
         /// A generalized speed.
         Speed = row("Speed",
-            "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable speeds",
+            "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable \
+             speeds",
             &["speed"], &[], "#[speed(rate(psi) * sin(theta))]");
         /// A scalar with a name.
         Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
@@ -165,7 +167,7 @@ const CONTACT: Words = &[
     ("damping c damper", "dissipation"),
     (
         "on between surfaces bodies radius r size",
-        "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`",
+        "both surfaces come first: `ball.sphere(radius), ground.plane(z)`",
     ),
 ];
 
@@ -203,31 +205,31 @@ const COMPLIANCE: &[Relation] = &[
         Hertz,
         &[Stiffness],
         "`NAME` has two stiffnesses",
-        "`stiffness` is force by overlap, `hertz` force by its power of 3/2: write one",
+        "`stiffness` is force per penetration depth, `hertz` force per depth to the power 3/2: give one",
     ),
     Relation::needs(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
     Relation::needs(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
     Relation::excludes(
         Restitution,
         &[Stiffness, Hertz],
-        "surfaces that yield have no coefficient of restitution",
-        "`dissipation`, s/m, takes energy from their impacts",
+        "compliant surfaces have no coefficient of restitution",
+        "use `dissipation`, s/m, for the energy loss of their impacts",
     ),
     Relation::excludes(
         StaticFriction,
         &[Stiffness, Hertz],
-        "the friction of surfaces that yield is smooth in the slip: it has no stiction",
-        "leave out `stiffness` or `hertz`, or `stiction`",
+        "the friction of compliant surfaces is smooth in the slip velocity and has no stiction",
+        "remove `stiffness` or `hertz`, or remove `stiction`",
     ),
     Relation::needs(
         StaticFriction,
         &[Friction],
-        "`NAME` has stiction, but no friction while it slides",
-        "add `friction = …`: the coefficient of sliding, at most that of stiction",
+        "`NAME` has stiction, but no sliding friction",
+        "add `friction = …`: the coefficient of sliding friction, at most that of stiction",
     ),
 ];
-const RIGID: &str = "`NAME` is rigid: nothing yields in it";
-const ADD_STIFFNESS: &str = "add `stiffness = …`, N/m, where surfaces yield";
+const RIGID: &str = "`NAME` is rigid and has no compliance";
+const ADD_STIFFNESS: &str = "add `stiffness = …`, N/m, for compliant surfaces";
 
 impl OtherKind {
     /// Returns the names of all arguments, as messages list them.

@@ -4,23 +4,23 @@
 pub const ON: &str = "joint joints body bodies target coordinate applied frame";
 
 /// Help for a point as an argument of its own.
-pub const AT: &str = "the point stands behind the body: `on = body.at(length * x)`";
+pub const AT: &str = "the point is written after the body: `on = body.at(length * x)`";
 
 /// Help for limits of an input.
-pub const SATURATION: &str = "inputs have no limits: bound the value before it goes in, or write one, `value = max(min(u, high), low)`";
+pub const SATURATION: &str = "inputs have no limits: bound the value in the controller, or write `value = \
+                              max(min(u, high), low)`";
 
 /// Help for an inertance in an element other than `Inerter`.
-pub const NO_INERTANCE: &str = "what resists accelerations is an `Inerter`, a field of its own";
+pub const NO_INERTANCE: &str = "resistance to accelerations is a separate `Inerter`";
 
 /// Help for the position of a joint as an argument.
-pub const END: &str = "the place stands at the end of the joint: `parent.at(length * x) -> child`";
+pub const END: &str = "the position is part of the end of the joint: `parent.at(length * x) -> child`";
 
 /// Help for the orientation of a joint as an argument.
-pub const TURNED: &str = "axes are turned at the end of the joint: `parent.rotated(z(angle)) -> child`";
+pub const TURNED: &str = "axes are rotated at the end of the joint: `parent.rotated(z(angle)) -> child`";
 
 /// Help for limits as arguments of a joint, whose name is `NAME`.
-pub const LIMITED: &str =
-    "a limit is a field of its own: `#[limit(on = NAME, from = a, to = b)] range: Limit`";
+pub const LIMITED: &str = "a limit is a separate field: `#[limit(on = NAME, from = a, to = b)] range: Limit`";
 
 /// Help for a gear ratio as an argument.
 pub const RATIO: &str =
@@ -28,11 +28,11 @@ pub const RATIO: &str =
 
 /// Help for the joint of a body as an argument.
 pub const ENDS: &str =
-    "a body is held by a joint, a field of its own: `#[joint(parent -> child, about = z)] hinge: Pin`";
+    "a body is connected by a joint, a separate field: `#[joint(parent -> child, about = z)] hinge: Pin`";
 
 /// Help for single moments of inertia as arguments.
 pub const MATRIX: &str =
-    "moments of inertia stand together: `inertia = diagonal(xx, yy, zz)`, or a 3×3 matrix";
+    "moments of inertia are given together: `inertia = diagonal(xx, yy, zz)`, or a 3×3 matrix";
 
 /// Help for the position of a body as an argument.
 pub const PLACED: &str =

@@ -102,7 +102,7 @@ impl Base {
 
     /// Returns true for a coordinate or a velocity of the base.
     fn owns(&self, symbol: Symbol) -> bool {
-        match Quantity::of(symbol) {
+        match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => (self.q..self.q + 7).contains(&k),
             Quantity::Velocity(k) => (self.v..self.v + 6).contains(&k),
             _ => false,

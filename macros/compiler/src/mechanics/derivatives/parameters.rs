@@ -32,7 +32,7 @@ pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr
     let factor = Factor::new(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let a = factor.solve(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
-    let acceleration = |s| match Quantity::of(s) {
+    let acceleration = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };

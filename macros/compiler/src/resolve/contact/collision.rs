@@ -38,7 +38,7 @@ impl<'g> Builder<'_, 'g> {
         if parts.is_empty() {
             let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
             cx.error(e.place.clone(), format!("{whose} has no collision geometry"))
-                .help("links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
+                .help("only links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
             return None;
         }
         let mut meshes: Vec<&Name> =
@@ -47,9 +47,8 @@ impl<'g> Builder<'_, 'g> {
         if !meshes.is_empty() {
             let names: Vec<String> = meshes.iter().map(|name| format!("`{}`", name.text)).collect();
             let message = format!("the collision geometry of {} is a mesh", names.join(", "));
-            cx.error(e.place.clone(), message).help(
-                "name surfaces that stand for it, as in `foot.sphere(0.02)`, or the other links one by one",
-            );
+            cx.error(e.place.clone(), message)
+                .help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
             return None;
         }
         let surfaces = parts.into_iter().map(|part| self.collision(part, frame.as_ref(), &e.place, cx));

@@ -34,9 +34,9 @@ impl<'g> Builder<'_, 'g> {
             Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
             q => matches!(q, Quantity::Parameter(_)),
         };
-        if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::of(s))) {
-            cx.error(point.place.clone(), "the points of a surface depend on its two coordinates alone")
-                .help("parameters may stand there as well, and the axes of the surface's own body");
+        if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::from_symbol(s))) {
+            cx.error(point.place.clone(), "the points of a surface depend only on its two coordinates")
+                .help("parameters and the axes of the body of the surface are allowed as well");
             return None;
         }
         let derivatives = |c: &Coordinate| {
@@ -46,8 +46,14 @@ impl<'g> Builder<'_, 'g> {
         };
         let tangents = [derivatives(&first), derivatives(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {
-            cx.error(point.place.clone(), "these points are no surface: they do not move with both coordinates")
-                .help("write the points by two coordinates, as in `surface(u, w, u * x + w * y + u * w / size * z)`");
+            cx.error(
+                point.place.clone(),
+                "these points do not form a surface: they do not depend on both coordinates",
+            )
+            .help(
+                "write the points as a function of two coordinates, as in `surface(u, w, u * x + w * y + u * \
+                 w / size * z)`",
+            );
             return None;
         }
         Some(Sheet { point: position, tangents })

@@ -13,7 +13,7 @@ use crate::syntax;
 /// Whether expressions use no contact forces, or use them without reactions and accelerations. Reactions and
 /// accelerations are those of the motion without contact forces.
 pub fn has_consistent_forces(values: &[Expr<'_>]) -> bool {
-    let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
+    let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
     !any(|q| matches!(q, Quantity::ContactForce(_)))
         || !any(|q| matches!(q, Quantity::Reaction(_) | Quantity::Acceleration(_)))
@@ -36,7 +36,7 @@ impl<'g> Scope<'_, 'g> {
         let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
             cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
-                .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
+                .help("`torsional = …` and `rolling = …`, m, are moments per normal force");
             return None;
         }
         Some(sum_by_axes(moments))
@@ -60,7 +60,8 @@ impl<'g> Scope<'_, 'g> {
                 error.suggest(name, contact_names());
                 if error.is_bare() {
                     error.help(
-                        "name a field of type `Contact`; what stops transmit is among `contact::acting`",
+                        "name a field of type `Contact`; the forces of stops are among those of \
+                         `contact::acting`",
                     );
                 }
             }
@@ -103,7 +104,7 @@ pub(super) fn check_relative_rotation(
         checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
     {
         let Some(e) = contact.arguments.get(key) else { continue };
-        cx.error(e.place.clone(), format!("nothing turns {about}"))
-            .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");
+        cx.error(e.place.clone(), format!("no friction moment acts {about}"))
+            .help("`torsional` resists rotation about the normal, `rolling` rotation about the tangents");
     }
 }

@@ -58,7 +58,10 @@ struct SurfacePair<'g> {
     base: Moving<'g>,
 }
 
-const SUPPORTED_PAIRS: &str = "known are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; all but the cone on a surface given by its points; a sphere also on a sphere, a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on a cone or inside of a funnel";
+const SUPPORTED_PAIRS: &str = "supported are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; \
+                               all but the cone on a surface given by its points; a sphere also on a sphere, \
+                               a cylinder or a cone, or inside of a bowl, a tube or a funnel; a cone also on \
+                               a cone or inside of a funnel";
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the constraint rows of a rolling pair; `None` after an error.
@@ -144,7 +147,8 @@ impl<'g> Builder<'_, 'g> {
         let b = self.surface(second, &example, cx);
         let pair = self.ordered_pair(a?, b?, SurfaceForm::rolls_on, second, cx)?;
         if !pair.a.form.rolls_on(&pair.b.form) {
-            cx.error(e.place.clone(), "where these surfaces touch is not known").help(SUPPORTED_PAIRS);
+            cx.error(e.place.clone(), "the contact point of these surfaces is not supported")
+                .help(SUPPORTED_PAIRS);
             return None;
         }
         Some(pair)
@@ -161,7 +165,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<SurfacePair<'g>> {
         if a.frame.link == b.frame.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
-                .help("surfaces touch that belong to bodies which move relative to each other");
+                .help("a contact is between surfaces of bodies that move relative to each other");
             return None;
         }
         if !is_known(&a.form, &b.form) {

@@ -22,7 +22,8 @@ impl<'g> Builder<'_, 'g> {
         let (Some(pair), Some((coefficient, speed))) = found else { return None };
         let Some(contact) = self.contact(&pair) else {
             cx.error(constraint.value.place.clone(), "these surfaces touch along a line").help(
-                "where on it friction acts does not follow: let a surface slip that touches at a point",
+                "the point on it where friction acts is not determined: use a surface that touches at a \
+                 point",
             );
             return None;
         };
@@ -53,7 +54,7 @@ impl<'g> Builder<'_, 'g> {
                 written.place.clone(),
                 format!("a coefficient of friction cannot be negative, but it is {n}"),
             )
-            .help("friction opposes the motion by itself: write its size");
+            .help("friction opposes the motion by definition: give its magnitude");
         }
         let name = &constraint.name.text;
         self.scope.require(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
@@ -64,7 +65,8 @@ impl<'g> Builder<'_, 'g> {
             self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(written, cx))?;
         if let Some(n) = speed.value().filter(|n| *n <= 0.0) {
             cx.error(written.place.clone(), format!("this speed must be positive, but it is {n}")).help(
-                "around it Coulomb's law is smooth; the smaller it is, the stiffer is the motion at rest",
+                "Coulomb's law is smoothed below this speed; a smaller value makes the equations stiffer at \
+                 rest",
             );
         }
         self.scope.require(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
@@ -76,8 +78,9 @@ impl<'g> Builder<'_, 'g> {
 /// undetermined.
 pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
     for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
-        cx.error(row.place.clone(), "the normal force of this contact does not follow from the motion").help(
-            "other constraints hold these bodies at their distance already: without it there is no friction",
+        cx.error(row.place.clone(), "the normal force of this contact is not determined by the motion").help(
+            "other constraints already determine the distance of these bodies; friction needs the normal \
+             force",
         );
     }
 }

@@ -55,8 +55,9 @@ impl<'g> Builder<'_, 'g> {
             .in_context(Context::new(Allowed::Placement, None), |scope| scope.scalar(&limit.on, cx))?;
         let rate = time_derivative(self.model.space(), value);
         if velocity_gradient(rate).is_empty() {
-            cx.error(limit.on.place.clone(), "nothing moves what is limited")
-                .help("a limit is on an expression of coordinates, as a distance `norm(r(ball / anchor))`");
+            cx.error(limit.on.place.clone(), "the limited quantity is constant").help(
+                "a limit bounds an expression of coordinates, such as a distance `norm(r(ball / anchor))`",
+            );
             return None;
         }
         Some((value, rate, false))

@@ -190,7 +190,7 @@ fn check_size(is_angle: bool, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagno
         }
     } else if n <= 0.0 {
         cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"))
-            .help("the axis and the side of a surface are said by its form");
+            .help("lengths are positive: the kind of the surface determines its side");
         return false;
     }
     true

@@ -47,8 +47,10 @@ impl<'g> Builder<'_, 'g> {
         let context = Context::new(Allowed::Constant, None).with_locals(locals);
         let height_of = self.scope.in_context(context, |s| s.scalar(height, cx))?;
         if !symbols_in(&[height_of]).into_iter().any(|s| symbols.contains(&s)) {
-            cx.error(height.place.clone(), "this height is the same everywhere")
-                .help("write it by `u` and `w`, the place along the body's x and y, as in `0.1 * sin(3 * u)`; where it is level, a plane will do");
+            cx.error(height.place.clone(), "this height is constant").help(
+                "write it as a function of `u` and `w`, the positions along the body's x and y axes, as in \
+                 `0.1 * sin(3 * u)`; level ground is a `plane`",
+            );
             return None;
         }
         let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);

@@ -26,10 +26,15 @@ const PARALLEL: f64 = 1e-12;
 /// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
 const FLAT_RIM: f64 = 1e-24;
 
-const SUPPORTED_PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
+const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ellipsoids, capsules, cuboids \
+                               and cylinders with two ends on a plane; points and spheres also on a sphere, \
+                               a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; \
+                               capsules on each other; cuboids on each other; spheres and capsules on \
+                               cuboids; spheres on cylinders with two ends; points, spheres, capsules and \
+                               cuboids on a terrain";
 
 /// Help for unsupported contacts of cylinders.
-const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
+const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
 
 /// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy)]
@@ -75,7 +80,7 @@ impl<'g> Builder<'_, 'g> {
         if count > MAX_CONTACT_POINTS {
             let place = description.contacts.first().map_or(&description.name.place, |c| &c.name.place);
             cx.error(place.clone(), format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"))
-                .help("each has code of its own: let fewer points touch, or divide the mechanism");
+                .help("each adds code: use fewer contact points, or divide the mechanism");
         }
     }
 
@@ -115,8 +120,8 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         if separable.is_empty() || (separable.len() < points.len() && !whole && !contact.of_file) {
-            cx.error(place, "nothing moves these surfaces apart, or together")
-                .help("surfaces touch that belong to bodies which move relative to each other");
+            cx.error(place, "these surfaces cannot move relative to each other")
+                .help("a contact is between surfaces of bodies that move relative to each other");
             return;
         }
         check_relative_rotation(contact, &separable, cx);
@@ -176,7 +181,7 @@ impl<'g> Builder<'_, 'g> {
                 true => format!("{CYLINDER_HELP}; {SUPPORTED_PAIRS}"),
                 false => SUPPORTED_PAIRS.to_string(),
             };
-            cx.error(place.clone(), "where these surfaces touch is not known").help(help);
+            cx.error(place.clone(), "the contact point of these surfaces is not supported").help(help);
             return None;
         }
         let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
@@ -275,11 +280,13 @@ impl<'g> Builder<'_, 'g> {
             match (friction.value(), stiction.value()) {
                 (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
-                        true => format!("`{name}` has stiction, but no friction while it slides"),
+                        true => format!("`{name}` has stiction, but no sliding friction"),
                         false => format!("stiction, {static_value}, is less than friction, {kinetic}"),
                     };
-                    cx.error(e.place.clone(), message)
-                        .help("`friction` is the coefficient while surfaces slide, `stiction` the larger one at rest");
+                    cx.error(e.place.clone(), message).help(
+                        "`friction` is the coefficient while surfaces slide, `stiction` the larger one at \
+                         rest",
+                    );
                     return None;
                 }
                 _ => {
@@ -323,11 +330,14 @@ impl<'g> Builder<'_, 'g> {
         let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
         let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
         if let Some(n) = value.value().filter(|n| !(0.0..=maximum).contains(n)) {
-            let range = if maximum < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
+            let range = if maximum < 2.0 { "must be between 0 and 1" } else { "cannot be negative" };
             cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
                 match maximum < 2.0 {
-                    true => "the part of the speed that is left after the impact: 0 stays, 1 loses no energy",
-                    false => "it opposes the motion by itself: write its size",
+                    true => {
+                        "the ratio of the speeds after and before the impact: 0 without rebound, 1 without \
+                         loss of energy"
+                    }
+                    false => "it opposes the motion by definition: give its magnitude",
                 },
             );
             return None;

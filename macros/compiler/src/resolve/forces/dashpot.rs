@@ -20,7 +20,7 @@ pub fn dashpot<'g>(
         let damping = b.scope.scalar(written, cx)?;
         if let Some(d) = damping.value().filter(|d| *d < 0.0) {
             cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
-                .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
+                .help("a dashpot dissipates energy; an element that supplies energy is a `Force` or `Torque` with `value = …`");
         }
         b.scope.require(Rule::NotNegative, || format!("the damping of `{}`", action.name.text), &[damping]);
         return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });

@@ -61,7 +61,7 @@ pub fn dry_friction<'g>(
         (Some(Some(fs)), Some(Some(vs))) => fc + (fs - fc) * (-(v / vs).square()).call(Function::Exp),
         (Some(None), _) | (_, Some(None)) => return None,
         _ => {
-            cx.error(place.clone(), "`stiction` and `stribeck_speed` go together")
+            cx.error(place.clone(), "`stiction` and `stribeck_speed` must be given together")
                 .help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
             return None;
         }

@@ -51,7 +51,7 @@ pub fn gravity<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -
         }
         _ => {
             cx.error(action.name.place.clone(), "gravity has a `constant` or a `mu`").help(
-                "`constant` is that of two masses, `mu` the gravitational parameter of the first place",
+                "`constant` is the gravitational constant of two masses, `mu` the gravitational parameter of the first point",
             );
             None
         }
@@ -78,7 +78,7 @@ fn mass_of<'g>(b: &Builder<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> O
         }
     }
     cx.error(e.place.clone(), "expected a body or a particle, which has mass")
-        .help("name one; of a point without mass, such as `ground`, `mu` says what it attracts with");
+        .help("name one; for a point without mass, such as `ground`, give the gravitational parameter `mu`");
     None
 }
 

@@ -28,7 +28,7 @@ pub fn inertance<'g>(
     let inertance = b.scope.scalar(written, cx)?;
     if let Some(n) = inertance.value().filter(|n| *n < 0.0) {
         cx.error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
-            .help("it resists accelerations as a mass does: write its size");
+            .help("it resists accelerations as a mass does: give its magnitude");
     }
     b.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
     Some(Forces { inertances: vec![Inertance { rate, inertance }], ..Forces::default() })

@@ -55,7 +55,7 @@ fn value_on<'g>(
         return None;
     }
     let Some(link) = place.link else {
-        cx.error(on.place.clone(), "this is fixed to the ground: nothing that acts on it has an effect");
+        cx.error(on.place.clone(), "this is fixed to the ground: a force on it has no effect");
         return None;
     };
     let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
@@ -125,7 +125,7 @@ fn input<'g>(
 ) -> Option<Forces<'g>> {
     let mut refuse_direction = |what: &str| {
         if let Some(direction) = direction {
-            cx.error(direction.place.clone(), format!("the {what} itself gives the direction"))
+            cx.error(direction.place.clone(), format!("the {what} determines the direction"))
                 .help("remove this argument, or let it act on a body");
         }
     };
@@ -175,7 +175,7 @@ pub fn value_load<'g>(
 ) -> Option<Forces<'g>> {
     let graph = b.scope.graph;
     let mut forces = Forces::default();
-    let acceleration = |s| match Quantity::of(s) {
+    let acceleration = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some((s, k)),
         _ => None,
     };
@@ -188,14 +188,14 @@ pub fn value_load<'g>(
     let factors: Vec<(usize, Value<'g>)> =
         acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
     let all: Vec<Value<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
-    let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::of).collect();
+    let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::from_symbol).collect();
     if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
-        cx.error(place.clone(), "a force can depend on accelerations linearly alone")
-            .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one of them each");
+        cx.error(place.clone(), "a force can depend on accelerations only linearly")
+            .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one acceleration each");
         return None;
     }
     if quantities.iter().any(|q| matches!(q, Quantity::Input(_))) {
-        cx.error(place.clone(), "what multiplies an acceleration cannot depend on inputs")
+        cx.error(place.clone(), "the factor of an acceleration cannot depend on inputs")
             .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
         return None;
     }
@@ -231,7 +231,7 @@ fn point_input<'g>(
     let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
     let terms = b.scope.in_context(context, |scope| scope.terms(direction, cx))?;
     let Some(link) = place.link else {
-        cx.error(on.place.clone(), "this body is fixed to the ground: nothing that acts on it has an effect")
+        cx.error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
             .help("name a body that moves");
         return None;
     };
@@ -249,7 +249,7 @@ fn point_input<'g>(
 
 /// Whether a vector depends on the configuration or on time.
 fn is_moving(v: Vec3<'_>) -> bool {
-    let moves = |s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time);
+    let moves = |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time);
     symbols_in(&v.0).into_iter().any(moves)
 }
 
@@ -257,7 +257,7 @@ fn is_moving(v: Vec3<'_>) -> bool {
 fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedKind::Point {
-        cx.error(on.place.clone(), format!("`{name}` is a point, which a torque does not turn"))
+        cx.error(on.place.clone(), format!("`{name}` is a point, on which a torque has no effect"))
             .help("let it act on a body, or write a `Force`");
         return false;
     }
@@ -267,5 +267,5 @@ fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> b
 fn report_wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
     let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
     cx.error(on.place.clone(), format!("this coordinate is {is}"))
-        .help(format!("what acts on it is a {other}"));
+        .help(format!("the element that acts on it is a {other}"));
 }

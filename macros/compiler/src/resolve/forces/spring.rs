@@ -141,7 +141,7 @@ fn integral<'g>(
             return Some(energy);
         }
     }
-    cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
+    cx.error(e.place.clone(), "this law has no energy in closed form: it is not a polynomial in `stretch`")
         .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
     None
 }

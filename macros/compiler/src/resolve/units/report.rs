@@ -50,7 +50,8 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
 }
 
 /// Help on a number with a unit that multiplies a parameter.
-const NUMBER_WITH_UNIT: &str = "a number beside a parameter is a plain factor; one with a unit is a parameter, or has a name: `#[define(9.81)] g: Scalar`";
+const NUMBER_WITH_UNIT: &str = "a number next to a parameter is dimensionless; a number with a unit is a \
+                                parameter or a definition: `#[define(9.81)] g: Scalar`";
 
 /// Whether an expression contains a product or quotient with a number.
 fn has_number_as_factor(e: &Expr) -> bool {
@@ -79,7 +80,10 @@ fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
         Some((last, [])) => format!(" here or in {last}"),
         Some((last, others)) => format!(" here or in {} or {last}", others.join(", ")),
     };
-    format!("a factor is missing{other_places}, or two things have one name: name another parameter")
+    format!(
+        "a factor is missing{other_places}, or one parameter is used for two quantities: use another \
+         parameter"
+    )
 }
 
 /// Collects the names in the expressions of an equation; the compared expressions are first.
@@ -172,7 +176,10 @@ fn mismatch_error(
     };
     let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
     if names.is_empty() {
-        diagnostic.help("multiply one of them by a factor, as in `2 * x`: a number that multiplies coordinates, rates or inputs alone takes the unit that is missing");
+        diagnostic.help(
+            "multiply one of them by a factor, as in `2 * x`: a number that multiplies only coordinates, \
+             rates or inputs takes the missing unit",
+        );
     }
     for (v, e) in names.iter().take(MAX_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);

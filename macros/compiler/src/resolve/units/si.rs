@@ -178,7 +178,8 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
         }
         None if nearest(name, &units).is_some() => diagnostic.suggest(name, units),
         None => diagnostic.help(
-            "the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as `m2`",
+            "the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as \
+             `m2`",
         ),
     };
     None

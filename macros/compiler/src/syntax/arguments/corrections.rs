@@ -55,9 +55,9 @@ pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
     if is_file {
         let help = format!("write `urdf = {}`", quoted(&value));
-        return syn_error(text.span(), "expected `name = value`, found a text", &help);
+        return syn_error(text.span(), "expected `name = value`, found a string", &help);
     }
-    syn_error(text.span(), "expected an expression, found a text", "write it without quotes")
+    syn_error(text.span(), "expected an expression, found a string", "write it without quotes")
 }
 
 /// Error for a missing `->` of a joint, or a missing `=` after an argument name, at the token found instead.

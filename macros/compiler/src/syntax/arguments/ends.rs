@@ -28,11 +28,11 @@ impl Arguments {
         if self.relation.is_none() {
             let (place, ends) = self.likely_ends(known);
             self.plain.clear();
-            let diagnostic = cx.error(place, "a joint says which bodies it joins");
+            let diagnostic = cx.error(place, "a joint needs the two bodies that it connects");
             match ends {
                 Some([parent, child]) => diagnostic.help(format!("write `{parent} -> {child}`")),
                 None => diagnostic
-                    .help("write `#[joint(parent -> child, …)]`, with `ground` for what does not move"),
+                    .help("write `#[joint(parent -> child, …)]`, with `ground` for the fixed reference"),
             };
         }
         self.relation.take()

@@ -72,7 +72,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         let arrow: Token![->] = input.parse()?;
         if input.is_empty() || input.peek(Token![,]) {
             let help = format!("write `{} -> child`", first.to_source());
-            return Err(syn_error(arrow.spans[1], "nothing stands behind this arrow", &help));
+            return Err(syn_error(arrow.spans[1], "missing body after this arrow", &help));
         }
         let second = parse_expr(input)?;
         if arguments.relation.is_some() {
@@ -84,7 +84,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         let sign = input.span();
         let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
         if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn_error(sign, "nothing stands behind this sign", "write `a = b`"));
+            return Err(syn_error(sign, "missing expression after this sign", "write `a = b`"));
         }
         let second = parse_expr(input)?;
         if !arguments.equations.is_empty() && arguments.grammar != Grammar::Equilibrium {

@@ -3,24 +3,31 @@
 use crate::language::Words;
 use crate::language::elements::words::RATIO;
 
-const ONE_SIDED_HELP: &str =
-    "what only pulls is a `Spring` given by its energy: `energy = k / 2 * pow(max(stretch, 0), 2)`";
-const END_STOP_HELP: &str = "a rigid end stop is a `Limit` with `restitution`: `#[limit(on = joint, from = a, to = b, restitution = 0)]`; a soft one is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
-const CONTROL_HELP: &str = "what a controller decides is an input, `Force`, `Torque` or `Input`; the controller itself is Rust of your own";
+const ONE_SIDED_HELP: &str = "an element that only pulls is a `Spring` given by its energy: `energy = k / 2 \
+                              * pow(max(stretch, 0), 2)`";
+const END_STOP_HELP: &str = "a rigid end stop is a `Limit` with `restitution`: `#[limit(on = joint, from = \
+                             a, to = b, restitution = 0)]`; a soft one is a `Spring` given by its energy: \
+                             `energy = k / 2 * pow(min(stretch - low, 0), 2)`";
+const CONTROL_HELP: &str = "the output of a controller is an input, `Force`, `Torque` or `Input`; the \
+                            controller itself is your own Rust code";
 const SHAPE_HELP: &str =
     "shapes are not drawn: a body has a mass and an inertia, as in `inertia = cuboid(m, a, b, c)`";
-const GROUND_HELP: &str = "`ground` is there already: a joint from it holds a body, as in `ground -> body`";
-const OUTPUT_HELP: &str = "what is computed for you is a `Scalar` or `Vector` with `#[output(…)]`";
-const CONTACT_HELP: &str = "surfaces that may part are a `Contact`: `#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`; those that stay in touch are `Rolling` or `Slipping`";
+const GROUND_HELP: &str = "`ground` exists in every mechanism: a joint connects a body to it, as in `ground \
+                           -> body`";
+const OUTPUT_HELP: &str = "a computed quantity is a `Scalar` or `Vector` with `#[output(…)]`";
+const CONTACT_HELP: &str = "surfaces that can separate are a `Contact`: `#[contact(ball.sphere(radius), \
+                            ground.plane(z), friction = mu, restitution = e)]`; surfaces in permanent \
+                            contact are `Rolling` or `Slipping`";
 const TIME_HELP: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
 const CONSTRAINT_HELP: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
 /// Types of fields, without the suffix `joint`.
 pub const ELEMENTS: Words = &[
-    ("mass", "a mass is a `Body` if it has a size or turns, `Particle` if it is a point"),
+    ("mass", "a mass is a `Body` if it is extended or rotates, a `Particle` if it is a point"),
     (
         "joint",
-        "a joint is a `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, `Free` or `Weld`",
+        "a joint is a `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, \
+         `Free` or `Weld`",
     ),
     (
         "springdamper damperspring springdashpot strut suspension",
@@ -38,7 +45,8 @@ pub const ELEMENTS: Words = &[
     ("contact contacts collision collider impact terrain heightfield heightmap hfield", CONTACT_HELP),
     (
         "wheel roller tire tyre",
-        "a wheel is a `Body` on a joint, and a `Rolling`: `#[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]`",
+        "a wheel is a `Body` on a joint, and a `Rolling`: `#[constraint(rolls(wheel.circle(radius, y), \
+         ground.plane(z)))]`",
     ),
     ("controller pid regulator", CONTROL_HELP),
     ("geom geometry visual mesh shape collisionshape", SHAPE_HELP),
@@ -51,9 +59,12 @@ pub const ELEMENTS: Words = &[
     ("real float double number param parameter parameters constant const length angle f16 f128 f80 t", "f64"),
 ];
 
-const INTEGRATION_HELP: &str = "the equations are solved where they are used: `linkwork::integrate` and `linkwork::simulate` hold the methods";
-const FORMAT_HELP: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \"path/to/robot.xml\"`, `sdf = \"path/to/robot.sdf\"`";
-const XACRO_HELP: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the result: `urdf = \"path/to/robot.urdf\"`";
+const INTEGRATION_HELP: &str = "the equations are solved where they are used: `linkwork::integrate` and \
+                                `linkwork::simulate` hold the methods";
+const FORMAT_HELP: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/to/robot.urdf\"`, `mjcf = \
+                           \"path/to/robot.xml\"`, `sdf = \"path/to/robot.sdf\"`";
+const XACRO_HELP: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the \
+                          result: `urdf = \"path/to/robot.urdf\"`";
 
 /// Arguments of `#[mechanism]`.
 pub const OPTIONS: Words = &[
@@ -80,7 +91,8 @@ pub const OPTIONS: Words = &[
 /// Options of `#[mechanism]` without a value.
 pub const REQUESTS: Words = &[
     (
-        "derivative jacobian jacobians gradient gradients linearize linearise linearization linear sensitivity autodiff diff",
+        "derivative jacobian jacobians gradient gradients linearize linearise linearization linear \
+         sensitivity autodiff diff",
         "derivatives",
     ),
     ("simd lanes vectorize vectorise parallel", "batch"),
@@ -95,10 +107,10 @@ pub const REQUESTS: Words = &[
     ("nogravity weightless", "without `gravity` there is none: remove it"),
     ("f32 single", "write `scalar = f32`, or give the parameters this type"),
     ("f64 double", "write `scalar = f64`, or give the parameters this type"),
-    ("floatingbase floating freebase", "write `base = free` beside `urdf = \"…\"`"),
+    ("floatingbase floating freebase", "write `base = free` together with `urdf = \"…\"`"),
     (
         "energy kineticenergy potentialenergy forwarddynamics inversedynamics dynamics massmatrix",
-        "every mechanism has it: remove the word",
+        "every mechanism has it: remove the option",
     ),
 ];
 
@@ -128,20 +140,21 @@ pub const FUNCTIONS: Words = &[
     ("heaviside step", "write `(1 + signum(a)) / 2`"),
     (
         "floor ceil round mod rem fmod",
-        "expressions are smooth: steps and remainders are left to your own Rust",
+        "expressions are smooth: compute steps and remainders in your own Rust code",
     ),
     ("fabs magnitudeof", "abs"),
     ("norm2 norm22 lengthsquared sqnorm squarednorm", "write `dot(v, v)`"),
     ("vec vec3 vector vector3 matrix", "a vector is written `[a, b, c]` or `a * x + b * y + c * z`"),
     (
         "rotx roty rotz rx ry rz rpy euler quat",
-        "rotations stand in `.rotated(z(angle))` and in `#[frame(ground, z(angle))]`",
+        "rotations are allowed in `.rotated(z(angle))` and in `#[frame(ground, z(angle))]`",
     ),
     ("diag", "diagonal"),
-    ("ifelse where when piecewise pieces select", "a law in pieces is written `if a < b { … } else { … }`"),
+    ("ifelse where when piecewise pieces select", "a piecewise law is written `if a < b { … } else { … }`"),
 ];
 
-const SI_HELP: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`; a parameter is a field of this name, of type `f64`";
+const SI_HELP: &str = "numbers have no units: all quantities are in SI units, angles in radians or \
+                       `degrees(90)`; a parameter is a field of this name, of type `f64`";
 const VALUE_HELP: &str = "a value is a number, a parameter, a coordinate or an expression of them";
 
 /// Names in expressions.
@@ -150,7 +163,7 @@ pub const NAMES: Words = &[
     ("mpi π", "pi"),
     ("tau twopi", "write `2 * pi`"),
     ("deg degree degrees °", "write `degrees(90)` for an angle in degrees"),
-    ("rad radians", "angles are in radians as they stand: remove it"),
+    ("rad radians", "angles are in radians: remove it"),
     ("kg m meter metre meters s sec n nm mm cm gram newton si", SI_HELP),
     ("true false", VALUE_HELP),
     ("inf infinity nan none null", VALUE_HELP),
@@ -210,18 +223,19 @@ pub const METHODS: Words = &[
 
 /// Members of a body; `NAME` is its name.
 pub const MEMBERS: Words = &[
-    ("position pos r origin p", "its place is `r(NAME / ground)`"),
+    ("position pos r origin p", "its position is `r(NAME / ground)`"),
     ("velocity vel v speed", "its velocity is `v(NAME / ground / ground)`"),
     ("acceleration acc", "its acceleration is `a(NAME / ground / ground)`"),
-    ("omega w angularvelocity rate", "it turns by `omega(NAME / ground)`"),
+    ("omega w angularvelocity rate", "its angular velocity is `omega(NAME / ground)`"),
     (
         "mass m inertia com length radius l i height width",
-        "its figures have no names here: name the parameter that it is",
+        "its properties have no names here: use the parameter",
     ),
 ];
 
 /// Words for the current body.
-pub const OWN: Words = &[("body this own local frame me", "the axes at hand are `x`, `y` and `z` alone")];
+pub const OWN: Words =
+    &[("body this own local frame me", "the only axes available here are `x`, `y` and `z`")];
 
 /// Methods of numbers and coordinates.
 pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
@@ -238,5 +252,6 @@ pub const BODIES: Words = &[(
 /// Rotations.
 pub const ROTATIONS: Words = &[(
     "rpy euler rollpitchyaw",
-    "roll, pitch and yaw are turns about carried axes in the opposite order: `z(yaw), y(pitch), x(roll)`",
+    "roll, pitch and yaw are rotations about body-fixed axes in the opposite order: `z(yaw), y(pitch), \
+     x(roll)`",
 )];

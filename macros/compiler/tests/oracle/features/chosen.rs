@@ -3,7 +3,8 @@
 /// Arguments of the attribute, fields, and functions that must be among the compared ones.
 pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
     (
-        "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
+        "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, \
+         regressor, hamilton",
         "m: f64, l: f64,
         #[body(mass = 2)] cart: Body,
         #[body(mass = m, com = 0.4 * l * x, inertia = rod(m, 1.2, x))] arm: Body,
@@ -148,7 +149,8 @@ pub fn springs(count: usize) -> String {
         .to_string();
     for k in 0..count {
         fields += &format!(
-            "#[acts(between = (block.at([0.{k}1, {}, 0]), ground.at([{k}, 2, 1])), stiffness = {}, free_length = 0.3)] spring{k}: Spring,",
+            "#[acts(between = (block.at([0.{k}1, {}, 0]), ground.at([{k}, 2, 1])), stiffness = {}, \
+             free_length = 0.3)] spring{k}: Spring,",
             k % 3,
             k + 2
         );

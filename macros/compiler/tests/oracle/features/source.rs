@@ -362,7 +362,8 @@ impl Source {
             (30 | 31, _, Some(body)) => {
                 let surfaces = self.one_of(&SURFACES).replace('H', &body);
                 format!(
-                    "#[contact({surfaces}, friction = 0.4, stiction = 0.6, restitution = 0.2)] contact{k}: Contact"
+                    "#[contact({surfaces}, friction = 0.4, stiction = 0.6, restitution = 0.2)] contact{k}: \
+                     Contact"
                 )
             }
             (12, ..) => format!("#[output({})] output{k}: Scalar", self.value()),
@@ -393,7 +394,8 @@ impl Source {
                 self.coordinates.push(format!("own{k}"));
                 let (point, along) = (self.one_of(&VECTORS), self.axes());
                 format!(
-                    "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + {point}))] bead{k}: Particle"
+                    "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + \
+                     {point}))] bead{k}: Particle"
                 )
             }
             19 => {
@@ -412,7 +414,8 @@ impl Source {
                 self.has_constraints = true;
                 let (point, axes) = (self.point(), self.axes());
                 format!(
-                    "#[constraint(dot(v({point} / ground / ground), {axes}.x) = 0)] constraint{k}: Nonholonomic"
+                    "#[constraint(dot(v({point} / ground / ground), {axes}.x) = 0)] constraint{k}: \
+                     Nonholonomic"
                 )
             }
             24 => {
@@ -427,7 +430,8 @@ impl Source {
             26 => {
                 let (a, b, c) = (self.point(), self.point(), self.point());
                 format!(
-                    "#[acts(on = norm(r({a} / {b}) + 2 * ground.z) + norm(r({b} / {c}) - 3 * ground.x), stiffness = 2, free_length = 0.4)] element{k}: Spring"
+                    "#[acts(on = norm(r({a} / {b}) + 2 * ground.z) + norm(r({b} / {c}) - 3 * ground.x), \
+                     stiffness = 2, free_length = 0.4)] element{k}: Spring"
                 )
             }
             27 => {

@@ -77,7 +77,7 @@ impl Values {
             of.map_or_else(Vec::new, |f| self.run_alone(&f.program))
         });
         let program = function.program.simd.as_deref().filter(|_| lanes).unwrap_or(&function.program);
-        program.run(&|s| match Quantity::of(s) {
+        program.run(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
             quantity => self.value(quantity, &[]),
@@ -86,13 +86,13 @@ impl Values {
 
     /// Returns the results of a function of the prepared mechanism.
     pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
-        let numbers = prepared.numbers.run(&|s| self.value(Quantity::of(s), &[]));
+        let numbers = prepared.numbers.run(&|s| self.value(Quantity::from_symbol(s), &[]));
         let outputs = |name: &str| {
             let of = prepared.functions.iter().find(|f| f.name == name);
-            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.value(Quantity::of(s), &numbers)))
+            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.value(Quantity::from_symbol(s), &numbers)))
         };
         let called = Called::ALL.map(|called| outputs(called.function()));
-        function.program.run(&|s| match Quantity::of(s) {
+        function.program.run(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
             quantity => self.value(quantity, &numbers),
@@ -131,7 +131,7 @@ impl Values {
 
     /// Returns the results of a program without calls.
     fn run_alone(&self, program: &Program) -> Vec<f64> {
-        program.run(&|s| self.value(Quantity::of(s), &[]))
+        program.run(&|s| self.value(Quantity::from_symbol(s), &[]))
     }
 
     /// Returns the values with one entry changed, except configuration coordinates.

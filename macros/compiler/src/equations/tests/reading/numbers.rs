@@ -73,7 +73,7 @@ impl<'g> Numbers<'g> {
     }
 
     pub fn accelerations(&self, q: &[f64], v: &[f64], u: &[f64], parameters: &[f64]) -> Vec<f64> {
-        let values = self.forces.values(&|s| match Quantity::of(s) {
+        let values = self.forces.values(&|s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => parameters[k],
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],

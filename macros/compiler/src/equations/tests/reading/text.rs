@@ -131,7 +131,7 @@ impl Text {
             } else if line.contains("table") || line.contains("too long") {
                 found.verdict.clone_from(line);
             } else if let Some((left, right)) =
-                line.split_once(" = ").filter(|_| !after && !line.contains("; what is"))
+                line.split_once(" = ").filter(|_| !after && !line.contains("; other values"))
             {
                 found.equations.push((left.to_string(), right.to_string()));
             }

@@ -1,0 +1,31 @@
+//! Start values of FMUs.
+
+/// Values of a table on a grid.
+#[derive(Clone, Debug, Default)]
+pub struct TableValues {
+    /// Grid points along each axis.
+    pub axes: Vec<Vec<f64>>,
+    /// Values in the order of the grid points, with the last axis varying fastest.
+    pub values: Vec<f64>,
+    /// Whether the table is interpolated by splines.
+    pub smooth: bool,
+    /// Whether the table is extrapolated beyond its grid.
+    pub extrapolated: bool,
+}
+
+/// Start values of the variables.
+#[derive(Clone, Debug, Default)]
+pub struct StartValues {
+    /// Parameters, among them the states of first order.
+    pub parameters: Vec<f64>,
+    /// Configuration.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub v: Vec<f64>,
+    /// Inputs.
+    pub u: Vec<f64>,
+    /// Tables, which are constant.
+    pub tables: Vec<TableValues>,
+    /// States of first order: their indices among the parameters.
+    pub states: Vec<usize>,
+}
