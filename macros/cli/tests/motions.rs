@@ -494,7 +494,7 @@ fn loops_stay_closed() {
     // The singular stretched configuration is replaced by a nearby one, which is reported; the page shows the
     // motion.
     let (status, _, stderr) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
-    assert!(status == 0 && stderr.contains("the motion begins near them, at q."), "{stderr}");
+    assert!(status == 0 && stderr.contains("the motion begins near it, at q."), "{stderr}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
 }
 

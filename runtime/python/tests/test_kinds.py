@@ -103,7 +103,7 @@ class UnderConstraints(unittest.TestCase):
         self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
         with self.assertRaisesRegex(linkwork.Error, "about states at rest"):
             self.m.linear_system([0.0, -1.0], [1.0, 0.0])
-        with self.assertRaisesRegex(linkwork.Error, "off the constraints by 0.1"):
+        with self.assertRaisesRegex(linkwork.Error, "violates the constraints by 0.1"):
             self.m.linear_system([0.0, -0.9])
 
 
