@@ -11,10 +11,10 @@ pub fn header(known: &Known<'_, '_>) -> String {
     let upper = prefix.to_ascii_uppercase();
     let mut text = format!(
         "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load \
-         the shared library.\n *\n * SI units, angles in radians. Vectors are plain arrays, matrices stand \
-         column by column. Quaternions are stored\n * x y z w. Functions keep nothing between calls, and any \
-         number of threads may call them. They return 0, or 1\n * where there is no result: then results are \
-         not numbers, and {prefix}_message() says why.\n",
+         the shared library.\n *\n * SI units, angles in radians. Vectors are arrays, and matrices are \
+         stored column by column. Quaternions are stored\n * as x y z w. Functions have no state, and any \
+         number of threads may call them. They return 0, or 1 for an\n * error: results are then NaN, and \
+         {prefix}_message() returns the reason.\n",
         known.input.declaration.name
     );
     let velocities: Vec<String> = m.velocities.iter().map(|(name, _)| name.clone()).collect();
@@ -87,7 +87,7 @@ fn write_function(text: &mut String, f: &Function, known: &Known<'_, '_>, number
         let about = match kind {
             Kind::Number => continue,
             Kind::Frame => format!("one of {}_FRAME_…", known.prefix.to_ascii_uppercase()),
-            Kind::Marks => format!("{nv} numbers, not zero for each velocity that is meant"),
+            Kind::Marks => format!("{nv} numbers, nonzero for each selected velocity"),
             Kind::Matrix(..) => format!("{} numbers", Function::length(kind, nv)),
         };
         let _ = writeln!(text, " * {name:12} {about}");
@@ -117,68 +117,65 @@ fn write_common(text: &mut String, prefix: &str, number: &str, has_parameters: b
     if has_parameters {
         let _ = write!(
             text,
-            "/* Whether a mechanism can have these parameters. */\nint {prefix}_validate(const {number} \
-             *own);\n\n\
-             /* The parameters that a robot file has; others are not numbers. */\nvoid \
-                 {prefix}_defaults({number} *to_own);\n\n"
+            "/* Returns 0 if the parameters are valid, else 1. */
+int {prefix}_validate(const {number} *own);
+
+/* Writes the parameters that a robot file defines; others are NaN. */
+void {prefix}_defaults({number} *to_own);
+
+"
         );
     }
     let _ = write!(
         text,
-        "/* Why the last call of this thread returned 1; the text stays until the next call. */
+        "/* Returns the reason why the last call of this thread returned 1; the text is valid until the next call. */
 const char *{prefix}_message(void);
 
-/* Names, shapes, units and documentation of everything, as JSON; functions in the order of their numbers. */
+/* Returns names, shapes, units and documentation as JSON, with functions in the order of their indices. */
 const char *{prefix}_description(void);
 
-/* A function by its number for many states: every argument and result holds that of the first state, then \
-    that of the second,
- * and so on. Several threads share them out, as many as there are processors for 0. The parameters are \
-     those of all states. */
-int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments, {number} *const \
-    *results,
-                  size_t states, size_t threads);
+/* Calls the function with an index for many states. Each argument and each result is an array with the values
+ * of the first state, then those of the second, and so on. The states are distributed over `threads` threads,
+ * or over one for each processor if it is 0. All states have the same parameters. */
+int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments,
+                  {number} *const *results, size_t states, size_t threads);
 
-/* A controller: it writes the inputs u at the time t, s, and returns 0, or anything else to end the run. */
+/* Controller: writes the inputs u at the time t, s, and returns 0, or another value to end the simulation. */
 typedef int (*{prefix}_control)(void *user, {number} t, const {number} *q, const {number} *v, {number} *u);
 
 typedef struct {prefix}_settings {{
     {number} start;    /* time at the start, s */
     {number} duration; /* s */
     {number} interval; /* time between samples, s */
-    /* \"dormand_prince\", \"dormand_prince8\", \"rodas\" (stiff), with contacts \"event_driven\": by a tolerance;
-     * \"rk4\", \"implicit_midpoint\", with contacts \"time_stepping\", \"time_stepping_midpoint\",
-     * \"time_stepping_leapfrog\": by a step, s */
+    /* With a tolerance: \"dormand_prince\", \"dormand_prince8\", \"rodas\" (stiff), with contacts
+     * \"event_driven\". With a step: \"rk4\", \"implicit_midpoint\", with contacts \"time_stepping\",
+     * \"time_stepping_midpoint\", \"time_stepping_leapfrog\". */
     const char *method;
-    {number} setting;  /* the tolerance or the step */
-    {number} period;   /* the controller is called every so many seconds; 0 for whenever the dynamics are \
-        evaluated */
+    {number} setting;  /* tolerance, or step in s */
+    {number} period;   /* period of the controller, s; 0 to call it at each evaluation of the dynamics */
     {prefix}_control control; /* NULL for inputs that are zero */
-    void *user;        /* what the controller is given first */
+    void *user;        /* first argument of the controller */
 }} {prefix}_settings;
 
-/* Simulates, and writes rows of t, q, v, u: not more than `rows`, and how many in to_count. */
-int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v, const {prefix}_settings \
-    *settings,
-                      {number} *to_samples, size_t rows, size_t *to_count);
+/* Simulates, and writes at most `rows` rows of t, q, v, u, and their number to to_count. */
+int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v,
+                      const {prefix}_settings *settings, {number} *to_samples, size_t rows, size_t *to_count);
 
 typedef struct {prefix}_rollout {{
     {number} start;  /* time at the start, s */
-    {number} step;   /* length of a step of the classical method of Runge and Kutta, s */
+    {number} step;   /* step of the classical Runge-Kutta method, s */
     size_t steps;
     size_t states;
-    size_t threads;  /* as many as there are processors for 0 */
-    int inputs_of;   /* the inputs are: 0 zero, 1 those of each step, the same for all states, 2 those of \
-        each state and step */
+    size_t threads;  /* 0 for one thread for each processor */
+    int inputs_of;   /* 0: the inputs are zero; 1: inputs of each step, equal for all states; 2: inputs of each
+                      * state and step */
 }} {prefix}_rollout;
 
-/* Many motions under inputs that are held during each step. to_q and to_v hold, for every state, steps + 1 \
-    configurations and
- * velocities: the first ones are where it starts, all others are written. Inputs stand step by step, state \
-     after state. */
-int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs, \
-    {number} *to_q,
-                      {number} *to_v);
+/* Simulates many states with inputs that are constant during each step. to_q and to_v contain steps + 1
+ * configurations and velocities for each state: the first one is the start, and the others are written. Inputs
+ * are ordered by state, then by step. */
+int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs,
+                      {number} *to_q, {number} *to_v);
 
 "
     );
