@@ -461,36 +461,33 @@ static fmi3Status lw_derivative(lw_instance *s, const char *function, bool is_ad
     return fmi3OK;
 }
 
+#else
+
+/* Reports that there are no derivatives. */
+static fmi3Status lw_derivative(lw_instance *s, const char *function, bool is_adjoint,
+    const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
+    const fmi3Float64 seed[], size_t seed_length, fmi3Float64 result[], size_t length) {
+    (void)is_adjoint, (void)unknowns, (void)unknown_count, (void)knowns, (void)known_count;
+    (void)seed, (void)seed_length, (void)result, (void)length;
+    return lw_fail(s, fmi3Error, function, "the model provides no derivatives");
+}
+
 #endif
 
 LW_EXPORT fmi3Status LW_FMI(fmi3GetDirectionalDerivative)(fmi3Instance instance, const fmi3ValueReference unknowns[],
     size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count, const fmi3Float64 seed[],
     size_t seed_length, fmi3Float64 sensitivity[], size_t length) {
-    static const char function[] = "fmi3GetDirectionalDerivative";
-    LW_BEGIN(LW_ANY & ~LW_INSTANTIATED, function)
-#if LW_DIFFERENTIABLE
-    return lw_derivative(s, function, false, unknowns, unknown_count, knowns, known_count, seed, seed_length,
-        sensitivity, length);
-#else
-    (void)unknowns, (void)unknown_count, (void)knowns, (void)known_count, (void)seed, (void)seed_length;
-    (void)sensitivity, (void)length;
-    return lw_fail(s, fmi3Error, function, "the model provides no derivatives");
-#endif
+    LW_BEGIN(LW_ANY & ~LW_INSTANTIATED, "fmi3GetDirectionalDerivative")
+    return lw_derivative(s, "fmi3GetDirectionalDerivative", false, unknowns, unknown_count, knowns, known_count,
+        seed, seed_length, sensitivity, length);
 }
 
 LW_EXPORT fmi3Status LW_FMI(fmi3GetAdjointDerivative)(fmi3Instance instance, const fmi3ValueReference unknowns[],
     size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count, const fmi3Float64 seed[],
     size_t seed_length, fmi3Float64 sensitivity[], size_t length) {
-    static const char function[] = "fmi3GetAdjointDerivative";
-    LW_BEGIN(LW_ANY & ~LW_INSTANTIATED, function)
-#if LW_DIFFERENTIABLE
-    return lw_derivative(s, function, true, unknowns, unknown_count, knowns, known_count, seed, seed_length,
-        sensitivity, length);
-#else
-    (void)unknowns, (void)unknown_count, (void)knowns, (void)known_count, (void)seed, (void)seed_length;
-    (void)sensitivity, (void)length;
-    return lw_fail(s, fmi3Error, function, "the model provides no derivatives");
-#endif
+    LW_BEGIN(LW_ANY & ~LW_INSTANTIATED, "fmi3GetAdjointDerivative")
+    return lw_derivative(s, "fmi3GetAdjointDerivative", true, unknowns, unknown_count, knowns, known_count,
+        seed, seed_length, sensitivity, length);
 }
 
 #include "lw_modes.h"
