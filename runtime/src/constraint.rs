@@ -8,13 +8,13 @@
 
 use crate::private::{constant, epsilon, to_f64};
 use crate::{ByMotion, Mechanism, Real};
-use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
 mod assemble;
 mod careful;
 mod complete;
 mod differentiable;
+mod error;
 mod graded;
 mod layout;
 mod linearize;
@@ -29,6 +29,7 @@ pub use assemble::{Loops, assemble, assembly_mode, least_violation};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
+pub use error::ConstraintError;
 pub(crate) use graded::change_rates;
 #[doc(hidden)]
 pub use layout::{ConstraintCurvature, Elimination, InputDerivatives, MotionDerivatives, Responses};
@@ -52,142 +53,6 @@ const TURN: f64 = 0.01;
 
 /// Maximum number of Newton steps of a projection; a state that has drifted needs one or two.
 const MOST_STEPS: usize = 20;
-
-/// Reason why no state, force or impulse satisfies the constraints.
-#[derive(Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum ConstraintError {
-    /// No configuration near the initial one satisfies the constraints.
-    Configuration {
-        /// Name of the constraint with the largest residual.
-        constraint: &'static str,
-        /// Residual of this constraint, m or rad.
-        residual: f64,
-    },
-    /// No velocity satisfies the constraints: prescribed motions contradict them, or the configuration is
-    /// singular.
-    Velocity {
-        /// Name of the constraint with the largest violation.
-        constraint: &'static str,
-        /// Violation of the rate of this constraint, m/s or rad/s.
-        rate: f64,
-    },
-    /// No acceleration satisfies the constraints: prescribed entries contradict them, or the configuration is
-    /// singular.
-    Acceleration {
-        /// Name of the constraint with the largest violation.
-        constraint: &'static str,
-        /// Violation of the second rate of this constraint, m/s² or rad/s².
-        acceleration: f64,
-    },
-    /// No configuration of the requested assembly mode was found near the guess
-    /// ([`Constrained::assemble_in_mode`]).
-    Mode {
-        /// Requested assembly mode.
-        mode: i8,
-    },
-    /// Forces at the driven velocities cannot cause the motion; further velocities must be driven
-    /// ([`Constrained::constrained_inverse_dynamics`]).
-    Undriven {
-        /// Name of the velocity whose equation has the largest residual.
-        velocity: &'static str,
-        /// Missing force at this velocity, N or N·m.
-        force: f64,
-    },
-    /// Constraints that are usually independent are dependent in this configuration, and the motion is not
-    /// determined to first order.
-    Singular,
-    /// Friction jams: a normal force on which friction depends does not follow from the motion (Painlevé's
-    /// paradox), or contacts can share it in several ways.
-    Jammed {
-        /// Name of the contact.
-        constraint: &'static str,
-    },
-    /// No impulses satisfy the contact conditions: constraints or prescribed motions force surfaces to
-    /// penetrate.
-    Contact {
-        /// Name of the contact with the largest violation.
-        constraint: &'static str,
-    },
-    /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
-    /// and 1.
-    Coefficient {
-        /// Name of the contact.
-        constraint: &'static str,
-        /// Value of the coefficient for the parameters of the mechanism.
-        value: f64,
-    },
-    /// Surfaces that must be separated overlap.
-    Overlap {
-        /// Name of the contact with the largest overlap.
-        constraint: &'static str,
-        /// Overlap, m or rad.
-        depth: f64,
-    },
-    /// An index in `held` is out of range; velocities are counted from zero.
-    Held {
-        /// Index in `held`.
-        index: usize,
-        /// Number of velocities.
-        velocities: usize,
-    },
-    /// Residuals or rates are infinite or NaN.
-    NotFinite,
-}
-
-/// Prints the text of `Display`, because `main` prints the `Debug` form of a returned error.
-impl fmt::Debug for ConstraintError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl fmt::Display for ConstraintError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Configuration { constraint, residual } => {
-                write!(f, "the constraint `{constraint}` has a residual of {residual}")
-            }
-            Self::Velocity { constraint, rate } => {
-                write!(f, "the constraint `{constraint}` has a residual velocity of {rate}")
-            }
-            Self::Acceleration { constraint, acceleration } => {
-                write!(f, "the constraint `{constraint}` has a residual acceleration of {acceleration}")
-            }
-            Self::Mode { mode } => {
-                write!(
-                    f,
-                    "no configuration of the assembly mode {mode} was found: give a guess closer to one"
-                )
-            }
-            Self::Undriven { velocity, force } => {
-                write!(
-                    f,
-                    "the driven velocities require a force of {force} at `{velocity}`, which is not driven"
-                )
-            }
-            Self::Singular => write!(f, "the constraints lose rank in this configuration"),
-            Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
-            Self::Contact { constraint } => {
-                write!(f, "no impulses at the contact `{constraint}` prevent penetration")
-            }
-            Self::Coefficient { constraint, value } => write!(
-                f,
-                "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, \
-                 restitution between 0 and 1"
-            ),
-            Self::Overlap { constraint, depth } => {
-                write!(f, "the surfaces of the contact `{constraint}` overlap by {depth}")
-            }
-            Self::Held { index, velocities } => {
-                write!(f, "the velocity {index} cannot be held: expected an index below {velocities}")
-            }
-            Self::NotFinite => write!(f, "the constraints are not finite"),
-        }
-    }
-}
-
-impl core::error::Error for ConstraintError {}
 
 /// Configuration and velocity that satisfy the constraints.
 pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);

@@ -1,0 +1,139 @@
+//! Errors of constrained mechanisms.
+
+use core::fmt;
+
+/// Reason why no state, force or impulse satisfies the constraints.
+#[derive(Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ConstraintError {
+    /// No configuration near the initial one satisfies the constraints.
+    Configuration {
+        /// Name of the constraint with the largest residual.
+        constraint: &'static str,
+        /// Residual of this constraint, m or rad.
+        residual: f64,
+    },
+    /// No velocity satisfies the constraints: prescribed motions contradict them, or the configuration is
+    /// singular.
+    Velocity {
+        /// Name of the constraint with the largest violation.
+        constraint: &'static str,
+        /// Violation of the rate of this constraint, m/s or rad/s.
+        rate: f64,
+    },
+    /// No acceleration satisfies the constraints: prescribed entries contradict them, or the configuration is
+    /// singular.
+    Acceleration {
+        /// Name of the constraint with the largest violation.
+        constraint: &'static str,
+        /// Violation of the second rate of this constraint, m/s² or rad/s².
+        acceleration: f64,
+    },
+    /// No configuration of the requested assembly mode was found near the guess
+    /// ([`assemble_in_mode`](crate::Constrained::assemble_in_mode)).
+    Mode {
+        /// Requested assembly mode.
+        mode: i8,
+    },
+    /// Forces at the driven velocities cannot cause the motion; further velocities must be driven
+    /// ([`constrained_inverse_dynamics`](crate::Constrained::constrained_inverse_dynamics)).
+    Undriven {
+        /// Name of the velocity whose equation has the largest residual.
+        velocity: &'static str,
+        /// Missing force at this velocity, N or N·m.
+        force: f64,
+    },
+    /// Constraints that are usually independent are dependent in this configuration, and the motion is not
+    /// determined to first order.
+    Singular,
+    /// Friction jams: a normal force on which friction depends does not follow from the motion (Painlevé's
+    /// paradox), or contacts can share it in several ways.
+    Jammed {
+        /// Name of the contact.
+        constraint: &'static str,
+    },
+    /// No impulses satisfy the contact conditions: constraints or prescribed motions force surfaces to
+    /// penetrate.
+    Contact {
+        /// Name of the contact with the largest violation.
+        constraint: &'static str,
+    },
+    /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
+    /// and 1.
+    Coefficient {
+        /// Name of the contact.
+        constraint: &'static str,
+        /// Value of the coefficient for the parameters of the mechanism.
+        value: f64,
+    },
+    /// Surfaces that must be separated overlap.
+    Overlap {
+        /// Name of the contact with the largest overlap.
+        constraint: &'static str,
+        /// Overlap, m or rad.
+        depth: f64,
+    },
+    /// An index in `held` is out of range; velocities are counted from zero.
+    Held {
+        /// Index in `held`.
+        index: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// Residuals or rates are infinite or NaN.
+    NotFinite,
+}
+
+/// Prints the text of `Display`, because `main` prints the `Debug` form of a returned error.
+impl fmt::Debug for ConstraintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl fmt::Display for ConstraintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Configuration { constraint, residual } => {
+                write!(f, "the constraint `{constraint}` has a residual of {residual}")
+            }
+            Self::Velocity { constraint, rate } => {
+                write!(f, "the constraint `{constraint}` has a residual velocity of {rate}")
+            }
+            Self::Acceleration { constraint, acceleration } => {
+                write!(f, "the constraint `{constraint}` has a residual acceleration of {acceleration}")
+            }
+            Self::Mode { mode } => {
+                write!(
+                    f,
+                    "no configuration of the assembly mode {mode} was found: give a guess closer to one"
+                )
+            }
+            Self::Undriven { velocity, force } => {
+                write!(
+                    f,
+                    "the driven velocities require a force of {force} at `{velocity}`, which is not driven"
+                )
+            }
+            Self::Singular => write!(f, "the constraints lose rank in this configuration"),
+            Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
+            Self::Contact { constraint } => {
+                write!(f, "no impulses at the contact `{constraint}` prevent penetration")
+            }
+            Self::Coefficient { constraint, value } => write!(
+                f,
+                "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, \
+                 restitution between 0 and 1"
+            ),
+            Self::Overlap { constraint, depth } => {
+                write!(f, "the surfaces of the contact `{constraint}` overlap by {depth}")
+            }
+            Self::Held { index, velocities } => {
+                write!(f, "the velocity {index} cannot be held: expected an index below {velocities}")
+            }
+            Self::NotFinite => write!(f, "the constraints are not finite"),
+        }
+    }
+}
+
+impl core::error::Error for ConstraintError {}
