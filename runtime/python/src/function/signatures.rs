@@ -1,0 +1,223 @@
+//! Names, arguments and results of the functions of a robot.
+
+use super::{Argument, Function, Kind, OnConstraints, Output, Signature};
+use linkwork_jit::{Error, Stepper};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Documentation and names of the functions of all frames.
+const FRAMES: [(&str, &str); 4] = [
+    (
+        "frame_placement",
+        "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its origin, \
+         m.",
+    ),
+    (
+        "frame_velocity",
+        "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground \
+         axes.",
+    ),
+    (
+        "frame_acceleration",
+        "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in \
+         ground axes; without gravity.",
+    ),
+    (
+        "frame_jacobian",
+        "Jacobian of a frame: its product with `v` is the velocity of the frame, except for motions \
+         prescribed in time.",
+    ),
+];
+
+fn arguments(f: &linkwork_jit::Function) -> Vec<Argument> {
+    let argument = |(name, length): (&str, usize)| Argument {
+        name: name.to_string(),
+        length: (name != "t").then_some(length),
+    };
+    f.arguments().into_iter().map(argument).collect()
+}
+
+fn results(f: &linkwork_jit::Function) -> Vec<Output> {
+    let output = |m: &linkwork_jit::Matrix| Output {
+        name: m.name.to_string(),
+        shape: match f.rank() {
+            0 => Vec::new(),
+            1 => vec![m.rows],
+            _ => vec![m.rows, m.columns],
+        },
+    };
+    f.results().iter().map(output).collect()
+}
+
+fn vector(name: &str, length: usize) -> Argument {
+    Argument { name: name.to_string(), length: Some(length) }
+}
+
+fn matrix(name: &str, rows: usize, columns: usize) -> Output {
+    Output { name: name.to_string(), shape: vec![rows, columns] }
+}
+
+impl Function {
+    fn new(
+        name: &str,
+        documentation: &str,
+        arguments: Vec<Argument>,
+        results: Vec<Output>,
+        kind: Kind,
+    ) -> Function {
+        let (name, documentation) = (name.to_string(), documentation.to_string());
+        let frames = HashMap::new();
+        Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) }
+    }
+
+    /// Returns all functions of a mechanism.
+    pub fn all(robot: &linkwork_jit::Robot) -> Vec<Function> {
+        let plain = robot.functions().filter(|f| !f.name().contains('('));
+        let mut all: Vec<Function> = plain
+            .map(|f| {
+                let (arguments, results) = (arguments(&f), results(&f));
+                Function::new(f.name(), f.documentation(), arguments, results, Kind::Generated(f.clone()))
+            })
+            .collect();
+        all.extend(FRAMES.iter().filter_map(|(name, documentation)| of_frames(robot, name, documentation)));
+        let has = |name: &str| robot.function(name).is_ok();
+        if Stepper::new(robot).is_ok_or_missing() {
+            all.extend(steps(robot, has("linearize") && has("tangent_rate")));
+        }
+        if robot.constraints() > 0 {
+            all.extend(on_constraints(robot));
+        }
+        if has("tangent_rate") {
+            let n = robot.nv();
+            all.push(Function::new(
+                "integrate_derivatives",
+                "Derivatives of `integrate(q, dv)` by displacements of `q` and by `dv`.",
+                vec![vector("q", robot.nq()), vector("dv", n)],
+                vec![matrix("by_q", n, n), matrix("by_dv", n, n)],
+                Kind::IntegrateDerivatives,
+            ));
+            all.push(Function::new(
+                "tangent_rate_derivatives",
+                "Derivatives of `tangent_rate(dv, v)` by `dv` and by `v`.",
+                vec![vector("dv", n), vector("v", n)],
+                vec![matrix("by_dv", n, n), matrix("by_v", n, n)],
+                Kind::TangentRateDerivatives,
+            ));
+        }
+        all
+    }
+}
+
+/// Whether steps exist once all parameters have values.
+trait OkOrMissing {
+    fn is_ok_or_missing(&self) -> bool;
+}
+
+impl<T> OkOrMissing for Result<T, Error> {
+    fn is_ok_or_missing(&self) -> bool {
+        matches!(self, Ok(_) | Err(Error::Missing(_)))
+    }
+}
+
+/// Returns the function that takes the name of a frame, if there are frames.
+fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
+    let names = robot.frames();
+    let own = names.iter().map(|frame| robot.function(&format!("{name}({frame})")).ok());
+    let own = own.collect::<Option<Vec<_>>>()?;
+    let first = own.first()?;
+    let (arguments, mut results) = (arguments(first), results(first));
+    let kind = match name {
+        "frame_placement" => {
+            results = vec![matrix("result", 4, 4)];
+            Kind::Placements(own)
+        }
+        _ => Kind::Frames(own),
+    };
+    let frames = names.iter().enumerate().map(|(k, name)| (name.clone(), k)).collect();
+    let (name, documentation) = (name.to_string(), documentation.to_string());
+    Some(Function {
+        signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }),
+    })
+}
+
+/// Returns the functions for steps of the classical Runge–Kutta method.
+fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
+    let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
+    let number = |name: &str| Argument { name: name.to_string(), length: None };
+    let time = robot.depends_on_time().then(|| number("t"));
+    let state = [vector("q", nq), vector("v", nv), vector("u", nu), number("h")];
+    let arguments: Vec<Argument> = time.into_iter().chain(state).collect();
+    let end = |name: &str, n: usize| Output { name: name.to_string(), shape: vec![n] };
+    let state = vec![end("q", nq), end("v", nv)];
+    let mut jacobians = state.clone();
+    for of in ["q", "v"] {
+        for (by, columns) in [("q", nv), ("v", nv), ("u", nu)] {
+            jacobians.push(matrix(&format!("{of}_by_{by}"), nv, columns));
+        }
+    }
+    let step = Function::new(
+        "step",
+        "One step of the classical Runge–Kutta method, `h` seconds long, under inputs `u` that are constant: \
+         the state after it.",
+        arguments.clone(),
+        state,
+        Kind::Step,
+    );
+    let transition = || {
+        Function::new(
+            "transition",
+            "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration \
+             and velocity after the step by those before it and by the inputs. Changes of configurations are \
+             displacements, as `integrate` takes them.",
+            arguments,
+            jacobians,
+            Kind::Transition,
+        )
+    };
+    if with_jacobians { vec![step, transition()] } else { vec![step] }
+}
+
+/// Returns the functions that find states which satisfy the constraints.
+fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
+    let [nq, nv] = [robot.nq(), robot.nv()];
+    let (q, v, held) = (vector("q", nq), vector("v", nv), vector(HELD, nv));
+    let number = Argument { name: "t".to_string(), length: None };
+    let time = || robot.depends_on_time().then(|| number.clone());
+    let list = |rest: &[&Argument]| time().into_iter().chain(rest.iter().map(|a| (*a).clone())).collect();
+    let result = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
+    [
+        Function::new(
+            "assemble",
+            "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do \
+             not change.",
+            list(&[&q, &held]),
+            result(nq),
+            Kind::Constraint(OnConstraints::Assemble),
+        ),
+        Function::new(
+            "project_configuration",
+            "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic \
+             energy.",
+            list(&[&q]),
+            result(nq),
+            Kind::Constraint(OnConstraints::ProjectConfiguration),
+        ),
+        Function::new(
+            "project_velocity",
+            "Velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.",
+            list(&[&q, &v]),
+            result(nv),
+            Kind::Constraint(OnConstraints::ProjectVelocity),
+        ),
+        Function::new(
+            "complete_velocity",
+            "Velocity with the entries `held` of `v` that satisfies the constraints.",
+            list(&[&q, &v, &held]),
+            result(nv),
+            Kind::Constraint(OnConstraints::CompleteVelocity),
+        ),
+    ]
+}
+
+/// Name of an argument that selects velocities by nonzero entries.
+const HELD: &str = "held";
