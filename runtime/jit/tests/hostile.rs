@@ -4,10 +4,13 @@
 //! the first seed. Each input is in a file `input` in a folder of the temporary folder until the next one.
 
 use linkwork_jit::{Error, Loader, Robot};
+use random::Random;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+
+mod random;
 
 /// Tests that take turns: memory of one does not count for the other.
 static TURN: Mutex<()> = Mutex::new(());
@@ -60,18 +63,7 @@ fn memory_is_returned() -> Result<(), Error> {
     Ok(())
 }
 
-/// Random number generator (splitmix64).
-struct Random(u64);
-
 impl Random {
-    fn index_below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
-    }
-
     fn choose<'a>(&mut self, list: &[&'a str]) -> &'a str {
         list[self.index_below(list.len())]
     }

@@ -9,7 +9,11 @@ use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::{Extreme, Function, Lookup};
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
 use linkwork_compiler::mechanism::Quantity;
+use random::Random;
 use std::collections::HashMap;
+
+#[path = "../../tests/random/mod.rs"]
+mod random;
 
 /// Number of programs; the environment variable `LINKWORK_PROGRAMS` chooses another one.
 const PROGRAMS: u64 = 1000;
@@ -18,18 +22,7 @@ const INPUTS: [usize; 3] = [3, 9, 5];
 const CONSTANTS: [f64; 8] = [0.0, -0.0, 1.0, -1.0, 0.5, 9.81, -1e-3, 1e6];
 const VALUES: [f64; 6] = [0.0, -0.0, 1e5, f64::NAN, f64::INFINITY, 5e-324];
 
-/// Random number generator (splitmix64).
-struct Random(u64);
-
 impl Random {
-    fn index_below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
-    }
-
     fn value(&mut self) -> f64 {
         match self.index_below(40) {
             0 => VALUES[self.index_below(VALUES.len())],

@@ -136,7 +136,7 @@ fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
     })
 }
 
-/// Where the result of an instruction is.
+/// Location of the result of an instruction.
 #[derive(Clone, Copy, PartialEq)]
 enum Value {
     Missing,
