@@ -20,7 +20,7 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 /// is along `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Contacts`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives of its contacts",
-    note = "the word asks for them: `#[mechanism(…, derivatives)]`, of a mechanism with contacts"
+    note = "add the option to the attribute of a mechanism with contacts: `#[mechanism(…, derivatives)]`"
 )]
 pub trait ContactDerivatives<
     const NQ: usize,

@@ -30,7 +30,7 @@ impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, N
 
 /// The mechanism while given contacts stay closed, whatever that takes, as
 /// [`forward_dynamics`](super::forward_dynamics) moves it: for methods of integration, discrete steps with
-/// their Jacobians, and optimisers of motions whose contacts are known. With the word `derivatives` it has
+/// their Jacobians, and optimisers of motions whose contacts are known. With the option `derivatives` it has
 /// derivatives, too.
 ///
 /// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they

@@ -1,6 +1,5 @@
 //! Impulses of a step, from which the search of the next step begins.
 
-use super::layout::Layout;
 use super::problem::entry;
 use super::selection::Selection;
 use crate::Real;
@@ -12,8 +11,9 @@ const CONTACTS: usize = 2;
 /// Index of a contact, and its impulses.
 const ENTRIES: usize = 4;
 
-/// Impulses of up to two contacts for each velocity of a mechanism, from which the search of the next step
-/// begins; zero for other contacts. They affect the duration of the search, not its result beyond rounding.
+/// Impulses, N·s and N·m·s, of up to two contacts for each velocity of a mechanism, from which the search of
+/// the next step begins; zero for other contacts. They affect the duration of the search, not its result
+/// beyond rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impulses<T, const NV: usize>(
     /// For each contact its index plus one, and its impulses; an index of zero is an empty place.
@@ -31,7 +31,8 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         Self([[SVector::zeros(); ENTRIES]; CONTACTS])
     }
 
-    /// Returns the impulses with each list of entries changed by a function.
+    /// Returns the impulses with each list of entries changed by a function. There are two sets of contacts
+    /// with four lists each, and a list has an entry for each velocity.
     #[must_use]
     pub fn map<U, const N: usize>(&self, f: impl Fn(&SVector<T, NV>) -> SVector<U, N>) -> Impulses<U, N> {
         Impulses(self.0.each_ref().map(|lists| lists.each_ref().map(&f)))
@@ -43,7 +44,7 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         Self(core::array::from_fn(|i| core::array::from_fn(|j| f([i, j]))))
     }
 
-    /// Returns a list of entries.
+    /// Returns the list `j` of the contacts `i` (see [`map`](Self::map)): indices for `j = 0`, then impulses.
     #[must_use]
     pub fn list(&self, [i, j]: [usize; 2]) -> SVector<T, NV> {
         self.0.get(i).and_then(|lists| lists.get(j)).copied().unwrap_or_else(SVector::zeros)
@@ -78,9 +79,8 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
     pub(super) fn recall<const CK: usize, const CR: usize>(
         &self,
         selection: &Selection<CK, CR>,
-        layout: &Layout<CK>,
     ) -> Option<SVector<T, CR>> {
-        let mut all = SVector::<T, CR>::zeros();
+        let (layout, mut all) = (selection.layout(), SVector::<T, CR>::zeros());
         let mut is_any = false;
         for [numbers, impulses @ ..] in &self.0 {
             for (place, number) in numbers.iter().enumerate().take_while(|(_, number)| **number > T::zero()) {

@@ -102,7 +102,7 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
 
     /// Computes the effects of impulses at the selected contacts, and `B` of `W = B Bᵀ` if it is a
     /// by-product.
-    pub(super) fn respond<
+    pub(super) fn fill_responses<
         M,
         T,
         const NQ: usize,

@@ -17,7 +17,7 @@ pub(super) struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
     pub(super) impulses: Total<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
     pub(super) free: SVector<T, NV>,
-    /// None if nothing has acted.
+    /// Effects of the impulses; `None` if no contact is loaded.
     pub(super) responses: Option<Responses<T, NV, CR>>,
 }
 
@@ -28,10 +28,11 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK
     }
 }
 
-/// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are
-/// evaluated only where they matter. If the contact forces at the start of a step are known, which would add
-/// `given` to the velocity, the search for impulses begins with them, and their rotation in the step is taken
-/// into account where the bodies are moving.
+/// Computes the impulses of the contacts that are `closed`, and fills `acted`. The contact velocities
+/// `before` are evaluated only if restitution or static friction needs them. `given` is the change of
+/// velocity that contact forces were assumed to cause in a step, with the impulses of the previous one, and
+/// true if bodies are moving. The search begins at these impulses, and the rotation of contact forces in the
+/// step of moving bodies is taken into account.
 pub(super) fn act<
     M,
     T,
@@ -73,13 +74,13 @@ where
         return Ok(solved);
     }
     let responses = acted.responses.insert(Responses::zeros());
-    selection.respond(mechanism, (t, q), closed, responses, &mut problem.basis);
+    selection.fill_responses(mechanism, (t, q), closed, responses, &mut problem.basis);
     problem.weigh(&responses.rates);
     problem.depends_on(NV);
     let failed = |contact| failed::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
     let mut equations = Equations::new();
     let (given, recorded, is_moving) = match given {
-        Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection, &layout), is_moving),
+        Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection), is_moving),
         None => (None, None, false),
     };
     // Contact forces on bodies at rest do not rotate.
@@ -92,11 +93,11 @@ where
         solved.v += correction;
         start
     });
-    let start = recorded.map(|all| problem.own(&all)).or(start);
+    let start = recorded.map(|all| problem.gather(&all)).or(start);
     acted.free = solved.v;
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());
-    // What is driven may give energy, and without restitution nothing does.
+    // Only prescribed motions and restitution can add energy.
     let may_gain = problem.rebounds() && {
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
@@ -120,15 +121,15 @@ where
     Ok(solved)
 }
 
-/// Impulses with the largest part of all restitutions that they can fulfil, and that gives no energy where
-/// nothing is driven.
+/// Returns impulses with the largest common fraction of all restitutions for which they exist. If no motion
+/// is prescribed, this fraction adds no energy either.
 fn tempered<T: Real, const NK: usize, const NR: usize>(
     problem: &mut Problem<T, NK, NR>,
     laws: &[Law<T>; NK],
     before: &SVector<T, NR>,
     may_gain: bool,
 ) -> Result<Total<T, NR>, usize> {
-    // A bit of the part each.
+    // Each bisection determines one bit of the fraction.
     let (mut least, mut step) = (T::zero(), T::one());
     for _ in 0..problem.halvings() {
         step *= constant(0.5);

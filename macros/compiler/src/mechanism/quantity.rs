@@ -83,7 +83,7 @@ pub enum Supplied {
 
 impl Supplied {
     /// All kinds of values whose symbols are ordered with those of momenta.
-    const ALL: [Supplied; 13] = {
+    const ALL: [Supplied; Supplied::ResultFactor as usize] = {
         use Supplied::*;
         [
             Force,

@@ -6,12 +6,12 @@
 //! min ½ |w|² + max over Λ in K of { −Λ·(u₀ + B w + s) − ½ (Λ − Λ̄)·R (Λ − Λ̄) },   W = B Bᵀ
 //! ```
 //!
-//! It is strictly convex in `w`, the change of the velocity in the metric of the kinetic energy, for any rank
-//! of `W`, and Newton's method with a line search finds its minimum from any start. Without `s` and with
-//! `Λ̄ = 0` it is Anitescu's relaxation, regularised (Castro, Permenter and Han, *An unconstrained convex
-//! formulation of compliant contact*, IEEE Trans. Robot. 39, 2023). `Λ̄`, the impulses of the problem before,
-//! removes the effect of the regularisation `R` (method of multipliers), and `s = μ |uₜ|`, from the slip
-//! before, that of the relaxation (Acary, Cadoux, Lemaréchal and Malick, *A formulation of the linear
+//! The problem is strictly convex in `w`, the change of the velocity in the metric of the kinetic energy, for
+//! any rank of `W`, and Newton's method with a line search finds its minimum from any start. Without `s` and
+//! with `Λ̄ = 0` it is Anitescu's relaxation, regularised (Castro, Permenter and Han, *An unconstrained
+//! convex formulation of compliant contact*, IEEE Trans. Robot. 39, 2023). `Λ̄`, the impulses of the problem
+//! before, removes the effect of the regularisation `R` (method of multipliers), and `s = μ |uₜ|`, from the
+//! slip before, that of the relaxation (Acary, Cadoux, Lemaréchal and Malick, *A formulation of the linear
 //! discrete Coulomb friction problem via convex optimization*, ZAMM 91, 2011): where both stay the same,
 //! Coulomb's law is satisfied. For every `s ≥ 0` the impulses take energy, so that a sequence that is cut off
 //! adds none. If the violation of Coulomb's law is small, Newton's method for the natural map continues from

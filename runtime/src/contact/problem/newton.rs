@@ -97,13 +97,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn newton_step(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> List<T, NR> {
         let constant_part = self.impulse_changes(trial, &List::repeat(T::zero()));
         let mut change = self.basis.velocity(&constant_part).each(|x| [x]);
-        self.add_derivative(trial, matrix);
+        self.fill_derivative(trial, matrix);
         eliminate(matrix, &mut change, self.basis.rank());
         self.impulse_changes(trial, &self.basis.rates(&change.each(|[x]| x)))
     }
 
     /// Makes `matrix` `1 + Bᵀ H B`.
-    fn add_derivative(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) {
+    fn fill_derivative(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) {
         let (one, none) = (T::one(), T::zero());
         identify(matrix, self.basis.rank());
         let row = |i: usize| self.basis.row(i);

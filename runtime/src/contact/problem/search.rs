@@ -128,7 +128,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // In most steps few contacts slip or separate, or all keep their modes.
         let start = match near {
             Some(near) => near,
-            None => self.stuck(start, equations),
+            None => self.sticking_impulses(start, equations),
         };
         if self.solves(&start) {
             return start;
@@ -152,7 +152,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the impulses with which all approaching contacts stick, for which the equations are linear, or
     /// those of `start` if they violate the conditions less.
-    fn stuck(&self, start: Option<Trial<T, NK, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
+    fn sticking_impulses(
+        &self,
+        start: Option<Trial<T, NK, NR>>,
+        equations: &mut Equations<T, NR>,
+    ) -> Trial<T, NK, NR> {
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
         let stuck = self.tried(self.together_with(&approach, equations));
         match start.filter(|start| !self.solves(&stuck) && start.worst.0 < stuck.worst.0) {

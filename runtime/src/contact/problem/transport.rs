@@ -57,10 +57,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns values at the rows of the mechanism at the rows of closed contacts.
-    pub(in super::super) fn own(&self, all: &SVector<T, NR>) -> List<T, NR> {
-        let mut own = List::repeat(T::zero());
-        own.iter_mut().zip(self.places.iter()).take(self.size).for_each(|(to, i)| *to = entry(all, *i));
-        own
+    pub(in super::super) fn gather(&self, all: &SVector<T, NR>) -> List<T, NR> {
+        let mut gathered = List::repeat(T::zero());
+        gathered.iter_mut().zip(self.places.iter()).take(self.size).for_each(|(to, i)| *to = entry(all, *i));
+        gathered
     }
 
     /// Impulses that change the rates of the mechanism by `changes`.
