@@ -128,7 +128,7 @@ void {prefix}_defaults({number} *to_own);
     }
     let _ = write!(
         text,
-        "/* Returns the reason why the last call of this thread returned 1; the text is valid until the next call. */
+        "/* Returns why the last call of this thread returned 1; the text is valid until the next call. */
 const char *{prefix}_message(void);
 
 /* Returns names, shapes, units and documentation as JSON, with functions in the order of their indices. */
@@ -140,7 +140,7 @@ const char *{prefix}_description(void);
 int {prefix}_call(size_t function, const {number} *own, const {number} *const *arguments,
                   {number} *const *results, size_t states, size_t threads);
 
-/* Controller: writes the inputs u at the time t, s, and returns 0, or another value to end the simulation. */
+/* Controller: writes the inputs u at the time t, s. Returns 0, or another value to end the simulation. */
 typedef int (*{prefix}_control)(void *user, {number} t, const {number} *q, const {number} *v, {number} *u);
 
 typedef struct {prefix}_settings {{
@@ -159,7 +159,8 @@ typedef struct {prefix}_settings {{
 
 /* Simulates, and writes at most `rows` rows of t, q, v, u, and their number to to_count. */
 int {prefix}_simulate(const {number} *own, const {number} *q, const {number} *v,
-                      const {prefix}_settings *settings, {number} *to_samples, size_t rows, size_t *to_count);
+                      const {prefix}_settings *settings, {number} *to_samples, size_t rows,
+                      size_t *to_count);
 
 typedef struct {prefix}_rollout {{
     {number} start;  /* time at the start, s */
@@ -167,13 +168,13 @@ typedef struct {prefix}_rollout {{
     size_t steps;
     size_t states;
     size_t threads;  /* 0 for one thread for each processor */
-    int inputs_of;   /* 0: the inputs are zero; 1: inputs of each step, equal for all states; 2: inputs of each
-                      * state and step */
+    int inputs_of;   /* 0: the inputs are zero; 1: inputs of each step, equal for all states;
+                      * 2: inputs of each state and step */
 }} {prefix}_rollout;
 
 /* Simulates many states with inputs that are constant during each step. to_q and to_v contain steps + 1
- * configurations and velocities for each state: the first one is the start, and the others are written. Inputs
- * are ordered by state, then by step. */
+ * configurations and velocities for each state: the first one is the start, and the others are written.
+ * Inputs are ordered by state, then by step. */
 int {prefix}_roll_out(const {number} *own, const {prefix}_rollout *settings, const {number} *inputs,
                       {number} *to_q, {number} *to_v);
 
