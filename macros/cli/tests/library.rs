@@ -7,32 +7,25 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 fn is_done(what: &str, output: &Output) {
-    let (said, complained) =
-        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{what}: {}\n{said}\n{complained}", output.status);
+    let (stdout, stderr) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{what}: {}\n{stdout}\n{stderr}", output.status);
 }
 
 #[test]
 fn a_program_in_c_moves_a_bead_on_a_wire() {
     let (target, own) = (Path::new(env!("CARGO_TARGET_TMPDIR")), Path::new(env!("CARGO_MANIFEST_DIR")));
-    // The command is built next to these tests; without optimisation the build is faster.
-    let mut build = Command::new(env!("CARGO"));
-    let beside = target.parent().expect("it is in a folder for what is built");
-    build.args(["build", "--offline", "-p", "linkwork-cli", "--target-dir"]).arg(beside);
-    is_done("the command is built", &build.current_dir(own).output().unwrap());
     let folder = target.join("bead");
-    let arguments = ["export", "library", "bead.rs", "--linkwork", "../../..", "--out"];
-    let command = beside.join("debug/linkwork");
-    let home = own.join("library");
-    let mut export = Command::new(command);
+    let home = own.join("tests/library");
+    let arguments = ["export", "library", "bead.rs", "--linkwork", "../../../..", "--out"];
+    let mut export = Command::new(env!("CARGO_BIN_EXE_linkwork"));
     is_done(
         "the library is written",
         &export.args(arguments).arg(&folder).current_dir(&home).output().unwrap(),
     );
     // The versions are those of the other programs, so that all share the compiler.
     std::fs::copy(own.join("../../Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    let crate_of_it = folder.to_str().expect("a path of this machine");
-    is_done("the library is built", &cargo(&["build"], crate_of_it, env!("CARGO_TARGET_TMPDIR")));
+    let package = folder.to_str().expect("a path of this machine");
+    is_done("the library is built", &cargo(&["build"], package, env!("CARGO_TARGET_TMPDIR")));
 
     for (library, name) in [("libbead.a", "static"), ("libbead.so", "shared")] {
         let (library, program) = (target.join("packages/release").join(library), target.join(name));
