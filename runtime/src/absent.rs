@@ -191,7 +191,7 @@ pub trait HasRegularMass<'a> {}
 #[diagnostic::on_unimplemented(
     message = "an output of accelerations or reactions has no Jacobian",
     label = "this output has none",
-    note = "with the word `derivatives`, an output of accelerations has a function of its name with \
+    note = "with the option `derivatives`, an output of accelerations has a function of its name with \
             `_derivatives` after it; one of reactions has none yet"
 )]
 pub trait HasJacobian<'a> {}

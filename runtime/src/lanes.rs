@@ -44,7 +44,7 @@ pub(crate) use registers::{Registers, VectorLoop};
 // With this alignment, registers of 16 or 32 bytes of two lanes or more never cross a cache line.
 #[repr(align(32))]
 pub struct Lanes<T, const N: usize>(
-    /// Numbers, lane by lane.
+    /// One number for each lane, in the order of the lanes.
     pub [T; N],
 );
 

@@ -10,7 +10,7 @@ fn exact() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
-/// Two billiard balls.
+/// Two billiard balls that move freely in space and collide, with friction and restitution.
 #[mechanism]
 struct Billiards {
     friction: f64,

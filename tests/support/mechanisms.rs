@@ -130,28 +130,28 @@ carried! {
 }
 
 chained! {
-    /// Collar as a chain of a sleeve and a pin.
+    /// Bodies connected by a sleeve joint and by a pin about its axis, equivalent to one `Collar` joint.
     ChainedCollar:
     #[body] slider: Body,
     #[joint(socket -> slider, along = z)] slide: Sleeve,
     #[joint(slider -> last, about = z)] turn: Pin,
 }
 chained! {
-    /// Slot as a chain of a sleeve and a pin.
+    /// Bodies connected by a sleeve joint and by a pin normal to its axis, equivalent to one `Slot` joint.
     ChainedSlot:
     #[body] slider: Body,
     #[joint(socket -> slider, along = x)] slide: Sleeve,
     #[joint(slider -> last, about = z)] turn: Pin,
 }
 chained! {
-    /// Universal joint as a chain of two pins.
+    /// Bodies connected by two pins with perpendicular axes, equivalent to one `Universal` joint.
     ChainedUniversal:
     #[body] cross: Body,
     #[joint(socket -> cross, about = x)] first: Pin,
     #[joint(cross -> last, about = y)] second: Pin,
 }
 chained! {
-    /// Planar joint as a chain of two sleeves and a pin.
+    /// Bodies connected by two sleeve joints and a pin, equivalent to one `Planar` joint.
     ChainedPlanar:
     #[body] slide1: Body,
     #[body] slide2: Body,

@@ -246,15 +246,15 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
 /// Data that optional functions need in addition to the model.
 #[derive(Default)]
 struct Extras<'a, 'g> {
-    /// Base parameters, for `regressor`.
+    /// Base parameters; present if the option `regressor` is set.
     identification: Option<Identification<'a, 'g>>,
-    /// Row and column of each nonzero entry, for `packed`.
+    /// Row and column of each nonzero entry; present if the option `packed` is set.
     entries: Option<Vec<(usize, usize)>>,
-    /// Hamilton's equations, for `hamilton`.
+    /// Hamilton's equations; present if the option `hamilton` is set.
     hamilton: Option<Hamilton<'g>>,
-    /// Routh's equations, for `routh`.
+    /// Routh's equations; present if the option `routh` is set.
     routh: Option<Routh<'g>>,
-    /// Conserved quantities, for `conserved`.
+    /// Conserved quantities; present if the option `conserved` is set.
     conserved: Option<Vec<Conserved<'g>>>,
 }
 

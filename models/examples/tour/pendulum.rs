@@ -19,7 +19,7 @@ const WINDOW: f64 = 5.0;
 struct Run {
     /// Largest error of the energy in each window, relative to m g l.
     energy: Vec<[f64; 2]>,
-    /// Largest error of the angle in each window, rad.
+    /// End time, s, of each time window, and the largest error of the angle in the window, rad.
     angle: Vec<[f64; 2]>,
     /// Computing time, ms.
     cost: f64,

@@ -8,7 +8,7 @@ use std::fmt;
 /// Name and unit of a state, input or output.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signal {
-    /// Name.
+    /// Name of the state, input or output.
     pub name: String,
     /// Unit; empty if unspecified.
     pub unit: String,
@@ -51,7 +51,7 @@ impl fmt::Display for Signal {
 pub enum Port<'a> {
     /// Index, counted from zero.
     At(usize),
-    /// Name.
+    /// By name of the input or output.
     Named(&'a str),
 }
 

@@ -252,7 +252,8 @@ fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], 
     }
 }
 
-/// Adds the derivatives of `difference(from, to)` by both configurations to lists.
+/// Adds to two lists the gradients, by both configurations, of the sum of the entries of `difference(from, to)`,
+/// each entry multiplied by its factor.
 pub(crate) fn difference(
     charts: &[Chart],
     [from, to]: [&[f64]; 2],
@@ -274,7 +275,8 @@ pub(crate) fn difference(
     add_configuration_factors(charts, from, &at_start, by_from);
 }
 
-/// Adds the derivatives of `tangent_rate(dv, v)` by both vectors to lists.
+/// Adds to two lists the gradients, by both vectors, of the sum of the entries of `tangent_rate(dv, v)`, each
+/// entry multiplied by its factor.
 pub(crate) fn tangent_rate(
     charts: &[Chart],
     [dv, v]: [&[f64]; 2],

@@ -256,7 +256,7 @@ impl Maker<'_, '_> {
         self.output.functions.iter().find(|f| f.id == id)
     }
 
-    /// Returns the index of a function that was added.
+    /// Returns the index of the function with this name among the added functions; `None` if there is none.
     pub fn index(&self, name: &str) -> Option<usize> {
         self.entries.iter().position(|entry| entry.name == name)
     }

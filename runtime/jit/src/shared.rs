@@ -78,7 +78,7 @@ pub(crate) struct Contact {
 pub(crate) struct FirstOrder {
     /// Index among the parameters.
     pub parameter: usize,
-    /// Index of the function of its rate.
+    /// Index of the function that returns the rate of the state; `None` if it has none.
     pub rate: Option<usize>,
 }
 

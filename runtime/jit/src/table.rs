@@ -1,4 +1,4 @@
-//! AnyTable of a mechanism: functions that are parameters.
+//! Tables of a mechanism with any number of variables: functions that are parameters.
 
 use linkwork::Table;
 

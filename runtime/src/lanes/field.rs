@@ -154,7 +154,7 @@ impl<T: Real, const N: usize> RealField for Lanes<T, N> {
         self.0.iter().all(T::is_sign_positive)
     }
 
-    /// Whether all lanes are negative.
+    /// Whether the sign bit of every lane is set.
     #[inline(always)]
     fn is_sign_negative(&self) -> bool {
         self.0.iter().all(T::is_sign_negative)

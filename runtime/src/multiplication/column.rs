@@ -182,7 +182,7 @@ pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
     }
 }
 
-/// Columns of which multiples are added.
+/// List of columns in registers, of which multiples are added to the columns of another matrix.
 pub trait Source<A, T, const E: usize, const F: usize> {
     /// Number of columns.
     const COUNT: usize;

@@ -37,13 +37,13 @@ impl Item {
 pub struct Order {
     /// All atoms, in the order in which factors are printed.
     pub atoms: Vec<usize>,
-    /// Mask of rates, functions of rates, accelerations and inputs.
+    /// Mask of the atoms that are velocities, functions of velocities, accelerations or inputs.
     pub rates: Monomial,
-    /// Mask of the accelerations.
+    /// Mask of the atoms that are accelerations.
     pub accelerations: Monomial,
-    /// Mask of the functions of positions.
+    /// Mask of the atoms that are functions of positions.
     pub functions: Monomial,
-    /// Mask of the positions.
+    /// Mask of the atoms of rank `Position`: coordinates and other symbols that vary in time.
     pub positions: Monomial,
     parameters: Monomial,
     /// For each atom, the number of names, numbers and functions in its printed form.

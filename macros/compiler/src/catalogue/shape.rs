@@ -336,7 +336,8 @@ pub enum InverseForm {
 }
 
 impl InverseForm {
-    /// Returns the number of additional values per velocity that follow the columns.
+    /// Returns the number of values per velocity that the outputs contain in addition to the columns of the
+    /// inverse: one for each velocity of the trunk.
     fn width(&self) -> usize {
         match self {
             InverseForm::Explicit => 0,

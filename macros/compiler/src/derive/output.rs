@@ -80,7 +80,7 @@ impl Function {
 
 /// Everything that is derived from a model.
 pub struct Output {
-    /// The generated functions.
+    /// Functions to be emitted, each with its documentation, shape and program.
     pub functions: Vec<Function>,
     /// Kinematic steps of the links.
     pub links: Vec<LinkSteps>,

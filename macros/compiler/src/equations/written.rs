@@ -40,8 +40,9 @@ impl Lines {
         }
     }
 
-    /// Returns one line per equation, given the symbol of the Lagrangian and those of the joint velocities
-    /// that speeds replace.
+    /// Returns the printed equations: the Lagrangian, the joint velocities in terms of generalized speeds, and
+    /// the equations of motion. `lagrangian` is the symbol of the Lagrangian, and `left(k)` that of joint
+    /// velocity `k`.
     fn equations(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
         let mut all = vec![format!("{lagrangian} = {}", self.lagrangian)];
         all.extend(self.rates.iter().map(|(k, rate)| format!("{} = {rate}", left(*k))));

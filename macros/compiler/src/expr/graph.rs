@@ -364,7 +364,7 @@ impl Graph {
         self.signed(na != nb, self.plain_product(a, b))
     }
 
-    /// Multiplies two operands without signs.
+    /// Multiplies two operands whose negations the caller has removed.
     fn plain_product(&self, a: Id, b: Id) -> Id {
         if let Some(product) = self.fold(a, b, |x, y| x * y) {
             return product;

@@ -6,7 +6,7 @@ use crate::mechanism::{AccelerationForce, CoulombFriction, Dashpot, Inertance, I
 /// Forces of an element, which the builder adds to those of the others.
 #[derive(Default)]
 pub struct Forces<'g> {
-    /// Linear springs on coordinates.
+    /// Springs of constant stiffness that act on one coordinate each.
     pub springs: Vec<Spring<'g>>,
     /// Linear dashpots on coordinates.
     pub dashpots: Vec<Dashpot<'g>>,

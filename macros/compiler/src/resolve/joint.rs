@@ -12,7 +12,8 @@ use crate::language::elements::{CoordinateNames, DrawnAxis};
 use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceKind};
 use crate::syntax::{self, Joint, JointKind};
 
-/// Returns the charts of a joint whose coordinates begin at `q` and `v`.
+/// Returns the coordinate charts of a joint whose entries begin at `q` and `v`: one for each plain coordinate,
+/// or one for the whole of a ball or free joint.
 pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     match kind.row().coordinates {
         CoordinateNames::Ball => vec![Chart::Ball(q, v)],

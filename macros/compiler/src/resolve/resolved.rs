@@ -1,4 +1,4 @@
-//! Physical matrices, resolved in the axes of a link.
+//! Physical matrices (second-order tensors, such as inertia matrices) by their entries in the axes of a link.
 
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::mechanism::LinkId;

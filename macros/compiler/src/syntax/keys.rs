@@ -8,7 +8,7 @@ use crate::language::{Callable, Key, OtherKind, Relation};
 
 /// Arguments that the row of an element lists.
 pub struct Keys<'a> {
-    /// All of them.
+    /// All arguments that the row of the element lists.
     pub all: &'a [Key],
     /// Alternative laws, of which one is given.
     pub laws: &'a [Key],

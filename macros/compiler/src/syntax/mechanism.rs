@@ -80,11 +80,11 @@ pub const ROOT_JOINT: &str = "root_joint";
 /// Treatment of the limits of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOption {
-    /// Bounds for controllers.
+    /// Limits of the file are bounds for controllers.
     Honour,
-    /// Omitted.
+    /// Limits of the file are not read.
     Ignore,
-    /// Bounds that are also stops.
+    /// Limits of the file are bounds for controllers and also stops.
     Stops,
 }
 

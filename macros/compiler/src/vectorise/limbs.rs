@@ -19,7 +19,7 @@ pub struct Limbs<'g> {
     velocities: Vec<Velocity>,
     /// Location of each velocity of the whole mechanism.
     places: Vec<Location>,
-    /// Passive forces, by velocity of the vectorised mechanism.
+    /// Passive force of each velocity of the vectorised mechanism, in which identical limbs are SIMD lanes.
     passive_forces: Vec<Expr<'g>>,
 }
 

@@ -15,7 +15,7 @@ pub struct Bounds {
     pub rates: DVector<f64>,
     /// Constraint Jacobian `J`.
     pub jacobian: DMatrix<f64>,
-    /// Derivatives of `rates` with respect to the configuration.
+    /// Derivatives of the constraint velocities `J v + …` with respect to the configuration.
     pub rates_by_q: DMatrix<f64>,
 }
 

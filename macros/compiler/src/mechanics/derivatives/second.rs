@@ -144,7 +144,7 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     }
 }
 
-/// Second derivatives of the terms that constraints add to the equations of motion.
+/// Second derivatives of the constraint forces and of the constraint equations, contracted with factors.
 pub struct ConstraintHessian<'g> {
     /// Second derivatives with respect to the state and the accelerations.
     pub state: Hessian<'g>,

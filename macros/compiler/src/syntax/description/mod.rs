@@ -33,7 +33,7 @@ pub enum ScalarType {
 pub enum Base {
     /// Welded to the ground.
     Fixed,
-    /// On a free joint.
+    /// The root is connected to the ground by a free joint.
     Free,
 }
 

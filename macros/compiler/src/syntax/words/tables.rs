@@ -21,7 +21,7 @@ const CONTACT_HELP: &str = "surfaces that can separate are a `Contact`: `#[conta
 const TIME_HELP: &str = "time is `t` in every expression; `#[mechanism]` needs no field for it";
 const CONSTRAINT_HELP: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
-/// Types of fields, without the suffix `joint`.
+/// Synonyms of field types, without the suffix `joint`, with the type that is suggested.
 pub const ELEMENTS: Words = &[
     ("mass", "a mass is a `Body` if it is extended or rotates, a `Particle` if it is a point"),
     (
@@ -66,7 +66,7 @@ const FORMAT_HELP: &str = "URDF, MJCF and SDF files can be read: `urdf = \"path/
 const XACRO_HELP: &str = "expand the template first, `xacro robot.urdf.xacro > robot.urdf`, and name the \
                           result: `urdf = \"path/to/robot.urdf\"`";
 
-/// Arguments of `#[mechanism]`.
+/// Synonyms of options of `#[mechanism]` with a value, with the option that is suggested.
 pub const OPTIONS: Words = &[
     ("g grav gravitation gravityvector", "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`"),
     ("file path model robot filename source", "urdf"),
@@ -88,7 +88,7 @@ pub const OPTIONS: Words = &[
     ("trustinertia", "did you mean `inertia = trust`?"),
 ];
 
-/// Options of `#[mechanism]` without a value.
+/// Synonyms of options of `#[mechanism]` without a value, with the option that is suggested.
 pub const REQUESTS: Words = &[
     (
         "derivative jacobian jacobians gradient gradients linearize linearise linearization linear \
@@ -114,13 +114,13 @@ pub const REQUESTS: Words = &[
     ),
 ];
 
-/// Formulations of constrained motion.
+/// Synonyms of formulations of constrained motion, with the formulation that is suggested.
 pub const FORMULATIONS: Words = &[
     ("lagrange lagrangian lagrangemultipliers dae multiplier", "multipliers"),
     ("kane independent minimal reduced speed ode", "speeds"),
 ];
 
-/// Functions in expressions.
+/// Synonyms of functions in expressions, with the function that is suggested.
 pub const FUNCTIONS: Words = &[
     ("arctan", "atan"),
     ("arcsin", "asin"),
@@ -157,7 +157,7 @@ const SI_HELP: &str = "numbers have no units: all quantities are in SI units, an
                        `degrees(90)`; a parameter is a field of this name, of type `f64`";
 const VALUE_HELP: &str = "a value is a number, a parameter, a coordinate or an expression of them";
 
-/// Names in expressions.
+/// Synonyms of names in expressions, with the expression that is suggested.
 pub const NAMES: Words = &[
     ("time", "t"),
     ("mpi π", "pi"),
@@ -209,19 +209,19 @@ pub const GREEK: &[(&str, &str)] = &[
     ("Ω", "omega"),
 ];
 
-/// Solids of inertias.
+/// Synonyms of solids in `inertia = …`, with the solid that is suggested.
 pub const SOLIDS: Words = &[
     ("point particle pointmass none zero", "a point has no inertia: leave `inertia` out"),
     ("matrix tensor full", "write the matrix itself, `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`"),
 ];
 
-/// Methods of a body.
+/// Synonyms of methods of a body, with the method that is suggested.
 pub const METHODS: Words = &[
     ("pos position point offset translate translated from shift origin", "at"),
     ("rotate rot rotation turned turn tilted rpy", "rotated"),
 ];
 
-/// Members of a body; `NAME` is its name.
+/// Synonyms of members of a body, with the expression that is suggested; `NAME` is the body's name.
 pub const MEMBERS: Words = &[
     ("position pos r origin p", "its position is `r(NAME / ground)`"),
     ("velocity vel v speed", "its velocity is `v(NAME / ground / ground)`"),
@@ -233,23 +233,23 @@ pub const MEMBERS: Words = &[
     ),
 ];
 
-/// Words for the current body.
+/// Words that users write for the body that is being declared.
 pub const OWN: Words =
     &[("body this own local frame me", "the only axes available here are `x`, `y` and `z`")];
 
-/// Methods of numbers and coordinates.
+/// Synonyms of methods of numbers and coordinates, with the method that is suggested.
 pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
 
-/// Methods of coordinates; `NAME` is the coordinate.
+/// Synonyms of methods of coordinates, with the expression that is suggested; `NAME` is the coordinate.
 pub const RATES: Words = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
 
-/// Bodies.
+/// Words of other tools for the ground.
 pub const BODIES: Words = &[(
     "world base baselink earth origin inertial fixed n newtonian globe wall floor map odom frame static",
     "ground",
 )];
 
-/// Rotations.
+/// Words of other tools for rotations by three angles, with the form that is suggested.
 pub const ROTATIONS: Words = &[(
     "rpy euler rollpitchyaw",
     "roll, pitch and yaw are rotations about body-fixed axes in the opposite order: `z(yaw), y(pitch), \
