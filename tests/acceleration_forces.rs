@@ -115,14 +115,14 @@ fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
-    let column = |k: usize| {
+    let derivative_column = |k: usize| {
         slope(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
         })
     };
-    (0..K).flat_map(|k| column(k).as_slice().to_vec()).collect()
+    (0..K).flat_map(|k| derivative_column(k).as_slice().to_vec()).collect()
 }
 
 struct Case<const NQ: usize, const NV: usize, const NU: usize> {
@@ -135,7 +135,7 @@ struct Case<const NQ: usize, const NV: usize, const NU: usize> {
 
 fn in_flight() -> Vec<Case<7, 7, 2>> {
     let mut random = Random::new(3);
-    let one = |k: usize| {
+    let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
         let q = SVector::from_column_slice(&[10.0, 20.0, -900.0, turn[0], turn[1], turn[2], turn[3]]);
         let mut v: SVector<f64, 7> = random.vector(0.7);
@@ -144,19 +144,19 @@ fn in_flight() -> Vec<Case<7, 7, 2>> {
         v[6] = 3000.0 + 100.0 * v[6];
         Case { t: 0.0, q, v, a: random.vector(2.0), u: random.vector(1.0) }
     };
-    (0..6).map(one).collect()
+    (0..6).map(random_case).collect()
 }
 
 fn coupled() -> Vec<Case<3, 3, 1>> {
     let mut random = Random::new(8);
-    let one = |_| Case {
+    let random_case = |_| Case {
         t: random.uniform(2.0),
         q: random.vector(1.5),
         v: random.vector(1.5),
         a: random.vector(3.0),
         u: random.vector(2.0),
     };
-    (0..8).map(one).collect()
+    (0..8).map(random_case).collect()
 }
 
 #[test]
@@ -178,12 +178,16 @@ fn what_multiplies_accelerations_is_not_symmetric() {
     for Case { t, q, v, .. } in coupled() {
         let at_rest = COUPLED.inverse_dynamics(t, &q, &v, &SVector::zeros());
         assert_similar("h", at_rest.as_slice(), COUPLED.bias_forces(t, &q, &v).as_slice(), 1e-14);
-        let column = |k: usize| {
+        let acceleration_column = |k: usize| {
             let mut a = SVector::zeros();
             a[k] = 1.0;
             COUPLED.inverse_dynamics(t, &q, &v, &a) - at_rest
         };
-        let matrix = SMatrix::<f64, 3, 3>::from_columns(&[column(0), column(1), column(2)]);
+        let matrix = SMatrix::<f64, 3, 3>::from_columns(&[
+            acceleration_column(0),
+            acceleration_column(1),
+            acceleration_column(2),
+        ]);
         // The expected matrix is derived by hand from the definition: the water at the tip is a particle
         // there.
         let Coupled { gain, share, reach, added } = COUPLED;
@@ -211,16 +215,16 @@ fn derivatives_agree_with_differences() {
     for Case { t, q, v, a, u } in in_flight() {
         let tau = whole.generalized_forces(t, &q, &v, &u);
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
-        let forward = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
-        let displaced = |by| whole.integrate(&q, &by);
-        let found = slopes(still, |by| forward(&displaced(by), &v, &tau));
+        let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
+        let displaced_configuration = |by| whole.integrate(&q, &by);
+        let found = slopes(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
         assert_similar("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes(step, |by| forward(&q, &(v + by), &tau));
+        let found = slopes(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
         assert_similar("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e2; 7], |by| forward(&q, &v, &(tau + by)));
+        let found = slopes([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
         assert_similar("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let found = slopes(still, |by| whole.inverse_dynamics(t, &displaced(by), &v, &a));
+        let found = slopes(still, |by| whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a));
         assert_similar("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
         let found = slopes(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
         assert_similar("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
@@ -232,15 +236,20 @@ fn linear_motions_agree_with_differences() {
     for Case { t, q, v, u, .. } in coupled() {
         let now = at(&COUPLED, t);
         let motion = Derivatives::linear_motion(&now, &q, &v, &u);
-        let forward = |q: &SVector<f64, 3>, v: &SVector<f64, 3>, u: &SVector<f64, 1>| {
+        let coupled_accelerations = |q: &SVector<f64, 3>, v: &SVector<f64, 3>, u: &SVector<f64, 1>| {
             COUPLED.forward_dynamics(t, q, v, &COUPLED.generalized_forces(t, q, u))
         };
-        assert_similar("v̇", motion.acceleration.as_slice(), forward(&q, &v, &u).as_slice(), 1e-13);
-        let found = slopes([1e-2; 3], |by| forward(&(q + by), &v, &u));
+        assert_similar(
+            "v̇",
+            motion.acceleration.as_slice(),
+            coupled_accelerations(&q, &v, &u).as_slice(),
+            1e-13,
+        );
+        let found = slopes([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
         assert_similar("∂v̇/∂q", motion.by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 3], |by| forward(&q, &(v + by), &u));
+        let found = slopes([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
         assert_similar("∂v̇/∂v", motion.by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 1], |by| forward(&q, &v, &(u + by)));
+        let found = slopes([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
         assert_similar("∂v̇/∂u", motion.by_u.as_slice(), &found, DIFFERENCE);
     }
 }
@@ -248,16 +257,16 @@ fn linear_motions_agree_with_differences() {
 #[test]
 fn derivatives_by_parameters_agree_with_differences() {
     for Case { t, q, v, a, .. } in coupled() {
-        let perturbed = |by: SVector<f64, 4>| {
+        let perturbed_mechanism = |by: SVector<f64, 4>| {
             let Coupled { gain, share, reach, added } = COUPLED;
             Coupled { gain: gain + by[0], share: share + by[1], reach: reach + by[2], added: added + by[3] }
         };
         let by = COUPLED.inverse_dynamics_by_parameters(t, &q, &v, &a);
-        let found = slopes([1e-2; 4], |s| perturbed(s).inverse_dynamics(t, &q, &v, &a));
+        let found = slopes([1e-2; 4], |s| perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a));
         assert_similar("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
         let tau = a;
         let by = COUPLED.forward_dynamics_by_parameters(t, &q, &v, &tau);
-        let found = slopes([1e-2; 4], |s| perturbed(s).forward_dynamics(t, &q, &v, &tau));
+        let found = slopes([1e-2; 4], |s| perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau));
         assert_similar("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
     }
 }
@@ -273,11 +282,16 @@ fn prepared_mechanisms_and_batches_have_them() {
         assert_similar("v̇", back.as_slice(), a.as_slice(), 1e-11);
     }
     let all = coupled();
-    let wide = |f: fn(&Case<3, 3, 1>) -> SVector<f64, 3>| {
+    let lanes_of_cases = |f: fn(&Case<3, 3, 1>) -> SVector<f64, 3>| {
         SVector::<Lanes<f64, 4>, 3>::from_fn(|i, _| Lanes::from_fn(|k| f(&all[k])[i]))
     };
     let t = Lanes::from_fn(|k| all[k].t);
-    let found = COUPLED.forward_dynamics_lanes(t, &wide(|c| c.q), &wide(|c| c.v), &wide(|c| c.a));
+    let found = COUPLED.forward_dynamics_lanes(
+        t,
+        &lanes_of_cases(|c| c.q),
+        &lanes_of_cases(|c| c.v),
+        &lanes_of_cases(|c| c.a),
+    );
     for (k, Case { t, q, v, a, .. }) in all.iter().take(4).enumerate() {
         let one = COUPLED.forward_dynamics(*t, q, v, a);
         let lane: Vec<f64> = found.iter().map(|entry| entry[k]).collect();

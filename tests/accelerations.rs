@@ -26,9 +26,9 @@ use linkwork::nalgebra::SVector;
 use spec::{Spec, Style};
 use std::fmt::Write;
 
-/// Number of mechanisms that are compiled.
+/// Number of random mechanisms that the test compiles.
 const COUNT: u64 = 12;
-/// Largest difference, relative to the largest entry.
+/// Maximum difference between results, relative to the largest entry.
 const TOLERANCE: f64 = 1e-9;
 /// Imaginary step of the complex-step derivative: its square is below rounding error.
 const STEP: f64 = 1e-40;
@@ -40,7 +40,7 @@ fn mechanism(k: u64) -> Spec {
     Spec { symbolic: false, ..spec::spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None }) }
 }
 
-/// Returns the text of `mechanisms.rs`.
+/// Returns the text that the generator writes to `mechanisms.rs`.
 fn written() -> String {
     let mut out = String::from(
         "//! Written by the test `the_file_is_what_the_generator_writes`.\n\nuse linkwork::mechanism;\n",
@@ -58,10 +58,10 @@ fn the_file_is_what_the_generator_writes() {
     if std::env::var_os("LINKWORK_WRITE").is_some() {
         std::fs::write(path, written()).unwrap();
     }
-    let words = |text: &str| text.split_whitespace().collect::<String>();
+    let remove_whitespace = |text: &str| text.split_whitespace().collect::<String>();
     assert_eq!(
-        words(&std::fs::read_to_string(path).unwrap()),
-        words(&written()),
+        remove_whitespace(&std::fs::read_to_string(path).unwrap()),
+        remove_whitespace(&written()),
         "write it anew with LINKWORK_WRITE=1"
     );
 }
@@ -77,8 +77,8 @@ fn forward_dynamics((columns, bias): &(Vec<Vec<C>>, Vec<C>), tau: &[C]) -> Vec<C
     let mut rows: Vec<Vec<C>> =
         (0..n).map(|i| columns.iter().map(|column| column[i]).chain([tau[i] - bias[i]]).collect()).collect();
     for k in 0..n {
-        let size = |i: &usize| rows[*i][k].norm();
-        let best = (k..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(k);
+        let pivot_magnitude = |i: &usize| rows[*i][k].norm();
+        let best = (k..n).max_by(|a, b| pivot_magnitude(a).total_cmp(&pivot_magnitude(b))).unwrap_or(k);
         rows.swap(k, best);
         let pivot = rows[k].clone();
         for row in rows.iter_mut().skip(k + 1) {

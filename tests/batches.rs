@@ -24,7 +24,8 @@ struct Solo12;
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, batch)]
 struct Humanoid;
 
-/// Generic mechanism with every kind of coordinate chart, force laws that use many functions, and an output.
+/// Mechanism with every kind of coordinate chart, generic over its scalar type, with force laws that use many
+/// functions, and an output.
 #[mechanism(gravity = -g * y, derivatives, batch)]
 struct Machine<T> {
     g: T,
@@ -93,8 +94,8 @@ struct Hoop {
     motor: Torque,
 }
 
-/// Four-bar linkage with values prepared from its parameters. Its loop is singular where all bars lie on one
-/// line.
+/// Four-bar linkage with prepared values of its parameters. The closed loop is singular where all bars are on
+/// one line.
 #[mechanism(gravity = -g * y, batch, prepare, derivatives, centroidal)]
 struct FourBar {
     g: f64,
@@ -159,7 +160,7 @@ fn scalar<T: Real>(x: T) -> SMatrix<T, 1, 1> {
     SMatrix::from_element(x)
 }
 
-/// `L` states, stored as lanes and one by one.
+/// `L` states of a mechanism, stored both as SIMD lanes and one by one.
 struct States<T, const N: usize, const L: usize> {
     wide: SVector<Lanes<T, L>, N>,
     each: [SVector<T, N>; L],
@@ -183,8 +184,9 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
     }
 }
 
-/// Checks all functions of the trait. `columns` and `limbs` are the tolerances where the program of a single
-/// state uses SIMD lanes over columns of the mass matrix or over limbs, and so sums in another order.
+/// Checks all functions of the trait on lanes against single states. `columns` and `limbs` are the tolerances
+/// where the single-state program itself uses SIMD lanes over columns of the mass matrix or over limbs, and
+/// sums in another order.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     m: &M,
     [columns, limbs]: [f64; 2],
@@ -202,7 +204,7 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
         let v: States<M::Scalar, NV, L> = States::random(&mut random, 2.0);
         let a: States<M::Scalar, NV, L> = States::random(&mut random, 5.0);
         let u: States<M::Scalar, NU, L> = States::random(&mut random, 5.0);
-        let s = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
+        let single_state = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
         let (t0, q0, v0) = (t.wide[0], &q.wide, &v.wide);
         let start = q.each[0].map(Lanes::splat);
         assert_lanes("integrate", &wide.integrate(q0, &dv.wide), |k| m.integrate(&q.each[k], &dv.each[k]));
@@ -210,36 +212,38 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
         assert_lanes("tangent_rate", &wide.tangent_rate(&dv.wide, v0), |k| {
             m.tangent_rate(&dv.each[k], &v.each[k])
         });
-        assert_near("mass_matrix", columns, &wide.mass_matrix(t0, q0), |k| m.mass_matrix(s(k).0, s(k).1));
+        assert_near("mass_matrix", columns, &wide.mass_matrix(t0, q0), |k| {
+            m.mass_matrix(single_state(k).0, single_state(k).1)
+        });
         assert_near("bias_forces", limbs, &wide.bias_forces(t0, q0, v0), |k| {
-            m.bias_forces(s(k).0, s(k).1, s(k).2)
+            m.bias_forces(single_state(k).0, single_state(k).1, single_state(k).2)
         });
         assert_near("inverse_dynamics", limbs, &wide.inverse_dynamics(t0, q0, v0, &a.wide), |k| {
-            m.inverse_dynamics(s(k).0, s(k).1, s(k).2, &a.each[k])
+            m.inverse_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k])
         });
         assert_near("forward_dynamics", limbs, &wide.forward_dynamics(t0, q0, v0, &a.wide), |k| {
-            m.forward_dynamics(s(k).0, s(k).1, s(k).2, &a.each[k])
+            m.forward_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k])
         });
         assert_lanes("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
-            m.generalized_forces(s(k).0, s(k).1, s(k).2, &u.each[k])
+            m.generalized_forces(single_state(k).0, single_state(k).1, single_state(k).2, &u.each[k])
         });
         assert_lanes("kinetic_energy", &scalar(wide.kinetic_energy(t0, q0, v0)), |k| {
-            scalar(m.kinetic_energy(s(k).0, s(k).1, s(k).2))
+            scalar(m.kinetic_energy(single_state(k).0, single_state(k).1, single_state(k).2))
         });
         assert_lanes("potential_energy", &scalar(wide.potential_energy(t0, q0)), |k| {
-            scalar(m.potential_energy(s(k).0, s(k).1))
+            scalar(m.potential_energy(single_state(k).0, single_state(k).1))
         });
         assert_lanes("generalized_momentum", &wide.generalized_momentum(t0, q0, v0), |k| {
-            m.generalized_momentum(s(k).0, s(k).1, s(k).2)
+            m.generalized_momentum(single_state(k).0, single_state(k).1, single_state(k).2)
         });
         assert_lanes("momentum_rate", &wide.momentum_rate(t0, q0, v0), |k| {
-            m.momentum_rate(s(k).0, s(k).1, s(k).2)
+            m.momentum_rate(single_state(k).0, single_state(k).1, single_state(k).2)
         });
     }
     assert_lanes(type_name::<M>(), &wide.neutral(), |_| m.neutral());
 }
 
-/// Tolerance of zero: equal bits.
+/// Tolerances of zero: lanes and single states must have equal bits.
 const SAME: [f64; 2] = [0.0; 2];
 /// Tolerance where columns of the mass matrix are lanes, which changes the order of sums.
 const COLUMNS: [f64; 2] = [1e-13, 0.0];
@@ -311,13 +315,14 @@ fn functions_on_request_in_lanes() {
     let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
     let u: States<f64, 8, 4> = States::random(&mut random, 2.0);
     let (by_q, by_v) = Panda.inverse_dynamics_derivatives_lanes(&q.wide, &v.wide, &a.wide);
-    let one = |k: usize| Panda.inverse_dynamics_derivatives(&q.each[k], &v.each[k], &a.each[k]);
-    assert_near("∂τ/∂q", 1e-12, &by_q, |k| one(k).0);
-    assert_near("∂τ/∂v", 1e-12, &by_v, |k| one(k).1);
+    let derivatives_of_state =
+        |k: usize| Panda.inverse_dynamics_derivatives(&q.each[k], &v.each[k], &a.each[k]);
+    assert_near("∂τ/∂q", 1e-12, &by_q, |k| derivatives_of_state(k).0);
+    assert_near("∂τ/∂v", 1e-12, &by_v, |k| derivatives_of_state(k).1);
     let (state, input) = Panda.linearize_lanes(&q.wide, &v.wide, &u.wide);
-    let one = |k: usize| Panda.linearize(&q.each[k], &v.each[k], &u.each[k]);
-    assert_lanes("A", &state, |k| one(k).0);
-    assert_lanes("B", &input, |k| one(k).1);
+    let linear_model_of_state = |k: usize| Panda.linearize(&q.each[k], &v.each[k], &u.each[k]);
+    assert_lanes("A", &state, |k| linear_model_of_state(k).0);
+    assert_lanes("B", &input, |k| linear_model_of_state(k).1);
     assert_lanes("M⁻¹", &Panda.mass_matrix_inverse_lanes(&q.wide), |k| {
         Panda.mass_matrix_inverse(&q.each[k])
     });
@@ -337,9 +342,10 @@ fn large_mechanisms_call_each_other_in_lanes() {
     let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
     let u: States<f64, 1, 4> = States::random(&mut random, 2.0);
     let (by_q, _, inverse) = m.forward_dynamics_derivatives_lanes(&q.wide, &v.wide, &tau.wide);
-    let one = |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
-    assert_lanes("∂v̇/∂q", &by_q, |k| one(k).0);
-    assert_lanes("M⁻¹", &inverse, |k| one(k).2);
+    let derivatives_of_state =
+        |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
+    assert_lanes("∂v̇/∂q", &by_q, |k| derivatives_of_state(k).0);
+    assert_lanes("M⁻¹", &inverse, |k| derivatives_of_state(k).2);
     let (state, _) = m.linearize_lanes(&q.wide, &v.wide, &u.wide);
     assert_lanes("A", &state, |k| m.linearize(&q.each[k], &v.each[k], &u.each[k]).0);
     assert_lanes("offset", &m.offset_lanes(&q.wide), |k| m.offset(&q.each[k]));
@@ -356,10 +362,11 @@ fn composed_derivatives_go_into_matrices_in_lanes() {
     let [by_q, by_v, inverse] = &mut into;
     let a = Tail.forward_dynamics_derivatives_into_lanes(&q.wide, &v.wide, &tau.wide, by_q, by_v, inverse);
     assert_near("v̇", 1e-11, &a, |k| Tail.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k]));
-    let one = |k: usize| Tail.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
-    assert_near("∂v̇/∂q", 1e-11, &into[0], |k| one(k).0);
-    assert_near("∂v̇/∂v", 1e-11, &into[1], |k| one(k).1);
-    assert_near("M⁻¹", 1e-11, &into[2], |k| one(k).2);
+    let derivatives_of_state =
+        |k: usize| Tail.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
+    assert_near("∂v̇/∂q", 1e-11, &into[0], |k| derivatives_of_state(k).0);
+    assert_near("∂v̇/∂v", 1e-11, &into[1], |k| derivatives_of_state(k).1);
+    assert_near("M⁻¹", 1e-11, &into[2], |k| derivatives_of_state(k).2);
 }
 
 #[test]

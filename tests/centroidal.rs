@@ -8,10 +8,10 @@ use support::random::Random;
 
 /// Tolerance between two derivations of the same quantity.
 const EXACT: f64 = 1e-11;
-/// Tolerance against finite differences.
+/// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Quadruped with a free base.
+/// Quadruped Solo12 with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, centroidal)]
 struct Quadruped;
 
@@ -19,7 +19,7 @@ struct Quadruped;
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, centroidal)]
 struct Humanoid;
 
-/// Arm fixed to the ground, with two fingers that move as one.
+/// Panda arm fixed to the ground, whose second finger follows the first one.
 #[mechanism(urdf = "../models/urdf/panda.urdf", centroidal)]
 struct Panda;
 
@@ -99,9 +99,9 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
 #[test]
 fn weight_alone_changes_the_momentum_of_what_flies() {
     let robot = Quadruped;
-    let bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
-    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), bias);
+    let momentum_bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
+    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), momentum_bias);
     let robot = Humanoid;
-    let bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
-    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), bias);
+    let momentum_bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
+    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), momentum_bias);
 }

@@ -15,7 +15,7 @@ struct Top {
     tip: Ball,
 }
 
-/// Rigid body without forces.
+/// Rigid body that moves freely, without forces.
 #[mechanism(conserved, hamilton)]
 struct Stone {
     #[body(mass = 2, com = 0.1 * x + 0.2 * y, inertia = diagonal(0.3, 0.4, 0.5))]
@@ -46,7 +46,7 @@ struct Carts {
     motor: Torque,
 }
 
-/// Two carts with a spring between them, and a pendulum with viscous friction in its hinge.
+/// Cart on a rail with a pendulum, whose hinge has viscous friction, so that energy is not conserved.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
 struct Greased {
     #[body(mass = 1)]
@@ -72,7 +72,7 @@ struct Hoop {
     bead: Particle,
 }
 
-/// Pendulum whose pivot moves sinusoidally.
+/// Pendulum whose pivot moves sinusoidally in time, so that energy is not conserved.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
 struct Swung {
     theta: Coordinate,
@@ -108,7 +108,7 @@ struct Charge {
     lorentz: Force,
 }
 
-/// Four-bar linkage with a closed loop.
+/// Four-bar linkage, whose loop is closed by a constraint.
 #[mechanism(gravity = -9.81 * y, conserved)]
 struct FourBar {
     #[body(mass = 1, com = 0.1 * x, inertia = rod(1, 0.2, x))]
@@ -161,7 +161,7 @@ struct Disk {
     contact: Rolling,
 }
 
-/// Ball that slides on a plane.
+/// Ball that slides on a plane with friction.
 #[mechanism(gravity = -9.81 * z, conserved)]
 struct Sliding {
     #[body(mass = 1, inertia = sphere(1, 1))]

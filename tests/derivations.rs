@@ -30,7 +30,7 @@ fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[E
     }
 }
 
-/// Returns `M x + h`.
+/// Returns the expressions of the inverse dynamics `M x + h`.
 fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
@@ -100,13 +100,14 @@ fn check_forward<'g>(
 /// Checks that the lowered program and its fused form compute the values of the expression graph.
 fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     let q = random_configuration(model, seed);
-    let symbol = |s| match Quantity::from_symbol(s) {
+    let value_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         _ => sample(s, seed),
     };
-    let direct = eval(tau, &symbol);
+    let direct = eval(tau, &value_of_symbol);
     let program = lower::lower(tau);
-    let (plain, fused) = (program.run(&symbol), program.run_passes(lower::pipeline::PART).run(&symbol));
+    let (plain, fused) =
+        (program.run(&value_of_symbol), program.run_passes(lower::pipeline::PART).run(&value_of_symbol));
     let scale = direct.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for k in 0..direct.len() {
         assert!((plain[k] - direct[k]).abs() <= 1e-13 * scale, "{} and {}", plain[k], direct[k]);

@@ -54,28 +54,30 @@ macro_rules! robot {
                     continue;
                 }
                 cases += 1;
-                let label = |what: &str| format!("{name}, case {i}: {what}");
+                let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
                 let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
-                let close = |what: &str, actual: &[f64], expected: &[f64]| {
-                    assert_similar(&label(what), actual, expected, REFERENCE);
+                let assert_close_to_reference = |what: &str, actual: &[f64], expected: &[f64]| {
+                    assert_similar(&label_of_case(what), actual, expected, REFERENCE);
                 };
-                let expected = |key: &str| -> Square { case.matrix(key) };
+                let expected_matrix = |key: &str| -> Square { case.matrix(key) };
                 let (by_q, by_v) = $robot.inverse_dynamics_derivatives(q, v, a);
-                close("∂τ/∂q", by_q.as_slice(), expected("dtau_dq").as_slice());
-                close("∂τ/∂v", by_v.as_slice(), expected("dtau_dv").as_slice());
+                assert_close_to_reference("∂τ/∂q", by_q.as_slice(), expected_matrix("dtau_dq").as_slice());
+                assert_close_to_reference("∂τ/∂v", by_v.as_slice(), expected_matrix("dtau_dv").as_slice());
                 let [given_q, given_v] = &mut forces;
                 $robot.inverse_dynamics_derivatives_into(q, v, a, given_q, given_v);
-                assert!(forces == [by_q, by_v], "{}", label("∂τ into matrices"));
+                assert!(forces == [by_q, by_v], "{}", label_of_case("∂τ into matrices"));
                 let (by_q, by_v, inverse) = $robot.forward_dynamics_derivatives(q, v, tau);
                 let [given_q, given_v, given] = &mut motion;
                 let a = $robot.forward_dynamics_derivatives_into(q, v, tau, given_q, given_v, given);
-                close("v̇ with its derivatives", a.as_slice(), $robot.forward_dynamics(q, v, tau).as_slice());
-                assert!(motion == [by_q, by_v, inverse], "{}", label("∂v̇ into matrices"));
-                close("∂v̇/∂q", by_q.as_slice(), expected("dddq_dq").as_slice());
-                close("∂v̇/∂v", by_v.as_slice(), expected("dddq_dv").as_slice());
+                let expected = $robot.forward_dynamics(q, v, tau);
+                assert_close_to_reference("v̇ with its derivatives", a.as_slice(), expected.as_slice());
+                assert!(motion == [by_q, by_v, inverse], "{}", label_of_case("∂v̇ into matrices"));
+                assert_close_to_reference("∂v̇/∂q", by_q.as_slice(), expected_matrix("dddq_dq").as_slice());
+                assert_close_to_reference("∂v̇/∂v", by_v.as_slice(), expected_matrix("dddq_dv").as_slice());
                 let expected: Square = case.symmetric("Minv");
-                close("M⁻¹ of forward dynamics", inverse.as_slice(), expected.as_slice());
-                close("M⁻¹", $robot.mass_matrix_inverse(q).as_slice(), expected.as_slice());
+                assert_close_to_reference("M⁻¹ of forward dynamics", inverse.as_slice(), expected.as_slice());
+                let found = $robot.mass_matrix_inverse(q);
+                assert_close_to_reference("M⁻¹", found.as_slice(), expected.as_slice());
             }
             assert_eq!(cases, 2);
         }
@@ -127,8 +129,8 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     let v = mechanics::velocities(model);
     let still = vec![model.graph.zero(); model.nv()];
     let c = analytic::coriolis_matrix(model, &joints, &v, lanes);
-    let bias = |v: &[Expr<'g>]| rnea::inverse_dynamics(model, &joints, v, None);
-    let (moving, resting) = (bias(&v), bias(&still));
+    let bias_forces_at = |v: &[Expr<'g>]| rnea::inverse_dynamics(model, &joints, v, None);
+    let (moving, resting) = (bias_forces_at(&v), bias_forces_at(&still));
     let zero = model.graph.zero();
     let product: Vec<Expr<'_>> =
         c.iter().map(|row| row.iter().zip(&v).fold(zero, |sum, (c, v)| sum + *c * *v)).collect();
@@ -146,12 +148,12 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     let mass = crba::mass_matrix(model, &joints);
     let factor = derivatives::Factor::new(&mass, &joints);
     let a = mechanics::accelerations(model);
-    let times = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
+    let matrix_times_vector = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
         let zero = model.graph.zero();
         m.iter().map(|row| row.iter().zip(x).fold(zero, |sum, (m, x)| sum + *m * *x)).collect()
     };
-    let forces = times(&mass, &a);
-    assert_same("inverse", model, seed, &times(&factor.inverse(), &forces), &a);
+    let forces = matrix_times_vector(&mass, &a);
+    assert_same("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
     assert_same("solution", model, seed, &factor.solve(forces.clone()), &a);
     let trunk = Trunk::new(&joints, &mass, &Trunk::branching(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
@@ -232,9 +234,10 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
         let mut worst = (0.0_f64, 1.0_f64);
         for k in 0..n {
             let column: Vec<f64> = (0..n).map(|i| forces[i * n + k]).collect();
-            let product = |i: usize| -(0..n).map(|j| inverse[i * n + j] * column[j]).sum::<f64>();
-            let column: Vec<f64> = if known.contains(&k) { column } else { (0..n).map(product).collect() };
-            let side = |h: f64| {
+            let negated_product_row = |i: usize| -(0..n).map(|j| inverse[i * n + j] * column[j]).sum::<f64>();
+            let column: Vec<f64> =
+                if known.contains(&k) { column } else { (0..n).map(negated_product_row).collect() };
+            let motion_at_displacement = |h: f64| {
                 let q = if by_q { displaced(model, &q, k, h) } else { q.clone() };
                 let displaced_value = |s| match Quantity::from_symbol(s) {
                     Quantity::Configuration(i) => q[i],
@@ -243,7 +246,9 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
                 };
                 eval(&motion, &displaced_value)
             };
-            for ((found, after), before) in column.iter().zip(side(STEP)).zip(side(-STEP)) {
+            for ((found, after), before) in
+                column.iter().zip(motion_at_displacement(STEP)).zip(motion_at_displacement(-STEP))
+            {
                 let error = (found - (after - before) / (2.0 * STEP)).abs();
                 worst = (worst.0.max(error), worst.1.max(found.abs()));
             }
@@ -296,13 +301,13 @@ fn forces_from_the_ground_are_not_forgotten() {
     let inerter = "#[acts(between = (ship.at(x), arm.at(z)), inertance = 3)] towing: Inerter,";
     assert_eq!(invariant_columns(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
     assert_eq!(invariant_columns(&format!("{other} {inerter}")), [none(), none()]);
-    let particle = |axis: &str| {
+    let particle_declaration = |axis: &str| {
         format!(
             "way: Coordinate, #[particle(mass = 1, at = hull.at(way * {axis} + 0.3 * y))] load: Particle,"
         )
     };
-    assert_eq!(invariant_columns(&particle("ground.x")), [none(), none()]);
-    assert_eq!(invariant_columns(&particle("x")), all());
+    assert_eq!(invariant_columns(&particle_declaration("ground.x")), [none(), none()]);
+    assert_eq!(invariant_columns(&particle_declaration("x")), all());
 }
 
 proptest! {
@@ -324,7 +329,8 @@ proptest! {
 proptest! {
     #![proptest_config(config(120))]
 
-    /// Elements of every kind act between bodies and the ground, both on free bodies and on jointed ones.
+    /// Checks derivatives against finite differences on random mechanisms, in which elements of every kind
+    /// act on free and on jointed bodies, and on the ground.
     #[test]
     fn derivatives_are_limits_of_differences(
         (tree, world, creature) in (tied_trees(4), worlds(), creatures(2)),
@@ -336,7 +342,7 @@ proptest! {
             1 => creature.source(),
             _ => tree.source(),
         };
-        let check = |model: &Model<'_>| {
+        let check_model = |model: &Model<'_>| {
             if model.constraints.is_empty() {
                 let (deviation, known) = deviation_from_differences(model, seed);
                 assert!(deviation < 1e-6, "{deviation:e}, {known} columns are known (seed {seed})\n{}", source.1);
@@ -344,7 +350,7 @@ proptest! {
         };
         // Mechanisms with an element between a body and itself, or with an element that moves nothing, are
         // rejected.
-        let _ = try_model(&source, |_, model| check(model));
+        let _ = try_model(&source, |_, model| check_model(model));
     }
 }
 
@@ -358,10 +364,10 @@ fn operations(arguments: &str) -> [usize; 2] {
 
 fn programs(arguments: &str) -> [Program; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(tokens(arguments), tokens("struct Robot;"), folder, &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
@@ -376,7 +382,7 @@ fn programs(arguments: &str) -> [Program; 2] {
 /// after products are fused into sums.
 #[test]
 fn operation_counts_in_lanes() {
-    let counts = |robot: &str| {
+    let counts_of_robot = |robot: &str| {
         let all = programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         all.map(|program| {
             let program = program.simd.expect("its limbs are alike");
@@ -389,7 +395,7 @@ fn operation_counts_in_lanes() {
     };
     // Each row has the derivatives of inverse dynamics, then the inverse of the mass matrix.
     let expected = [[(1303, 845), (794, 497)], [(6108, 4115), (6301, 3682)]];
-    assert_eq!(["solo12", "simple_humanoid"].map(counts), expected);
+    assert_eq!(["solo12", "simple_humanoid"].map(counts_of_robot), expected);
 }
 
 #[test]

@@ -24,7 +24,7 @@ use support::random::config;
 
 /// Tolerance relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
-/// Tolerance against finite differences.
+/// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
 /// Numbers for all symbols: a state, accelerations, inputs and time.
@@ -47,12 +47,12 @@ impl State {
     /// Returns the values of expressions after a short time along the motion with the given rates of `q`, to
     /// first order.
     fn values_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
-        let other = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
+        let rate_of_symbol = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
         eval(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
-            Quantity::Velocity(k) => self.v[k] + time * other(Quantity::Acceleration(k).symbol()),
-            Quantity::Time => other(s) + time,
-            _ => other(s),
+            Quantity::Velocity(k) => self.v[k] + time * rate_of_symbol(Quantity::Acceleration(k).symbol()),
+            Quantity::Time => rate_of_symbol(s) + time,
+            _ => rate_of_symbol(s),
         })
     }
 
@@ -86,22 +86,22 @@ fn check_outline(description: &Description, model: &Model<'_>) {
     for (guess, output) in outline.outputs.iter().zip(&model.outputs) {
         let symbols: Vec<Quantity> =
             symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
-        let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+        let has_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
         assert_eq!((&guess.name, guess.size), (&output.name, output.values.len()));
         assert_eq!(
             guess.uses.accelerations,
-            has(|q| matches!(q, Quantity::Acceleration(_))),
+            has_quantity(|q| matches!(q, Quantity::Acceleration(_))),
             "{}",
             guess.name
         );
         let velocities = guess.uses.velocities || guess.uses.accelerations;
-        assert_eq!(velocities, has(|q| matches!(q, Quantity::Velocity(_))), "{}", guess.name);
-        assert_eq!(guess.uses.inputs, has(|q| matches!(q, Quantity::Input(_))), "{}", guess.name);
+        assert_eq!(velocities, has_quantity(|q| matches!(q, Quantity::Velocity(_))), "{}", guess.name);
+        assert_eq!(guess.uses.inputs, has_quantity(|q| matches!(q, Quantity::Input(_))), "{}", guess.name);
     }
     assert_eq!(outline.outputs.len(), model.outputs.len());
 }
 
-/// Returns `M x + h`.
+/// Returns the expressions of the inverse dynamics `M x + h`.
 fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
@@ -116,7 +116,7 @@ fn derivative<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
-    let close = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
+    let assert_close_expressions = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
         assert_close(what, &state.values(a), &state.values(b), TOLERANCE);
     };
     let joints = kinematics::joints(model);
@@ -125,23 +125,23 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let mass = crba::mass_matrix(model, &joints);
     let bias = rnea::inverse_dynamics(model, &joints, &v, None);
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    close("mass matrix", &flat(&mass), &flat(&reference.mass_matrix));
-    close("bias", &bias, &reference.bias);
-    close("inverse dynamics", &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
+    assert_close_expressions("mass matrix", &flat(&mass), &flat(&reference.mass_matrix));
+    assert_close_expressions("bias", &bias, &reference.bias);
+    assert_close_expressions("inverse dynamics", &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     let potential = energy::potential_energy(model, &joints);
-    close("energies", &[kinetic, potential], &[reference.kinetic, reference.potential]);
+    assert_close_expressions("energies", &[kinetic, potential], &[reference.kinetic, reference.potential]);
     let p = momentum::generalized_momentum(model, &joints, &v);
     let expected: Vec<_> =
         (0..model.nv()).map(|k| derivative(model, Quantity::Velocity(k), reference.kinetic)).collect();
-    close("momentum", &p, &expected);
+    assert_close_expressions("momentum", &p, &expected);
     // The reference is ṗ = Ṗ(q, v, t) + M a with τ = M a + h.
     let rate = momentum::momentum_rate(model, &joints, &v);
     let expected: Vec<_> =
         p.iter().zip(&bias).map(|(p, h)| time_derivative(model.space(), *p) - *h).collect();
-    close("momentum rate", &rate, &expected);
+    assert_close_expressions("momentum rate", &rate, &expected);
     let r: Vec<_> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
-    close("factorisation", &ldl::solve(mass, r, &joints), &a);
+    assert_close_expressions("factorisation", &ldl::solve(mass, r, &joints), &a);
     check_energy(model, &joints, &tau, &state);
 }
 
@@ -150,14 +150,15 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
 fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
     let g = model.graph;
     let v = mechanics::velocities(model);
-    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let dot_product =
+        |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
     let kinetic = energy::kinetic_energy(model, joints, &v);
     let potential = energy::potential_energy(model, joints);
     let p = momentum::generalized_momentum(model, joints, &v);
-    let jacobi = dot(&p, &v) - kinetic + potential;
+    let jacobi = dot_product(&p, &v) - kinetic + potential;
     let velocity_derivative =
         |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
-    let mut power = dot(tau, &v);
+    let mut power = dot_product(tau, &v);
     for dashpot in &model.dashpots {
         power -= dashpot.damping * kinematics::rate(model, &dashpot.on).square();
     }
@@ -165,8 +166,8 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
         power -= velocity_derivative(*function);
     }
     for load in &model.loads {
-        let idle = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
-        power += replace(load.force, &idle) * velocity_derivative(load.rate);
+        let zero_for_inputs = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
+        power += replace(load.force, &zero_for_inputs) * velocity_derivative(load.rate);
     }
     let expected = power - derivative(model, Quantity::Time, kinetic - potential);
     assert_close("energy", &state.slope(model, &[jacobi]), &state.values(&[expected]), DIFFERENCE);
@@ -177,37 +178,38 @@ fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
     model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
 }
 
-/// Checks that output velocities are the rates of output positions and accelerations those of velocities,
-/// each in the axes in which the output is expressed.
+/// Checks that output velocities are the rates of output positions, and output accelerations the rates of
+/// velocities, each in the axes in which the output is expressed.
 fn check_outputs(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
-    let is_rate = |rate: &str, of: &str| {
+    let assert_rate_of_output = |rate: &str, of: &str| {
         let slope = state.slope(model, &output(model, of));
         assert_close(rate, &state.values(&output(model, rate)), &slope, DIFFERENCE);
     };
     for k in 1..=3 {
-        is_rate(&format!("v{k}"), &format!("r{k}"));
-        is_rate(&format!("a{k}"), &format!("v{k}"));
+        assert_rate_of_output(&format!("v{k}"), &format!("r{k}"));
+        assert_rate_of_output(&format!("a{k}"), &format!("v{k}"));
     }
     for k in 4..=6 {
-        is_rate(&format!("d{k}"), &format!("w{k}"));
+        assert_rate_of_output(&format!("d{k}"), &format!("w{k}"));
     }
-    let three = |name: &str| <[f64; 3]>::try_from(state.values(&output(model, name))).expect("a vector");
-    let w = three("w4");
+    let vector_output =
+        |name: &str| <[f64; 3]>::try_from(state.values(&output(model, name))).expect("a vector");
+    let w = vector_output("w4");
     for axis in ["x4", "y4", "z4"] {
-        let e = three(axis);
+        let e = vector_output(axis);
         let turning = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
         assert_close(axis, &turning, &state.slope(model, &output(model, axis)), DIFFERENCE);
     }
     for name in OUTPUTS.map(|(name, ..)| name).into_iter().chain(["size"]) {
         let values = output(model, name);
-        let whole = |e: &Expr<'_>| {
+        let total_time_derivative = |e: &Expr<'_>| {
             let moved = state.values(&[time_derivative(model.space(), *e)])[0];
             velocity_gradient(*e).iter().fold(moved, |sum, (k, d)| {
                 sum + state.values(&[*d * Quantity::Acceleration(*k).expr(model.graph)])[0]
             })
         };
-        let rates: Vec<f64> = values.iter().map(whole).collect();
+        let rates: Vec<f64> = values.iter().map(total_time_derivative).collect();
         // Accelerations are constant along this motion.
         assert_close(name, &rates, &state.slope(model, &values), DIFFERENCE);
     }

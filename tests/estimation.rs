@@ -1,6 +1,6 @@
-//! Extended Kalman filters that estimate the state of a load on a ball joint from its inertial measurement
-//! unit. Observable components of the state converge, unobservable ones keep their error, and the errors
-//! agree with the filter's covariance.
+//! Checks of extended Kalman filters for the state of a load on a ball joint with an inertial measurement
+//! unit. Observable components converge, unobservable ones keep their error, and errors agree with the
+//! covariance of the filter.
 
 use linkwork::nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
@@ -39,7 +39,7 @@ const PERIOD: f64 = 0.01;
 /// Variances of the sensor noise, and of the random changes of velocity in each period.
 const NOISE: f64 = 1e-4;
 const GUSTS: f64 = 1e-6;
-/// Maximum number of linearisations in one correction.
+/// Maximum number of linearisations in one correction of the iterated filter.
 const MOST: usize = 20;
 
 /// Estimate of the state with the covariance of its error: displacements first, then velocities.
@@ -127,7 +127,8 @@ where
     (left, belief, q)
 }
 
-/// With a compass the whole state is found from errors with a standard deviation of 0.3 rad and 0.3 rad/s.
+/// Checks that with a compass the filter finds the whole state, from errors with standard deviations of 0.3
+/// rad and 0.3 rad/s.
 #[test]
 fn a_load_on_a_ball_joint_is_found() {
     for seed in 0..5 {

@@ -57,8 +57,8 @@ static ANGLES: [f64; 4] = [-1.6, -0.1, 0.4, 1.7];
 static ELEVATOR: [f64; 3] = [-1.5, 0.2, 1.5];
 
 fn fighter() -> Fighter<f64> {
-    let coefficient = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
-    let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| coefficient(*a, d))).collect();
+    let lift_coefficient = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
+    let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| lift_coefficient(*a, d))).collect();
     let lift = Table::new([&ANGLES, &ELEVATOR], values.leak()).unwrap().smooth();
     Fighter { mass: 900.0, area: 12.0, arm: 0.8, lag: 0.7, lift, power: 3e3, sensed: 0.1 }
 }
@@ -73,7 +73,7 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     let mut random = Random::new(11);
-    let one = |k: usize| {
+    let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
         let q = SVector::from_column_slice(&[10.0, 20.0, -900.0, turn[0], turn[1], turn[2], turn[3]]);
         let mut v: SVector<f64, 8> = random.vector(0.7);
@@ -82,7 +82,7 @@ fn cases() -> Vec<Case> {
         v[6] = 4000.0 + 100.0 * v[6];
         Case { t: random.uniform(2.0), q, v, a: random.vector(2.0), u: random.vector(1.0) }
     };
-    (0..6).map(one).collect()
+    (0..6).map(random_case).collect()
 }
 
 /// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
@@ -97,14 +97,14 @@ fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
-    let column = |k: usize| {
+    let derivative_column = |k: usize| {
         slope(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
         })
     };
-    (0..K).flat_map(|k| column(k).as_slice().to_vec()).collect()
+    (0..K).flat_map(|k| derivative_column(k).as_slice().to_vec()).collect()
 }
 
 const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
@@ -163,44 +163,49 @@ fn derivatives_agree_with_differences() {
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
-        let displaced = |by| whole.integrate(&q, &by);
+        let displaced_configuration = |by| whole.integrate(&q, &by);
         let mut still = STEP;
         still[6..].fill(1.0);
 
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
-        let forward = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
+        let forward_dynamics_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
         assert_similar(
             "∂v̇/∂q",
             by_q.as_slice(),
-            &slopes(still, |by| forward(&displaced(by), &v, &tau)),
+            &slopes(still, |by| forward_dynamics_of_whole(&displaced_configuration(by), &v, &tau)),
             DIFFERENCE,
         );
         assert_similar(
             "∂v̇/∂v",
             by_v.as_slice(),
-            &slopes(STEP, |by| forward(&q, &(v + by), &tau)),
+            &slopes(STEP, |by| forward_dynamics_of_whole(&q, &(v + by), &tau)),
             DIFFERENCE,
         );
-        let by_tau = slopes([1.0; 8], |by| forward(&q, &v, &(tau + by)));
+        let by_tau = slopes([1.0; 8], |by| forward_dynamics_of_whole(&q, &v, &(tau + by)));
         assert_similar("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let inverse = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
+        let inverse_dynamics_of_whole = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
         assert_similar(
             "∂τ/∂q",
             by_q.as_slice(),
-            &slopes(still, |by| inverse(&displaced(by), &v)),
+            &slopes(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v)),
             DIFFERENCE,
         );
-        assert_similar("∂τ/∂v", by_v.as_slice(), &slopes(STEP, |by| inverse(&q, &(v + by))), DIFFERENCE);
+        assert_similar(
+            "∂τ/∂v",
+            by_v.as_slice(),
+            &slopes(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
+            DIFFERENCE,
+        );
 
         let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
-        let forces = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
-        let found = slopes(still, |by| forces(&displaced(by), &v, &u));
+        let forces_of_whole = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
+        let found = slopes(still, |by| forces_of_whole(&displaced_configuration(by), &v, &u));
         assert_similar("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes(STEP, |by| forces(&q, &(v + by), &u));
+        let found = slopes(STEP, |by| forces_of_whole(&q, &(v + by), &u));
         assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 2], |by: SVector<f64, 2>| forces(&q, &v, &(u + by)));
+        let found = slopes([1e-2; 2], |by: SVector<f64, 2>| forces_of_whole(&q, &v, &(u + by)));
         assert_similar("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
     }
 }
@@ -210,16 +215,16 @@ fn outputs_change_with_them() {
     let fighter = fighter();
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in cases() {
-        let outputs = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
+        let outputs_of_whole = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
-        let by_v = slopes(STEP, |by| outputs(&(v + by), &a, &u));
+        let by_v = slopes(STEP, |by| outputs_of_whole(&(v + by), &a, &u));
         assert_similar("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
-        let by_a = slopes([1.0; 8], |by| outputs(&v, &(a + by), &u));
+        let by_a = slopes([1.0; 8], |by| outputs_of_whole(&v, &(a + by), &u));
         assert_similar("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
-        let by_u = slopes([1e-2; 2], |by| outputs(&v, &a, &(u + by)));
+        let by_u = slopes([1e-2; 2], |by| outputs_of_whole(&v, &a, &(u + by)));
         assert_similar("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
-        let displaced = |by: SVector<f64, 8>| whole.integrate(&q, &by);
-        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &displaced(by), &v, &a, &u));
+        let displaced_configuration = |by: SVector<f64, 8>| whole.integrate(&q, &by);
+        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &displaced_configuration(by), &v, &a, &u));
         assert_similar("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
     }
 }
@@ -312,8 +317,9 @@ engine!(Prompt, {
 fn constrained_mechanisms_have_them() {
     let (lag, q) = (0.3, [0.0, 0.0, 0.8]);
     let late = Late { lag, torque: 0.0 };
-    let command = |_, _: &_, _: &_| [12.0].into();
-    let run = simulate(&late.extended()).from(q, [0.0; 4]).inputs(command).duration(1.0).finish().unwrap();
+    let constant_command = |_, _: &_, _: &_| [12.0].into();
+    let run =
+        simulate(&late.extended()).from(q, [0.0; 4]).inputs(constant_command).duration(1.0).finish().unwrap();
     let lagged_command =
         |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
     let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(lagged_command).duration(1.0).finish().unwrap();

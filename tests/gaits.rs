@@ -1,5 +1,5 @@
-//! Optimal control through a known sequence of contacts: one leg hops from stance through flight and
-//! touchdown back to stance.
+//! Checks of optimal control with a prescribed sequence of contacts: one leg hops from stance through flight
+//! and touchdown back to stance.
 
 use linkwork::contact::{self, HeldDerivatives, Touch};
 use linkwork::discrete::{self, Transition};
@@ -123,14 +123,19 @@ fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
     let mut most = 0.0_f64;
     for k in 0..NODES {
         for i in 0..2 {
-            let cost = |s: f64| {
+            let cost_with_changed_input = |s: f64| {
                 let mut moved = inputs.to_vec();
                 moved[k][i] += s;
                 motion(start, &moved).1
             };
             let h = 1e-2;
-            let pair = |n: f64| cost(n * h) - cost(-n * h);
-            most = most.max(((45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * h)).abs());
+            let central_difference =
+                |n: f64| cost_with_changed_input(n * h) - cost_with_changed_input(-n * h);
+            most = most.max(
+                ((45.0 * central_difference(1.0) - 9.0 * central_difference(2.0) + central_difference(3.0))
+                    / (60.0 * h))
+                    .abs(),
+            );
         }
     }
     most

@@ -11,7 +11,7 @@ const EXACT: f64 = 1e-10;
 /// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// Arm with six axes.
+/// UR5 arm with six axes.
 #[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, regressor)]
 struct Ur5;
 
@@ -19,12 +19,12 @@ struct Ur5;
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, passive = ignore, regressor)]
 struct Panda;
 
-/// Quadruped with a free base.
+/// Quadruped Solo12 with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, passive = ignore, regressor)]
 struct Quadruped;
 
-/// Arm with the geometry of the PUMA 560 in parameters (Armstrong, Khatib and Burdick 1986). Its bodies have
-/// no symmetry, and a load is fixed to one of them.
+/// PUMA 560 arm with geometric parameters (Armstrong, Khatib and Burdick 1986). Its bodies have no symmetry,
+/// and a load is fixed to one of them.
 #[mechanism(gravity = -9.81 * z, regressor, prepare)]
 struct Puma {
     a2: f64,
@@ -91,8 +91,9 @@ struct Workshop {
     bead: Particle,
 }
 
-/// Universal joint on a moving body, and a ball with a second universal joint on it. Parameters that move
-/// from one body to the next across such a joint move along both of its axes.
+/// Tree with universal joints on moving bodies: one on a pendulum, and one on a bob that hangs from a ball
+/// joint. Inertial parameters that move from one body to the next across a universal joint move along both of
+/// its axes.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
 struct Slings {
     #[body(mass = 0.3, com = -0.3 * z, inertia = sphere(0.3, 0.05))]
@@ -120,8 +121,8 @@ fn rank<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usiz
     singular.iter().filter(|s| **s > RANK * singular.max()).count()
 }
 
-/// Checks that both regressors reproduce inverse dynamics, for the mechanism's own inertial parameters and
-/// for random ones, and that the number of base parameters equals the rank of the regressor.
+/// Checks that both regressors reproduce inverse dynamics, for the inertial parameters of the mechanism and
+/// for random ones. The number of base parameters must equal the rank of the regressor.
 macro_rules! check {
     ($robot:ident, $at:expr) => {{
         const STANDARD: usize = 10 * $robot::BODIES.len();
@@ -210,14 +211,15 @@ struct DoublePendulum {
     dashpot: Dashpot,
 }
 
-/// In a plane chain each link has three base parameters: two components of the first moment and one inertia.
-/// The masses act through these. Forces of elements are not part of the regressor.
+/// Checks the base parameters of a planar chain by hand: each link has two first moments and one inertia,
+/// through which the masses act. Forces of elements are not part of the regressor.
 #[test]
 fn by_hand() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);
     let pendulum = DoublePendulum { m, l, k, c };
-    let rod = |m: f64| [m, 0.0, -m * l / 2.0, 0.0, m * l * l / 3.0, 0.0, 0.0, 0.0, 0.0, m * l * l / 3.0];
-    let expected = [rod(2.0 * m), rod(m)].concat();
+    let rod_parameters =
+        |m: f64| [m, 0.0, -m * l / 2.0, 0.0, m * l * l / 3.0, 0.0, 0.0, 0.0, 0.0, m * l * l / 3.0];
+    let expected = [rod_parameters(2.0 * m), rod_parameters(m)].concat();
     assert_close("parameters", pendulum.standard_parameters().as_slice(), &expected, 1e-15);
     let names = ["upper.mx", "upper.my", "upper.zz", "lower.mx", "lower.my", "lower.zz"];
     assert_eq!(DoublePendulum::BASE_PARAMETERS, names);

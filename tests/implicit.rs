@@ -141,7 +141,7 @@ struct Late {
     motor: Torque,
 }
 
-/// Four-bar linkage with a stiff spring and dashpot at its crank.
+/// Four-bar linkage with a stiff spring and a stiff dashpot at its crank.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct FourBar {
     #[body(mass = 1, com = x / 2)]
@@ -259,14 +259,15 @@ where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
     let [known, differences] = ends(m, start, Rodas::new().tolerance(1e-8, 1e-10));
-    let gap = |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
-        (a.0 - b.0).amax().max((a.1 - b.1).amax())
-    };
-    assert!(gap(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
+    let largest_state_difference =
+        |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
+            (a.0 - b.0).amax().max((a.1 - b.1).amax())
+        };
+    assert!(largest_state_difference(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
     let [fixed, other] = ends(m, start, Rosenbrock::step(4e-5));
-    assert!(gap(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
+    assert!(largest_state_difference(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
     // The methods have orders 2 and 4.
-    assert!(gap(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
+    assert!(largest_state_difference(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
 }
 
 fn closed(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
@@ -290,12 +291,13 @@ fn the_motion_is_that_by_differences() {
 fn the_order_is_four() {
     let late = Late { lag: 0.4, torque: 0.0 };
     let whole = late.extended();
-    let end = |method: Rodas<f64>| ends(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
-    let equal = |h: f64| end(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
-    let exact = end(Rodas::new().tolerance(1e-13, 1e-14));
-    let error = |h: f64| (equal(h).1 - exact.1).norm();
-    let order = (error(0.05) / error(0.025)).log2();
-    assert!((order - 4.0).abs() < 0.4, "{order}: {:e}", error(0.05));
+    let end_with_method = |method: Rodas<f64>| ends(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
+    let end_with_fixed_steps =
+        |h: f64| end_with_method(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
+    let exact = end_with_method(Rodas::new().tolerance(1e-13, 1e-14));
+    let error_with_step = |h: f64| (end_with_fixed_steps(h).1 - exact.1).norm();
+    let order = (error_with_step(0.05) / error_with_step(0.025)).log2();
+    assert!((order - 4.0).abs() < 0.4, "{order}: {:e}", error_with_step(0.05));
 }
 
 /// Under constraints the order of convergence is four, with generated derivatives and with differences.
@@ -303,9 +305,10 @@ fn the_order_is_four() {
 fn the_order_is_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
     let precise = ends(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
-    let equal = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
-    let errors = |h: f64| ends(&OnCircle {}, start, equal(h)).map(|end| (end.0 - precise.0).norm());
-    for (coarse, fine) in errors(0.05).into_iter().zip(errors(0.0125)) {
+    let fixed_step_method = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
+    let errors_with_step =
+        |h: f64| ends(&OnCircle {}, start, fixed_step_method(h)).map(|end| (end.0 - precise.0).norm());
+    for (coarse, fine) in errors_with_step(0.05).into_iter().zip(errors_with_step(0.0125)) {
         let order = (coarse / fine).log2() / 2.0;
         assert!(order > 3.6, "{order}: {coarse:e}, {fine:e}");
     }
@@ -317,7 +320,7 @@ fn the_order_is_four_under_constraints() {
 #[test]
 fn a_clock_that_has_run_for_long_costs_no_steps() {
     let cart = Cart {};
-    let end = |start: f64| {
+    let end_from_start_time = |start: f64| {
         let counted = Counted::<_, true>::new(&cart);
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
         let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
@@ -326,10 +329,10 @@ fn a_clock_that_has_run_for_long_costs_no_steps() {
         let fixed = run.method(Rosenbrock::step(1e-3)).finish().unwrap();
         (count, end.q, fixed.q)
     };
-    let (count, precise, fixed) = end(0.0);
+    let (count, precise, fixed) = end_from_start_time(0.0);
     for power in [10, 20, 26] {
         let start = 2.0_f64.powi(power);
-        let (found, adaptive, equal) = end(start);
+        let (found, adaptive, equal) = end_from_start_time(start);
         assert!(found * 10 <= count * 12, "{count} evaluations, {found} after {start} s");
         let tick = start * f64::EPSILON;
         for gap in [(adaptive - precise).amax(), (equal - fixed).amax()] {
@@ -378,7 +381,7 @@ fn differences<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let accelerated = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
+    let accelerations_with_input = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
     };
     fn slopes<const N: usize, const K: usize>(
@@ -386,17 +389,18 @@ where
     ) -> SMatrix<f64, N, K> {
         let columns: Vec<SVector<f64, N>> = (0..K)
             .map(|k| {
-                let value = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
-                let slope = |h: f64| (value(h) - value(-h)) / (2.0 * h);
-                (slope(5e-4) * 4.0 - slope(1e-3)) / 3.0
+                let value_at_displacement = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
+                let central_difference =
+                    |h: f64| (value_at_displacement(h) - value_at_displacement(-h)) / (2.0 * h);
+                (central_difference(5e-4) * 4.0 - central_difference(1e-3)) / 3.0
             })
             .collect();
         SMatrix::from_fn(|i, k| columns[k][i])
     }
     (
-        slopes(|dq| accelerated(&m.integrate(q, &dq), v, u)),
-        slopes(|dv| accelerated(q, &(v + dv), u)),
-        slopes(|du| accelerated(q, v, &(u + du))),
+        slopes(|dq| accelerations_with_input(&m.integrate(q, &dq), v, u)),
+        slopes(|dv| accelerations_with_input(q, &(v + dv), u)),
+        slopes(|du| accelerations_with_input(q, v, &(u + du))),
     )
 }
 
@@ -411,10 +415,10 @@ fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
     let u = SVector::repeat(0.7);
-    let off = |k: usize| 0.01 * (1.0 + k as f64).sin();
+    let initial_offset = |k: usize| 0.01 * (1.0 + k as f64).sin();
     let beside = (
-        m.integrate(&state.0, &SVector::from_fn(|k, _| off(k))),
-        state.1 + SVector::from_fn(|k, _| off(k + NV)),
+        m.integrate(&state.0, &SVector::from_fn(|k, _| initial_offset(k))),
+        state.1 + SVector::from_fn(|k, _| initial_offset(k + NV)),
     );
     for (q, v) in [state, beside] {
         let steady = stabilized(m, 12.0);
@@ -448,8 +452,8 @@ fn decaying_violations_have_derivatives() {
     decays(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
 }
 
-/// In lanes, each lane has the derivatives of its own state, and the implicit method moves each lane as it
-/// moves a single state.
+/// Checks that each SIMD lane has the derivatives of its own state, and that an implicit method moves each
+/// lane as it moves a single state.
 #[test]
 fn lanes_have_derivatives() {
     let cart = Cart {};

@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Chain of links without branches.
+/// Chain of bodies on ball joints and pins, without branches.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Tail {
     #[body(mass = 3, com = 0.2 * x, inertia = cuboid(3, 0.4, 0.3, 0.2))]
@@ -109,8 +109,8 @@ struct Bird {
     right_second: Ball,
 }
 
-/// Compares with the equations of motion: `M⁻¹ M` is the identity, and the derivatives of `v̇` are `−M⁻¹`
-/// times those of `M v̇ + h` with `v̇` fixed.
+/// Checks the inverse mass matrix and acceleration derivatives against the equations of motion: `M⁻¹ M` is
+/// the identity, and derivatives of `v̇` are `−M⁻¹` times those of `M v̇ + h` with `v̇` fixed.
 macro_rules! solve_the_equations {
     ($test:ident, $m:ident, $nv:literal) => {
         #[test]
@@ -122,7 +122,7 @@ macro_rules! solve_the_equations {
                 let [dq, v, tau] = [(); 3].map(|()| random.vector::<$nv>(2.0));
                 let q = $m.integrate(&$m.neutral(), &dq);
                 let mass = $m.mass_matrix(&q);
-                let close = |what: &str, found: &Square, expected: &Square| {
+                let assert_close_matrices = |what: &str, found: &Square, expected: &Square| {
                     assert_similar(
                         &format!("case {case}: {what}"),
                         found.as_slice(),
@@ -130,13 +130,13 @@ macro_rules! solve_the_equations {
                         1e-10,
                     );
                 };
-                close("M⁻¹ M", &($m.mass_matrix_inverse(&q) * mass), &Square::identity());
+                assert_close_matrices("M⁻¹ M", &($m.mass_matrix_inverse(&q) * mass), &Square::identity());
                 let (by_q, by_v, inverse) = $m.forward_dynamics_derivatives(&q, &v, &tau);
-                close("∂v̇/∂τ M", &(inverse * mass), &Square::identity());
+                assert_close_matrices("∂v̇/∂τ M", &(inverse * mass), &Square::identity());
                 let a = $m.forward_dynamics(&q, &v, &tau);
                 let (forces_by_q, forces_by_v) = $m.inverse_dynamics_derivatives(&q, &v, &a);
-                close("M ∂v̇/∂q", &(mass * by_q), &-forces_by_q);
-                close("M ∂v̇/∂v", &(mass * by_v), &-forces_by_v);
+                assert_close_matrices("M ∂v̇/∂q", &(mass * by_q), &-forces_by_q);
+                assert_close_matrices("M ∂v̇/∂v", &(mass * by_v), &-forces_by_v);
                 let [into_q, into_v, into] = &mut given;
                 let with_derivatives =
                     $m.forward_dynamics_derivatives_into(&q, &v, &tau, into_q, into_v, into);

@@ -1,5 +1,5 @@
-//! Inverse kinematics: random reachable placements are reached within limits; unreachable ones return typed
-//! errors.
+//! Checks of inverse kinematics: random reachable placements are reached within joint limits, and unreachable
+//! ones return typed errors.
 
 use linkwork::inverse_kinematics::{InverseKinematics, Target, Unreached};
 use linkwork::prelude::*;
@@ -90,33 +90,38 @@ fn several_frames_are_reached_at_once() {
     }
     // Six of eighteen degrees of freedom are undetermined: the robot moves no farther than to the
     // configuration that defined the targets.
-    let way = |q| Solo.difference(&bent, q).norm();
-    assert!(way(&found.q) <= way(&moved) * 1.01, "{} {}", way(&found.q), way(&moved));
+    let distance_from_bent = |q| Solo.difference(&bent, q).norm();
+    assert!(
+        distance_from_bent(&found.q) <= distance_from_bent(&moved) * 1.01,
+        "{} {}",
+        distance_from_bent(&found.q),
+        distance_from_bent(&moved)
+    );
     assert!((found.q.fixed_rows::<4>(3).norm() - 1.0).abs() < 1e-12);
 }
 
 #[test]
 fn targets_that_make_no_sense_are_errors() {
     let (tool, start) = (frame(<Ur5 as Frames<6, 6>>::FRAMES, "tool0"), SVector::from([0.3; 6]));
-    let search = |target| InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start);
+    let search_for_target = |target| InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start);
     // Three metres are more than the length of the arm.
     let Err(Unreached::OutOfReach { q, position, iterations, .. }) =
-        search(Target::position(tool, [3.0, 0.0, 0.0].into()))
+        search_for_target(Target::position(tool, [3.0, 0.0, 0.0].into()))
     else {
         panic!("it is out of reach")
     };
     assert!(iterations == 100 && q.iter().all(|x| x.is_finite()));
     assert!((1.9..2.2).contains(&position), "the arm points there: {position}");
-    let far = search(Target::position(10_000, [0.3, 0.0, 0.0].into()));
+    let far = search_for_target(Target::position(10_000, [0.3, 0.0, 0.0].into()));
     assert_eq!(far, Err(Unreached::UnknownFrame { target: 0 }));
     for bad in [f64::NAN, f64::INFINITY] {
         assert_eq!(
-            search(Target::position(tool, [bad, 0.0, 0.0].into())),
+            search_for_target(Target::position(tool, [bad, 0.0, 0.0].into())),
             Err(Unreached::NotFinite { target: 0 })
         );
     }
     let negative = Target { position: -1.0, ..Target::position(tool, [0.3, 0.0, 0.0].into()) };
-    assert_eq!(search(negative), Err(Unreached::NotFinite { target: 0 }));
+    assert_eq!(search_for_target(negative), Err(Unreached::NotFinite { target: 0 }));
     // An empty list of targets is reached without iterations.
     assert_eq!(InverseKinematics::new().reach(&Ur5, 0.0, &[], &start).map(|found| found.iterations), Ok(0));
 }

@@ -92,7 +92,8 @@ fn scalars() {
     assert_eq!(end.translation.vector, Vector3::zeros());
 }
 
-/// Expressions with functions, precedence, several parameters of one dimension and nested solids.
+/// Mechanism declared by expressions with functions, operator precedence, several parameters of one dimension
+/// and nested solids.
 #[mechanism(gravity = [0, -9.81, 0])]
 struct Expressions {
     l: f64,
@@ -153,7 +154,7 @@ fn solids_add_up_and_turn() {
     assert_close("inertia", &actual, &expected, TOLERANCE);
 }
 
-/// An expression that a user's macro passes on is evaluated as one operand, even without written parentheses.
+/// Checks that an expression which a user's macro passes on is one operand, even without written parentheses.
 #[test]
 fn expressions_of_macros_stay_together() {
     macro_rules! pendulum {
@@ -190,8 +191,9 @@ fn structure_without_motion() {
     assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
 }
 
-/// With the crank at a right angle, the position of the piston follows from Pythagoras's theorem, and its
-/// velocity equals that of the crank's end. The coordinates and the constraint rows have names.
+/// Checks a slider-crank whose loop is closed by a joint. With the crank at a right angle, the position of
+/// the piston follows from Pythagoras's theorem, and its velocity equals that of the crank's end. Coordinates
+/// and constraint rows have names.
 #[test]
 fn joint_that_closes_a_loop() {
     let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
@@ -220,9 +222,9 @@ struct RollingDisk {
     contact: Rolling,
 }
 
-/// In the axes that lean but do not roll, `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`,
-/// `u̇₂ = −⅔ u₁ u₃`, `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁` (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*,
-/// 1972, ch. II). The disk rotates in these axes by `spin` about y.
+/// Checks a rolling disk in the axes that lean but do not roll, in which the disk rotates by `spin` about y:
+/// `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`, `u̇₂ = −⅔ u₁ u₃`, `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁`
+/// (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972, ch. II).
 #[test]
 fn rolling_pair() {
     let (g, radius, lean) = (9.81, 0.4, 0.35_f64);
@@ -317,13 +319,13 @@ struct Pieces {
 #[test]
 fn pieces_are_themselves_on_their_sides() {
     let m = Pieces { gap: 0.5, k: 80.0, least: -0.4, most: 0.6 };
-    let force = |x: f64, v: f64| -m.bias_forces(&[x].into(), &[v].into())[0];
-    let valve = |v: f64| if v > 0.1 { 0.2 + v } else { 3.0 * v };
+    let spring_force = |x: f64, v: f64| -m.bias_forces(&[x].into(), &[v].into())[0];
+    let valve_force = |v: f64| if v > 0.1 { 0.2 + v } else { 3.0 * v };
     for x in [-0.7_f64, -0.01, 0.2, 0.49, 0.51, 1.4] {
         for v in [-2.0, -0.1, 0.05, 0.2, 3.0] {
             let buffer = if x > 0.5 { 80.0 * (x - 0.5) } else { 0.0 };
             let hertz = if x < 0.0 { 40.0 * (-x).powf(1.5) } else { 0.0 };
-            assert_close("force", &[force(x, v)], &[hertz - buffer - valve(v)], 1e-13);
+            assert_close("force", &[spring_force(x, v)], &[hertz - buffer - valve_force(v)], 1e-13);
             assert_eq!(m.saturated(&[x].into(), &[v].into()), (2.0 * v).clamp(-0.4, 0.6));
             let speeding = if x < 0.5 { 2.0 * x * v } else { v };
             assert_close("rate", &[m.speeding(&[x].into(), &[v].into())], &[speeding], 1e-14);
@@ -394,7 +396,8 @@ fn stability_and_wind_axes_turn_by_their_angles() {
     }
 }
 
-/// Two bodies in space with a thruster between points of them, and two carts on one rail.
+/// Two free bodies with an input force between points of them, and a force that depends on the distance of
+/// their origins.
 #[mechanism(derivatives)]
 struct Pushed {
     #[body(mass = 2, inertia = diagonal(0.1, 0.2, 0.3))]
@@ -438,14 +441,19 @@ fn forces_between_points_push_them_apart() {
         let q = random.configuration(&m);
         let v: SVector<f64, 12> = random.vector(2.0);
         let u = [7.0].into();
-        let work = |f: &dyn Fn(&SVector<f64, 14>) -> f64| {
+        let derivative_along_motion = |f: &dyn Fn(&SVector<f64, 14>) -> f64| {
             (f(&m.integrate(&q, &(v * 1e-5))) - f(&m.integrate(&q, &(v * -1e-5)))) / 2e-5
         };
         let tau = m.generalized_forces(&q, &u);
-        assert_close("input", &[tau.dot(&v)], &[7.0 * work(&|q| m.length(q))], 1e-8);
+        assert_close("input", &[tau.dot(&v)], &[7.0 * derivative_along_motion(&|q| m.length(q))], 1e-8);
         let still = SVector::zeros();
         let drive = -m.bias_forces(&q, &still);
-        assert_close("value", &[drive.dot(&v)], &[4.0 * m.distance(&q) * work(&|q| m.distance(q))], 1e-8);
+        assert_close(
+            "value",
+            &[drive.dot(&v)],
+            &[4.0 * m.distance(&q) * derivative_along_motion(&|q| m.distance(q))],
+            1e-8,
+        );
         let a = m.forward_dynamics(&q, &still, &tau);
         let rate = m.momentum(&q, &a);
         assert!(rate.amax() < 1e-12, "{rate}");

@@ -54,7 +54,7 @@ struct Quadruped<T> {
     #[acts(on = knee_c, damping = damping)]
     friction_c: Dashpot,
 
-    /// One leg has a heavier shank.
+    /// Upper segment of the fourth leg, whose shank is heavier than those of the other legs.
     #[body(mass = thigh_mass, com = [-0.01, -0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
     thigh_d: Body,
     #[body(mass = load, com = [-0.01, 0, -length / 2], inertia = rod(load, length, z))]
@@ -112,7 +112,7 @@ fn quadruped<T: Real>() -> Quadruped<T> {
     }
 }
 
-/// Returns a random configuration, velocity and acceleration.
+/// Returns a random configuration, velocity and acceleration of the quadruped.
 fn state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
     (random.configuration(&quadruped()), [random.vector(2.0), random.vector(2.0)])
 }
@@ -142,11 +142,11 @@ fn functions_agree() {
 /// Returns the derivatives of `f` by differences, a column for each velocity.
 fn differences(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatrix<f64, 14, 14> {
     const STEP: f64 = 1e-6;
-    let column = |k: usize| {
+    let difference_column = |k: usize| {
         let axis = SVector::from_fn(|i, _| f64::from(u8::from(i == k)));
         (f(STEP, &axis) - f(-STEP, &axis)) / (2.0 * STEP)
     };
-    SMatrix::from_columns(&std::array::from_fn::<_, 14, _>(column))
+    SMatrix::from_columns(&std::array::from_fn::<_, 14, _>(difference_column))
 }
 
 #[test]
@@ -156,15 +156,19 @@ fn derivatives_are_limits_of_differences() {
         |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
     for _ in 0..5 {
         let (q, [v, a]) = state(&mut random);
-        let displaced = |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
+        let displaced_configuration =
+            |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
         let tau = robot.inverse_dynamics(&q, &v, &a);
         let (by_q, by_v) = robot.inverse_dynamics_derivatives(&q, &v, &a);
-        assert!(is_close(&by_q, &differences(|h, axis| robot.inverse_dynamics(&displaced(h, axis), &v, &a))));
+        assert!(is_close(
+            &by_q,
+            &differences(|h, axis| robot.inverse_dynamics(&displaced_configuration(h, axis), &v, &a))
+        ));
         assert!(is_close(&by_v, &differences(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))));
         let (by_q, by_v, inverse) = robot.forward_dynamics_derivatives(&q, &v, &tau);
         assert!(is_close(
             &by_q,
-            &differences(|h, axis| robot.forward_dynamics(&displaced(h, axis), &v, &tau))
+            &differences(|h, axis| robot.forward_dynamics(&displaced_configuration(h, axis), &v, &tau))
         ));
         assert!(is_close(&by_v, &differences(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))));
         assert!(is_close(&(inverse * robot.mass_matrix(&q)), &SMatrix::identity()));
@@ -186,11 +190,11 @@ fn every_type_of_scalars_gives_the_same() {
         assert!(found.iter().zip(&tau).all(|(x, y)| is_close(*x, *y, tau.amax())));
         assert!(single.mass_matrix(&q32).iter().zip(&m).all(|(x, y)| is_close(*x, *y, m.amax())));
         let [q2, v2, a2] = [q.as_slice(), v.as_slice(), a.as_slice()].map(<[f64]>::to_vec);
-        let wide = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
+        let lanes_of_entry = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
         let found = lanes.inverse_dynamics(
-            &SVector::from_fn(|k, _| wide(&q2, k)),
-            &SVector::from_fn(|k, _| wide(&v2, k)),
-            &SVector::from_fn(|k, _| wide(&a2, k)),
+            &SVector::from_fn(|k, _| lanes_of_entry(&q2, k)),
+            &SVector::from_fn(|k, _| lanes_of_entry(&v2, k)),
+            &SVector::from_fn(|k, _| lanes_of_entry(&a2, k)),
         );
         assert!(found.iter().zip(&tau).all(|(x, y)| x[0] == *y && x[1] == *y));
     }
@@ -243,7 +247,8 @@ fn a_spring_between_two_of_three_carts_pulls_those() {
     }
 }
 
-/// Two definitions of one hand, with and without model passes: three fingers with elements between them.
+/// Declares a hand of three fingers with elements between them. It is declared once with and once without
+/// passes of the compiler over the model.
 macro_rules! hand {
     ($name:ident, $($options:tt)*) => {
         #[mechanism(gravity = -9.81 * z $($options)*)]

@@ -46,17 +46,17 @@ where
 
 #[test]
 fn robots_have_the_limits_of_their_files() {
-    let text = |file: &str| {
+    let text_of_urdf = |file: &str| {
         std::fs::read_to_string(format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    assert_eq!(compare(&Ur5, &text("ur5")), 24);
-    assert_eq!(compare(&PandaArm, &text("panda")), 28);
-    assert_eq!(compare(&Solo12, &text("solo12")), 48);
-    assert!(compare(&AnymalB, &text("anymal_b")) > 0);
-    assert!(compare(&SimpleHumanoid, &text("simple_humanoid")) > 0);
+    assert_eq!(compare(&Ur5, &text_of_urdf("ur5")), 24);
+    assert_eq!(compare(&PandaArm, &text_of_urdf("panda")), 28);
+    assert_eq!(compare(&Solo12, &text_of_urdf("solo12")), 48);
+    assert!(compare(&AnymalB, &text_of_urdf("anymal_b")) > 0);
+    assert!(compare(&SimpleHumanoid, &text_of_urdf("simple_humanoid")) > 0);
 }
 
-/// The limits of the arm are those of Franka Emika's *Robot and interface specifications* (2021).
+/// Checks that the arm has the limits of Franka Emika's *Robot and interface specifications* (2021).
 #[test]
 fn the_panda_has_the_limits_of_its_data_sheet() {
     let lower = [-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0.0];
@@ -171,7 +171,7 @@ fn limits_do_not_depend_on_time() {
     assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 
-/// Robot with kinematics only.
+/// Robot without inertia, of which only kinematics are generated.
 #[mechanism(urdf = "data/urdf/limits.urdf", inertia = none)]
 struct Weightless;
 

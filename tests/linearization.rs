@@ -5,7 +5,7 @@ use linkwork::{Mechanism, at, mechanism};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Tolerance against finite differences.
+/// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-8;
 
 /// Returns the derivative of `f` at zero by central differences of fourth order.
@@ -18,7 +18,7 @@ fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
-/// Checks that each column of the matrix is the derivative of `f` along one unit vector.
+/// Checks that each column of a matrix is the derivative of `f` along one unit vector, by finite differences.
 #[track_caller]
 fn check_columns<const R: usize, const C: usize>(
     what: &str,
@@ -31,7 +31,8 @@ fn check_columns<const R: usize, const C: usize>(
     assert_similar(what, matrix.as_slice(), expected.as_slice(), DIFFERENCE);
 }
 
-/// Checks all derivatives of a mechanism against differences; with `$t`, at that time.
+/// Checks all derivatives of a mechanism against finite differences. For a mechanism that depends on time,
+/// `$t` is the time.
 macro_rules! check_differences {
     ($mechanism:expr, $type:ident, $at:ident => $instant:expr $(, $t:expr)?) => {{
         const NV: usize = $type::NV;
@@ -245,8 +246,8 @@ struct CartAndPole {
     push: Force,
 }
 
-/// In the upright position `(m_c + m) ẍ − m l θ̈ = u` and `l θ̈ − ẍ = g θ`, with the angle counter-clockwise
-/// seen from +z.
+/// Checks the linearisation of a cart with a pole in the upright position: `(m_c + m) ẍ − m l θ̈ = u` and
+/// `l θ̈ − ẍ = g θ`, with the angle counter-clockwise seen from +z.
 #[test]
 fn cart_and_pole() {
     let c = CartAndPole { g: 9.81, cart_mass: 1.2, mass: 0.3, length: 0.5 };

@@ -1,5 +1,5 @@
-//! Outputs as measurements: their partial derivatives and their total derivatives along the motion against
-//! differences, and all outputs as one vector.
+//! Checks of outputs as sensor measurements: partial derivatives and total derivatives along the motion
+//! against finite differences, and all outputs as one vector.
 
 use linkwork::prelude::*;
 use linkwork::{Derivatives, OutputDerivatives, Outputs, index_of};
@@ -98,13 +98,13 @@ struct Bodies {
     beside: Scalar,
 }
 
-/// All bodies, rotated as one rigid body about a line through the ground's origin, have the kinetic energy
-/// `½ ω² J`. Rotations about two axes at once determine the products of inertia. The moment about a line
-/// through another point follows from the parallel-axis theorem.
+/// Checks moments of inertia by energies: all bodies, rotated as one rigid body about a line through the
+/// ground's origin, have the kinetic energy `½ ω² J`. Rotations about two axes determine products of inertia,
+/// and the parallel-axis theorem gives the moment about another line.
 #[test]
 fn moments_of_inertia_are_those_of_energies() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
-    let same = |found: f64, expected: f64| {
+    let assert_close_values = |found: f64, expected: f64| {
         assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}")
     };
     for _ in 0..5 {
@@ -122,14 +122,14 @@ fn moments_of_inertia_are_those_of_energies() {
             rotation_rates([0.0, 1.0, 0.0]),
             rotation_rates([1.0, 1.0, 0.0]),
         );
-        same(m.about_x(&q), 2.0 * x);
-        same(m.of_x_and_y(&q), both - x - y);
-        same(m.beside(&q), 0.15 * m.mass + m.mass * (0.3 * 0.3 + 0.1 * 0.1));
+        assert_close_values(m.about_x(&q), 2.0 * x);
+        assert_close_values(m.of_x_and_y(&q), both - x - y);
+        assert_close_values(m.beside(&q), 0.15 * m.mass + m.mass * (0.3 * 0.3 + 0.1 * 0.1));
     }
 }
 
-/// The momenta and energies of all bodies add up to those of the whole. About its own centre of mass a body
-/// has the angular momentum `I ω`.
+/// Checks that momenta and energies of the bodies add up to those of the whole mechanism. About its own
+/// centre of mass, a body has the angular momentum `I ω`.
 #[test]
 fn bodies_share_momentum_and_energy() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
@@ -156,9 +156,11 @@ fn slopes<const N: usize, const NY: usize>(
 ) -> SMatrix<f64, NY, N> {
     let step = 2e-3;
     let columns: [SVector<f64, NY>; N] = std::array::from_fn(|k| {
-        let value = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let part = |s: f64| value(s) - value(-s);
-        (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
+        let value_at_displacement =
+            |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let central_difference = |s: f64| value_at_displacement(s) - value_at_displacement(-s);
+        (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0))
+            / (60.0 * step)
     });
     SMatrix::from_fn(|i, j| columns[j][i])
 }
@@ -190,15 +192,15 @@ where
 
         // In the total derivatives, accelerations are functions of state and inputs.
         let now = at(m, t);
-        let measured = |q: &_, v: &_, u: &_| {
+        let outputs_in_motion = |q: &_, v: &_, u: &_| {
             let tau = Mechanism::generalized_forces(&now, 0.0, q, v, u);
             m.outputs(t, q, v, &Mechanism::forward_dynamics(&now, 0.0, q, v, &tau), u)
         };
         let motion = now.linear_motion(&q, &v, &u);
         let found = m.output_derivatives(t, &q, &v, &motion.acceleration, &u).in_motion(&motion);
-        close("by q in motion", &found.by_q, &slopes(|d| measured(&m.integrate(&q, d), &v, &u)));
-        close("by v in motion", &found.by_v, &slopes(|d| measured(&q, &(v + d), &u)));
-        close("by u in motion", &found.by_u, &slopes(|d| measured(&q, &v, &(u + d))));
+        close("by q in motion", &found.by_q, &slopes(|d| outputs_in_motion(&m.integrate(&q, d), &v, &u)));
+        close("by v in motion", &found.by_v, &slopes(|d| outputs_in_motion(&q, &(v + d), &u)));
+        close("by u in motion", &found.by_u, &slopes(|d| outputs_in_motion(&q, &v, &(u + d))));
         assert!(found.by_a.amax() == 0.0);
     }
 }
@@ -218,13 +220,17 @@ fn measurements_change_with_parameters() {
     let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
     let (v, a) = (random.vector(1.0), random.vector(1.0));
     assert_eq!(Carrier::PARAMETERS, ["mass", "reach"]);
-    let perturbed = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
-    close("altitude", &m.altitude_by_parameters(&q), &slopes(|d| SVector::from([perturbed(d).altitude(&q)])));
-    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| perturbed(d).camera(&q, &v)));
+    let perturbed_mechanism = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
+    close(
+        "altitude",
+        &m.altitude_by_parameters(&q),
+        &slopes(|d| SVector::from([perturbed_mechanism(d).altitude(&q)])),
+    );
+    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| perturbed_mechanism(d).camera(&q, &v)));
     close(
         "accelerometer",
         &m.accelerometer_by_parameters(&q, &v, &a),
-        &slopes(|d| perturbed(d).accelerometer(&q, &v, &a)),
+        &slopes(|d| perturbed_mechanism(d).accelerometer(&q, &v, &a)),
     );
 }
 
@@ -323,25 +329,27 @@ fn elements_deliver_what_energies_gain() {
             (random.configuration(&Loaded {}), random.vector(2.0));
         let u = random.vector(3.0);
         let m = Loaded {};
-        let same = |found: f64, expected: f64| {
+        let assert_close_values = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{found} {expected}");
         };
         let passive = v.dot(&(Bare {}.bias_forces(&q, &v) - m.bias_forces(&q, &v)));
-        same(m.stored(&q, &v) + m.lost(&q, &v) + m.applied(&q, &v), passive);
-        same(m.controlled(&q, &v, &u), v.dot(&m.generalized_forces(&q, &u)));
-        same(m.lost(&q, &v), -m.dissipated_power(&q, &v));
-        same(m.applied(&q, &v), m.disturbance_power(&q, &v));
-        same(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
+        assert_close_values(m.stored(&q, &v) + m.lost(&q, &v) + m.applied(&q, &v), passive);
+        assert_close_values(m.controlled(&q, &v, &u), v.dot(&m.generalized_forces(&q, &u)));
+        assert_close_values(m.lost(&q, &v), -m.dissipated_power(&q, &v));
+        assert_close_values(m.applied(&q, &v), m.disturbance_power(&q, &v));
+        assert_close_values(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
         // Potential energy decreases along the motion by the power that springs deliver.
-        let displaced = |h: f64| m.integrate(&q, &(v * h));
-        let energy = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
+        let configuration_after = |h: f64| m.integrate(&q, &(v * h));
+        let energy_of_elements = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
         let h = 1e-5;
-        let slope = (energy(&displaced(h)) - energy(&displaced(-h))) / (2.0 * h);
+        let slope = (energy_of_elements(&configuration_after(h))
+            - energy_of_elements(&configuration_after(-h)))
+            / (2.0 * h);
         assert!((m.stored(&q, &v) + slope).abs() < 1e-6 * (1.0 + slope.abs()));
     }
 }
 
-/// Bracket fixed to a wall.
+/// Bracket welded to a wall: a mechanism without degrees of freedom.
 #[mechanism(gravity = -9.81 * y, second_derivatives, momentum_derivatives, batch)]
 struct Bracket {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]

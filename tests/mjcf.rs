@@ -26,27 +26,27 @@ where
     let cases = Record::load(&format!("mujoco/{name}.json")).records("cases");
     assert!(cases.len() >= 4);
     for (i, case) in cases.iter().enumerate() {
-        let label = |what: &str| format!("{name}, case {i}: {what}");
+        let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, u) = (&case.vector("q"), &case.vector("v"), &case.vector("u"));
         let mass_matrix = case.symmetric::<NV>("M");
         assert_close(
-            label("mass matrix"),
+            label_of_case("mass matrix"),
             robot.mass_matrix(0.0, q).as_slice(),
             mass_matrix.as_slice(),
             TOLERANCE,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(label("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
+        assert_close(label_of_case("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
         let forces = robot.generalized_forces(0.0, q, v, u);
-        assert_close(label("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
+        assert_close(label_of_case("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
         // MuJoCo's friction is a constraint and is not part of these reference values; here it is a force.
         let tau = forces + case.vector("friction");
         let a = robot.forward_dynamics(0.0, q, v, &tau);
-        assert_close(label("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
+        assert_close(label_of_case("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
     }
 }
 
-/// Checks the placements of bodies and sites.
+/// Checks the placements of bodies and sites against reference values of MuJoCo.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
         for (i, case) in Record::load(concat!("mujoco/", $name, ".json")).records("cases").iter().enumerate()
@@ -90,9 +90,9 @@ fn joints_that_follow_and_that_are_held() {
     check_frames!(Coupled, "coupled");
 }
 
-/// Tendons through space: straight, around a ball, around a given side of a cylinder, around the shorter side
-/// of one, and over pulleys. Actuators act on the tendons and on sites. Each surface deflects its tendon in
-/// some cases and not in others.
+/// Checks tendons in space against MuJoCo: straight, around a ball, around a given side of a cylinder, around
+/// the shorter side of one, and over pulleys. Actuators act on the tendons and on sites. Each surface
+/// deflects its tendon in some cases only.
 #[test]
 fn cables_and_sites() {
     #[mechanism(mjcf = "data/mjcf/cables.xml")]
@@ -138,12 +138,13 @@ fn conditions() {
     // `right` is a function of `left`, since their sum is constrained.
     assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
     for (i, case) in Record::load("mujoco/conditions.json").records("cases").iter().enumerate() {
-        let arms = |what: &str| {
+        let all_and_arm_numbers = |what: &str| {
             let all = case.numbers(what);
             let kept: Vec<f64> = all.iter().copied().take(7).collect();
             (all, kept)
         };
-        let ((q, own_q), (v, own_v), (a, own_a)) = (arms("q"), arms("v"), arms("a"));
+        let ((q, own_q), (v, own_v), (a, own_a)) =
+            (all_and_arm_numbers("q"), all_and_arm_numbers("v"), all_and_arm_numbers("a"));
         assert!((q[7] - (-0.2 + 2.0 * q[6] - 0.4)).abs() < 1e-12 && (v[7] - 2.0 * v[6]).abs() < 1e-12);
         let (q, v) = (SVector::from_vec(own_q), SVector::from_vec(own_v));
         assert!(Conditions.constraint_residuals(&q).amax() < 1e-12, "case {i}");
@@ -174,8 +175,8 @@ fn geometry_for_contact() {
     assert_close("gaps", &found, &expected, 1e-12);
 }
 
-/// With contacts from the file, each shape collides with the plane of its world, with the larger of the two
-/// coefficients of friction.
+/// Checks contacts that are read from the file: each shape collides with the plane of its world, with the
+/// larger of the two coefficients of friction.
 #[test]
 fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
     #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]

@@ -57,7 +57,7 @@ fn heap_calls_are_seen() {
     assert_eq!(heap_calls(|| black_box([1])), 0);
 }
 
-/// Checks all functions of the trait `Mechanism`, and every integrator.
+/// Checks that no function of the trait `Mechanism` and no integrator allocates memory.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -82,16 +82,27 @@ where
     assert_eq!(heap_calls(|| m.momentum_rate(0.0, q, v)), 0, "momentum_rate");
     assert_eq!(heap_calls(|| m.difference(q, &m.integrate(q, dv))), 0, "difference");
 
-    let run = || simulate(m).from(*q, *v).duration(0.01);
-    assert_eq!(heap_calls(|| run().finish()), 0, "DormandPrince");
-    assert_eq!(heap_calls(|| run().method(Rk4::step(2e-3)).finish()), 0, "Rk4");
-    assert_eq!(heap_calls(|| run().method(ImplicitMidpoint::step(2e-3)).finish()), 0, "ImplicitMidpoint");
-    assert_eq!(heap_calls(|| run().method(SemiImplicitEuler::step(2e-3)).finish()), 0, "SemiImplicitEuler");
-    assert_eq!(heap_calls(|| run().method(Rosenbrock::step(2e-3)).finish()), 0, "Rosenbrock");
-    let driven = || {
-        run().control_every(5e-3, |_, _, _| *u).sample_every(3e-3).event(Crossing::Either, |t, _, _| t - 4e-3)
+    let simulate_briefly = || simulate(m).from(*q, *v).duration(0.01);
+    assert_eq!(heap_calls(|| simulate_briefly().finish()), 0, "DormandPrince");
+    assert_eq!(heap_calls(|| simulate_briefly().method(Rk4::step(2e-3)).finish()), 0, "Rk4");
+    assert_eq!(
+        heap_calls(|| simulate_briefly().method(ImplicitMidpoint::step(2e-3)).finish()),
+        0,
+        "ImplicitMidpoint"
+    );
+    assert_eq!(
+        heap_calls(|| simulate_briefly().method(SemiImplicitEuler::step(2e-3)).finish()),
+        0,
+        "SemiImplicitEuler"
+    );
+    assert_eq!(heap_calls(|| simulate_briefly().method(Rosenbrock::step(2e-3)).finish()), 0, "Rosenbrock");
+    let simulate_with_control = || {
+        simulate_briefly()
+            .control_every(5e-3, |_, _, _| *u)
+            .sample_every(3e-3)
+            .event(Crossing::Either, |t, _, _| t - 4e-3)
     };
-    assert_eq!(heap_calls(|| driven().count()), 0, "control, samples and events");
+    assert_eq!(heap_calls(|| simulate_with_control().count()), 0, "control, samples and events");
 }
 
 /// Checks the functions that are not in the trait.
@@ -137,7 +148,7 @@ fn generated_functions() {
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
 }
 
-/// Arm with the derivatives of its dynamics.
+/// Panda arm with generated derivatives of the dynamics.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives)]
 struct PandaWithDerivatives;
 
@@ -154,7 +165,7 @@ fn derivatives() {
     assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
 }
 
-/// Quadruped with batched functions.
+/// Quadruped Solo12 with generated batched functions.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
 struct Solo12InLanes;
 
@@ -169,12 +180,12 @@ fn batches() {
     }
     let mut v = [0.1; 18 * COUNT];
     let (mut tau, lanes) = ([0.0; 18 * COUNT], m.lanes::<8>());
-    let arrays = || lanes.inverse_dynamics_all(0.0, &q, &v, &v, &mut tau).is_ok();
-    assert_eq!(heap_calls(arrays), 0, "inverse_dynamics_all");
+    let evaluate_arrays = || lanes.inverse_dynamics_all(0.0, &q, &v, &v, &mut tau).is_ok();
+    assert_eq!(heap_calls(evaluate_arrays), 0, "inverse_dynamics_all");
     let rollout = Rollout::new(Rk4::step(1e-3), 3);
-    let none = |_, _, _: &_, _: &_| SVector::zeros();
-    let run = || assert_eq!(lanes.roll_out(&rollout, &mut q, &mut v, none, unwatched), Ok(()));
-    assert_eq!(heap_calls(run), 0, "roll_out");
+    let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
+    let run_rollout = || assert_eq!(lanes.roll_out(&rollout, &mut q, &mut v, zero_inputs, unwatched), Ok(()));
+    assert_eq!(heap_calls(run_rollout), 0, "roll_out");
 }
 
 /// Arm with parameters and all other options of generated functions.
@@ -214,7 +225,8 @@ fn on_request() {
     assert_eq!(heap_calls(|| m.mass_matrix_into(q, &mut kept)), 0, "mass_matrix_into");
 }
 
-/// Checks all functions of the trait `Constrained`, at a state that satisfies the constraints.
+/// Checks that no function of the trait `Constrained` allocates memory, at a state that satisfies the
+/// constraints.
 fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     near: &SVector<f64, NQ>,
@@ -234,8 +246,8 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
     assert_eq!(heap_calls(|| m.constraint_bias(0.0, q, v)), 0, "constraint_bias");
     assert_eq!(heap_calls(|| m.constrained_dynamics(0.0, q, v, &tau)), 0, "constrained_dynamics");
     assert_eq!(heap_calls(|| m.project_state(0.0, near, v)), 0, "project_state");
-    let run = || assert!(simulate(m).from(*q, *v).duration(0.01).finish().is_ok());
-    assert_eq!(heap_calls(run), 0, "simulate");
+    let simulate_briefly = || assert!(simulate(m).from(*q, *v).duration(0.01).finish().is_ok());
+    assert_eq!(heap_calls(simulate_briefly), 0, "simulate");
 }
 
 /// Constrained mechanisms: a loop, a loop with a redundant condition, and two rolling wheels.
@@ -248,8 +260,8 @@ fn constraints() {
     let bicycle = Bicycle::BENCHMARK;
     check_constrained(&bicycle, &bicycle.neutral());
     let (q, v) = (bicycle.neutral(), SVector::zeros());
-    let linear = || assert!(bicycle.linearize(&q, &v, &SVector::zeros(), &[3, 7]).is_ok());
-    assert_eq!(heap_calls(linear), 0, "linearize");
+    let linearize_bicycle = || assert!(bicycle.linearize(&q, &v, &SVector::zeros(), &[3, 7]).is_ok());
+    assert_eq!(heap_calls(linearize_bicycle), 0, "linearize");
 }
 
 /// Box that falls on its face and slides.
@@ -267,10 +279,18 @@ struct Crate {
 fn contacts() {
     let m = Crate {};
     let (q, v) = ([0.0, 0.0, 0.055, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, -0.5, 0.0, 0.0, 0.0]);
-    let run = || simulate(&m).from(q, v).duration(0.1);
+    let simulate_contacts = || simulate(&m).from(q, v).duration(0.1);
     let (at, rates) = (SVector::from(q), SVector::from(v));
-    assert_eq!(heap_calls(|| run().method(TimeStepping::step(1e-3)).finish().unwrap()), 0, "time stepping");
-    assert_eq!(heap_calls(|| run().method(EventDriven::new()).finish().unwrap()), 0, "event by event");
+    assert_eq!(
+        heap_calls(|| simulate_contacts().method(TimeStepping::step(1e-3)).finish().unwrap()),
+        0,
+        "time stepping"
+    );
+    assert_eq!(
+        heap_calls(|| simulate_contacts().method(EventDriven::new()).finish().unwrap()),
+        0,
+        "event by event"
+    );
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

@@ -24,7 +24,7 @@ struct Pendubot {
     motor: Torque,
 }
 
-/// Flying body with two input forces.
+/// Flying body on which two input forces act along its z axis.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Flyer {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -57,7 +57,7 @@ fn blocks_obey_riccatis_equation() {
     let (g, w) = (random.vector::<14>(1.0), random.vector::<12>(1.0));
     let block =
         |m: &SMatrix<f64, 14, 14>, i: usize, j: usize| m.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
-    let mixed = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
+    let mixed_block = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
     let cost = Quadratic {
         q: g.fixed_rows::<6>(0).into_owned(),
         v: g.fixed_rows::<6>(6).into_owned(),
@@ -65,17 +65,17 @@ fn blocks_obey_riccatis_equation() {
         qq: block(&c, 0, 0),
         qv: block(&c, 0, 1),
         vv: block(&c, 1, 1),
-        qu: mixed(0),
-        vu: mixed(1),
+        qu: mixed_block(0),
+        vu: mixed_block(1),
         uu: c.fixed_view::<2, 2>(12, 12).into_owned(),
     };
-    let part = |i: usize, j: usize| s.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
+    let block_of_second_derivatives = |i: usize, j: usize| s.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
     let after = Value {
         q: w.fixed_rows::<6>(0).into_owned(),
         v: w.fixed_rows::<6>(6).into_owned(),
-        qq: part(0, 0),
-        qv: part(0, 1),
-        vv: part(1, 1),
+        qq: block_of_second_derivatives(0, 0),
+        qv: block_of_second_derivatives(0, 1),
+        vv: block_of_second_derivatives(1, 1),
     };
     for (step, r) in steps.iter().flat_map(|step| [(step, 0.0), (step, r)]) {
         let (a, b) = (step.a::<12>(), step.b::<12>());
@@ -103,8 +103,8 @@ fn blocks_obey_riccatis_equation() {
     }
 }
 
-/// Flying body with an arm: the rates of some coordinates are in rotating axes, those of others are plain
-/// derivatives.
+/// Flying body with a hinged arm. Displacements of its pose are in rotating axes, that of the hinge is a
+/// plain difference.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Flapper {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -145,24 +145,24 @@ fn costs_of_numbers_go_through_their_derivatives() {
     );
     cost.add_costs_of(&gradient, &hessian, (&by_q, &by_v, &by_u));
     let (first, second) = (jacobian.transpose() * gradient, jacobian.transpose() * hessian * jacobian);
-    let block = |i: usize, j: usize, rows: usize, columns: usize| {
+    let block_of_second_derivatives = |i: usize, j: usize, rows: usize, columns: usize| {
         second.view((i, j), (rows, columns)).iter().copied().collect::<Vec<f64>>()
     };
     cost.q[1] -= 1.0;
     cost.qv[(0, 2)] -= 2.0;
-    let close = |what: &str, found: &[f64], expected: &[f64]| {
+    let assert_close_entries = |what: &str, found: &[f64], expected: &[f64]| {
         let far = found.iter().zip(expected).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
         assert!(far < 1e-13 && found.len() == expected.len(), "{what}: {found:?} and {expected:?}");
     };
-    close("q", cost.q.as_slice(), &first.as_slice()[..3]);
-    close("v", cost.v.as_slice(), &first.as_slice()[3..6]);
-    close("u", cost.u.as_slice(), &first.as_slice()[6..]);
-    close("qq", cost.qq.as_slice(), &block(0, 0, 3, 3));
-    close("qv", cost.qv.as_slice(), &block(0, 3, 3, 3));
-    close("vv", cost.vv.as_slice(), &block(3, 3, 3, 3));
-    close("qu", cost.qu.as_slice(), &block(0, 6, 3, 2));
-    close("vu", cost.vu.as_slice(), &block(3, 6, 3, 2));
-    close("uu", cost.uu.as_slice(), &block(6, 6, 2, 2));
+    assert_close_entries("q", cost.q.as_slice(), &first.as_slice()[..3]);
+    assert_close_entries("v", cost.v.as_slice(), &first.as_slice()[3..6]);
+    assert_close_entries("u", cost.u.as_slice(), &first.as_slice()[6..]);
+    assert_close_entries("qq", cost.qq.as_slice(), &block_of_second_derivatives(0, 0, 3, 3));
+    assert_close_entries("qv", cost.qv.as_slice(), &block_of_second_derivatives(0, 3, 3, 3));
+    assert_close_entries("vv", cost.vv.as_slice(), &block_of_second_derivatives(3, 3, 3, 3));
+    assert_close_entries("qu", cost.qu.as_slice(), &block_of_second_derivatives(0, 6, 3, 2));
+    assert_close_entries("vu", cost.vu.as_slice(), &block_of_second_derivatives(3, 6, 3, 2));
+    assert_close_entries("uu", cost.uu.as_slice(), &block_of_second_derivatives(6, 6, 2, 2));
 }
 
 #[test]
@@ -173,13 +173,13 @@ fn steps_that_are_chained_are_steps() {
     let step = discrete::transition(&m, &SemiImplicitEuler::step(0.1), 0.0, &q, &v, &u).expect("it moves");
     assert!(step.chained.is_some());
     let s = positive::<14>(&mut random);
-    let part = |i: usize, j: usize| s.fixed_view::<7, 7>(7 * i, 7 * j).into_owned();
+    let block_of_second_derivatives = |i: usize, j: usize| s.fixed_view::<7, 7>(7 * i, 7 * j).into_owned();
     let after = Value {
         q: random.vector(1.0),
         v: random.vector(1.0),
-        qq: part(0, 0),
-        qv: part(0, 1),
-        vv: part(1, 1),
+        qq: block_of_second_derivatives(0, 0),
+        qv: block_of_second_derivatives(0, 1),
+        vv: block_of_second_derivatives(1, 1),
     };
     let cost = Quadratic { uu: SMatrix::identity(), qq: SMatrix::identity() * 0.3, ..Quadratic::zeros() };
     let (policy, value) = backward(&step, &cost, &after, 0.2).expect("it is convex");
@@ -231,8 +231,8 @@ impl Problem {
         Value { q: (q - self.goal) * 100.0, v: v * 10.0, qq: one * 100.0, vv: one * 10.0, ..Value::zeros() }
     }
 
-    /// Returns the policies of all instants, the first one first, and the largest component of the gradient
-    /// with respect to the inputs.
+    /// Returns the feedback policies of all instants, the first one first, and the largest component of the
+    /// cost gradient with respect to the inputs. Returns `None` if the costs are not convex.
     fn policies<M>(
         &self,
         m: &M,
@@ -290,13 +290,13 @@ impl Problem {
     }
 }
 
-/// With the curvature of the dynamics, the gradient converges quadratically near the optimum; without it,
-/// linearly.
+/// Checks that differential dynamic programming converges quadratically near the optimum with the curvature
+/// of the dynamics, and linearly without it.
 #[test]
 fn dynamic_programming_converges_quadratically() {
     let m = Pendubot {};
     let problem = Problem { method: SemiImplicitEuler::step(0.02), goal: [0.9, 0.4].into() };
-    let slopes = |curved_from: usize| {
+    let slopes_of_iterations = |curved_from: usize| {
         let mut inputs = vec![SVector::from([0.5]); STEPS];
         let mut states = vec![(SVector::from([0.0, 0.0]), SVector::from([0.0, 0.0]))];
         for u in &inputs {
@@ -319,7 +319,7 @@ fn dynamic_programming_converges_quadratically() {
         }
         slopes
     };
-    let (newton, gauss) = (slopes(5), slopes(usize::MAX));
+    let (newton, gauss) = (slopes_of_iterations(5), slopes_of_iterations(usize::MAX));
     println!("{newton:?}\n{gauss:?}");
     // From the fifth iteration on, each gradient is below a multiple of the square of the one before, down to
     // rounding error.
@@ -329,8 +329,8 @@ fn dynamic_programming_converges_quadratically() {
     assert!(gauss.len() > 20 && gauss[8..].windows(2).all(|w| w[1] > 0.2 * w[0]), "{gauss:?}");
 }
 
-/// Within limits the change of two inputs is the best one of nine: each input is free or at one of its
-/// limits. The cost-to-go predicts the costs of a displaced state under the policy.
+/// Checks that within limits the change of two inputs is the best of nine candidates, each input free or at
+/// one of its limits. The cost-to-go predicts the costs of a displaced state under the policy.
 #[test]
 fn limits_bound_the_change_of_inputs() {
     let mut random = Random::new(5);
@@ -350,7 +350,7 @@ fn limits_bound_the_change_of_inputs() {
             InputLimits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
         let (mut policy, mut to_go) = (Policy::zeros(), Value::zeros());
         backward_within(&step, &cost, 0.0, &limits, &mut policy, &mut to_go).expect("it is convex");
-        let total = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
+        let total_cost_change = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
         let mut best = f64::INFINITY;
         for choice in 0..9 {
             let at = [choice % 3, choice / 3];
@@ -363,16 +363,20 @@ fn limits_bound_the_change_of_inputs() {
             }
             let Some(du) = system.lu().solve(&right) else { continue };
             if du.iter().all(|x| x.is_finite()) && (limits.clamp(&du) - du).amax() < 1e-12 {
-                best = best.min(total(&du));
+                best = best.min(total_cost_change(&du));
             }
         }
-        assert!((total(&policy.change) - best).abs() < 1e-12, "{} {best}", total(&policy.change));
+        assert!(
+            (total_cost_change(&policy.change) - best).abs() < 1e-12,
+            "{} {best}",
+            total_cost_change(&policy.change)
+        );
         assert!((policy.expected[0] + policy.expected[1] - best).abs() < 1e-12);
         let held = (0..2).filter(|i| policy.by_q.row(*i).amax() == 0.0).count();
         kinds[held] += 1;
         let dq = random.vector::<6>(1e-2);
         let du = policy.inputs(1.0, &dq, &SVector::zeros());
-        let predicted = total(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
+        let predicted = total_cost_change(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
         assert!((predicted - best - to_go.at(&dq, &SVector::zeros())).abs() < 1e-12);
     }
     assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");

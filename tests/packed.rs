@@ -6,7 +6,7 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use support::compare::assert_close;
 use support::random::Random;
 
-/// Quadruped: the inertia of one leg does not couple to another.
+/// Quadruped Solo12, in whose mass matrix the legs are not coupled to each other.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, packed)]
 struct Quadruped;
 
@@ -14,8 +14,8 @@ struct Quadruped;
 #[mechanism(urdf = "../models/urdf/panda.urdf", packed)]
 struct Panda;
 
-/// Humanoid with more results than registers: neighbouring entries are stored together immediately after they
-/// are computed.
+/// Humanoid with more results than registers, so that neighbouring entries are stored together as soon as
+/// they are computed.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, packed)]
 struct Humanoid;
 
@@ -23,7 +23,7 @@ struct Humanoid;
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free, packed)]
 struct G1;
 
-/// Two arms on one cart, with all other options of generated functions.
+/// Two arms on one cart, with all other options for generated functions enabled together with `packed`.
 #[mechanism(
     gravity = -9.81 * y,
     packed,

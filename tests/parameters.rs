@@ -1,5 +1,5 @@
-//! Robots whose inertial and geometric values are parameters. With the values of the file they equal the
-//! robot of the file; with other values they equal the robot of another file.
+//! Checks of robots from files whose inertial and geometric values are parameters. With the values of the
+//! file they equal the robot of the file; with other values they equal the robot of another file.
 
 use linkwork::identification::{PutBackError, approach};
 use linkwork::lanes::f64x4;
@@ -37,17 +37,25 @@ fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
     let mut random = Random::new(3);
     let q = random.configuration(&plain);
     let [v, a] = [random.vector(2.0), random.vector(2.0)];
-    let close = |what: &str, a: &[f64], b: &[f64]| assert_similar(what, a, b, TOLERANCE);
+    let assert_similar_values = |what: &str, a: &[f64], b: &[f64]| assert_similar(what, a, b, TOLERANCE);
     let (one, other) =
         (robot.inverse_dynamics_derivatives(&q, &v, &a), plain.inverse_dynamics_derivatives(&q, &v, &a));
-    close("by q", one.0.as_slice(), other.0.as_slice());
-    close("by v", one.1.as_slice(), other.1.as_slice());
+    assert_similar_values("by q", one.0.as_slice(), other.0.as_slice());
+    assert_similar_values("by v", one.1.as_slice(), other.1.as_slice());
     let (one, other) = (robot.joint_torque_regressor(&q, &v, &a), plain.joint_torque_regressor(&q, &v, &a));
-    close("regressor", one.as_slice(), other.as_slice());
-    close("standard", robot.standard_parameters().as_slice(), plain.standard_parameters().as_slice());
-    close("momentum", robot.momentum(&q, &v).as_slice(), plain.momentum(&q, &v).as_slice());
+    assert_similar_values("regressor", one.as_slice(), other.as_slice());
+    assert_similar_values(
+        "standard",
+        robot.standard_parameters().as_slice(),
+        plain.standard_parameters().as_slice(),
+    );
+    assert_similar_values("momentum", robot.momentum(&q, &v).as_slice(), plain.momentum(&q, &v).as_slice());
     for (one, other) in robot.frame_placements(&q).iter().zip(plain.frame_placements(&q)) {
-        close("placements", one.to_homogeneous().as_slice(), other.to_homogeneous().as_slice());
+        assert_similar_values(
+            "placements",
+            one.to_homogeneous().as_slice(),
+            other.to_homogeneous().as_slice(),
+        );
     }
     let quadruped = Quadruped::FILE;
     assert_eq!(quadruped.validate(), Ok(()));
@@ -61,7 +69,7 @@ struct Before;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]
 struct After;
 
-/// Arm whose values are all parameters, with one more parameter of its own.
+/// Arm from a file in which all values are parameters, with a load as an additional parameter.
 #[mechanism(
     urdf = "data/urdf/arm_before.urdf", regressor, sensitivities,
     parameters = [inertial, placement, damping, friction]
@@ -129,20 +137,25 @@ fn with_other_figures_it_is_the_robot_of_another_file() {
 #[test]
 fn parameters_have_the_names_by_which_they_are_written() {
     assert_eq!(Arm::<f64>::LINKS, ["upper-arm", "fore", "type"]);
-    let index = |name| linkwork::index_of(&Arm::<f64>::PARAMETERS, name).unwrap();
-    assert_eq!(index("load"), 0);
+    let parameter_index = |name| linkwork::index_of(&Arm::<f64>::PARAMETERS, name).unwrap();
+    assert_eq!(parameter_index("load"), 0);
     // The derivative of a joint's torque with respect to its damping is its velocity.
     let arm = Arm::<f64>::from_file(0.3);
     let (q, v, a) = ([0.3, 0.2, 0.1].into(), [0.5, -0.7, 0.9].into(), [0.1, 0.2, 0.3].into());
     let by = arm.inverse_dynamics_by_parameters(&q, &v, &a);
-    assert_close("damping", by.column(index("elbow_damping")).as_slice(), &[0.0, -0.7, 0.0], 1e-15);
-    let change = |mass: f64| {
+    assert_close("damping", by.column(parameter_index("elbow_damping")).as_slice(), &[0.0, -0.7, 0.0], 1e-15);
+    let torques_with_mass_change = |mass: f64| {
         let mut other = arm;
         other.type_link.mass += mass;
         other.inverse_dynamics(&q, &v, &a)
     };
-    let differences = (change(1e-4) - change(-1e-4)) / 2e-4;
-    assert_close("mass", by.column(index("type_link.mass")).as_slice(), differences.as_slice(), 1e-8);
+    let differences = (torques_with_mass_change(1e-4) - torques_with_mass_change(-1e-4)) / 2e-4;
+    assert_close(
+        "mass",
+        by.column(parameter_index("type_link.mass")).as_slice(),
+        differences.as_slice(),
+        1e-8,
+    );
 }
 
 #[test]
@@ -152,8 +165,8 @@ fn lanes_carry_different_parameters() {
     robots.elbow_friction = Lanes([0.0, 0.1, 0.2, 0.3]);
     assert_eq!(robots.validate(), Ok(()));
     let (q, v, a) = ([0.3, 0.2, 0.1], [0.5, -0.7, 0.9], [0.1, 0.2, 0.3]);
-    let wide = |x: [f64; 3]| SVector::from(x.map(f64x4::splat));
-    let tau = robots.inverse_dynamics(&wide(q), &wide(v), &wide(a));
+    let splat_lanes = |x: [f64; 3]| SVector::from(x.map(f64x4::splat));
+    let tau = robots.inverse_dynamics(&splat_lanes(q), &splat_lanes(v), &splat_lanes(a));
     for k in 0..4 {
         let mut one = Arm::<f64>::from_file(0.1 * k as f64);
         (one.fore.mass, one.elbow_friction) = (2.0 + 0.5 * k as f64, 0.1 * k as f64);
@@ -168,28 +181,29 @@ fn lanes_carry_different_parameters() {
 fn what_no_body_has_is_named() {
     let sound = Arm::<f64>::from_file(1.0);
     assert_eq!(sound.validate(), Ok(()));
-    let faults = |change: fn(&mut Arm<f64>)| {
+    let fault_after_change = |change: fn(&mut Arm<f64>)| {
         let mut arm = sound;
         change(&mut arm);
         let error = arm.validate().unwrap_err();
         (error.fault, error.figure, error.parameters.first().copied())
     };
     assert_eq!(
-        faults(|arm| arm.fore.mass = -1.0),
+        fault_after_change(|arm| arm.fore.mass = -1.0),
         (Fault::Negative, "the mass of `fore`", Some("fore.mass"))
     );
-    let (fault, figure, _) = faults(|arm| arm.fore.izz = 0.04);
+    let (fault, figure, _) = fault_after_change(|arm| arm.fore.izz = 0.04);
     assert_eq!((fault, figure), (Fault::Inertia, "the inertia of `fore`"));
-    assert_eq!(faults(|arm| arm.fore.com[1] = f64::NAN).2, Some("fore.com[1]"));
+    assert_eq!(fault_after_change(|arm| arm.fore.com[1] = f64::NAN).2, Some("fore.com[1]"));
     assert_eq!(
-        faults(|arm| arm.elbow_damping = -0.1),
+        fault_after_change(|arm| arm.elbow_damping = -0.1),
         (Fault::Negative, "the damping of `elbow`", Some("elbow_damping"))
     );
-    assert_eq!(faults(|arm| arm.slide_placement.rpy[2] = f64::INFINITY).0, Fault::NotFinite);
-    assert_eq!(faults(|arm| arm.slide_placement.xyz[2] = 1e90).0, Fault::TooLarge);
+    assert_eq!(fault_after_change(|arm| arm.slide_placement.rpy[2] = f64::INFINITY).0, Fault::NotFinite);
+    assert_eq!(fault_after_change(|arm| arm.slide_placement.xyz[2] = 1e90).0, Fault::TooLarge);
 }
 
-/// Arm with seven axes, whose links are all parameters, or one of whose links is a parameter.
+/// Panda arm in which the mass properties of all links are parameters. A second variant has only one such
+/// link.
 #[mechanism(
     urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
     regressor, prepare, parameters = inertial
@@ -216,12 +230,13 @@ fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
         || Inertial::point(link.mass * (0.06 + random.uniform(0.05)), random.vector::<3>(0.06).into());
     let (a, b) = (point(), point());
     let [x, y, z] = link.com;
-    let placed = |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
-    link.scaled(0.95).plus(&placed(a)).plus(&placed(b))
+    let shifted_inertial =
+        |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
+    link.scaled(0.95).plus(&shifted_inertial(a)).plus(&shifted_inertial(b))
 }
 
-/// Checks that two robots have the same torques in random motions: they may differ only in parameters without
-/// effect.
+/// Checks that two robots have the same inverse dynamics in random motions. They may differ only in
+/// parameters without effect.
 fn same_torques(one: &Panda, other: &Panda) {
     let mut random = Random::new(2);
     for _ in 0..20 {
@@ -300,8 +315,8 @@ fn what_no_bodies_have_is_an_error_and_changes_nothing() {
     assert_eq!(found, before);
 }
 
-/// Checks that one link with free parameters takes all components of a load that act on it, also in single
-/// precision.
+/// Checks that base parameters of an arm with a load can be written back to the only link whose mass
+/// properties are parameters, also in single precision.
 macro_rules! one_link {
     ($robot:ident, $scalar:ty, $tolerance:literal) => {{
         let mut truth = $robot::FILE;
@@ -331,8 +346,9 @@ fn one_link_takes_what_reaches_it() {
 fn calibration_moves_frames() {
     let mut arm = Arm::<f64>::from_file(0.0);
     let q = [0.0; 3].into();
-    let position = |arm: &Arm<f64>| arm.frame_placement(frame!(Arm<f64>, "fore"), &q).translation.vector;
-    let before = position(&arm);
+    let position_of_fore =
+        |arm: &Arm<f64>| arm.frame_placement(frame!(Arm<f64>, "fore"), &q).translation.vector;
+    let before = position_of_fore(&arm);
     arm.elbow_placement.xyz[0] += 0.01;
-    assert_close("moved", (position(&arm) - before).as_slice(), &[0.01, 0.0, 0.0], 1e-15);
+    assert_close("moved", (position_of_fore(&arm) - before).as_slice(), &[0.01, 0.0, 0.0], 1e-15);
 }

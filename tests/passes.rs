@@ -26,7 +26,7 @@ use std::path::Path;
 use support::model::{symbols, try_model, with_model};
 use support::random::config;
 
-/// Tolerance relative to the largest entry.
+/// Tolerance of results, relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
 const CHOICES: [Passes; 4] = [
@@ -88,7 +88,7 @@ fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
     let old: Vec<_> = functions(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
-    let check = |variant: &Variant<'_>, count: usize| {
+    let check_variant = |variant: &Variant<'_>, count: usize| {
         for ((name, new), (_, old)) in functions(&variant.model, &variant.joints).iter().zip(&old[..count]) {
             assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
@@ -96,8 +96,8 @@ fn check_forms(model: &Model<'_>, seed: u64) {
     };
     for passes in CHOICES {
         let variants = variants(model, passes);
-        variants.iter().for_each(|variant| check(variant, old.len()));
-        in_common_axes(&variants).iter().for_each(|variant| check(variant, old.len() - 2));
+        variants.iter().for_each(|variant| check_variant(variant, old.len()));
+        in_common_axes(&variants).iter().for_each(|variant| check_variant(variant, old.len() - 2));
     }
 }
 
@@ -166,11 +166,12 @@ fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Outp
 }
 
 fn check_robot(name: &str, options: &str) {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(tokens(&arguments), tokens("pub struct Robot;"), folder, &mut cx).expect("it is read");
+    let source = read(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
+        .expect("it is read");
     let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
         let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");
@@ -263,7 +264,7 @@ proptest! {
     }
 }
 
-/// Checks that every variant has the functions of its model within rounding error, and that no length of a
+/// Checks that every variant of a model has the same functions up to rounding, and that no length of a
 /// variant exceeds those of the model by more than a factor of 10.
 fn check_digits(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
@@ -276,14 +277,14 @@ fn check_digits(model: &Model<'_>, seed: u64) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
-    let effort = |k: usize| Quantity::Force(k).expr(model.graph);
-    let motion = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
+    let force_symbol = |k: usize| Quantity::Force(k).expr(model.graph);
+    let acceleration_error = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
         let h = rnea::inverse_dynamics(variant, joints, &v, None);
-        let rest = h.iter().enumerate().map(|(k, h)| effort(k) - *h).collect();
+        let rest = h.iter().enumerate().map(|(k, h)| force_symbol(k) - *h).collect();
         let found = eval(&ldl::solve(crba::mass_matrix(variant, joints), rest, joints), &with_tau);
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
-    let (n, own) = (model.nv(), motion(model, &joints));
+    let (n, own) = (model.nv(), acceleration_error(model, &joints));
     let extent: f64 = sizes(model).iter().sum();
     let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
     // Joints share common axes if they are parallel within the rounding of files.
@@ -306,7 +307,7 @@ fn check_digits(model: &Model<'_>, seed: u64) {
             assert!((found - entry).abs() <= tolerance * size, "{found} and {entry} of {size} (seed {seed})");
         }
         // Light links on heavy ones lose digits, with and without the passes.
-        let error = motion(&variant.model, &variant.joints);
+        let error = acceleration_error(&variant.model, &variant.joints);
         assert!(
             error <= 100.0 * tolerance + 1000.0 * own,
             "accelerations off by {error:e}, {own:e} without (seed {seed})"
@@ -370,7 +371,7 @@ proptest! {
 /// axes are not parallel are unchanged.
 #[test]
 fn parallel_joints_share_their_axes() {
-    let arm = |axes: [&str; 3]| {
+    let arm_with_axes = |axes: [&str; 3]| {
         let [a, b, c] = axes;
         let body = "#[body(mass = 1.5, com = [0.1, 0.2, 0.3], inertia = cuboid(1.5, 0.3, 0.2, 0.1))]";
         format!(
@@ -379,24 +380,24 @@ fn parallel_joints_share_their_axes() {
              {body} c: Body, #[joint(b.at(0.4 * x) -> c, about = {c})] third: Pin }}"
         )
     };
-    let shared = |axes| {
+    let joints_in_common_axes = |axes| {
         let mut turning = Vec::new();
-        with_model(&(String::new(), arm(axes)), |_, model| {
+        with_model(&(String::new(), arm_with_axes(axes)), |_, model| {
             let variant = in_common_axes(&variants(model, Passes::default())).into_iter().next();
             let Some(variant) = variant else { return };
             turning = variant.joints.iter().map(|joint| joint.rotation.matrix().values().is_none()).collect();
         });
         turning
     };
-    assert_eq!(shared(["z", "z", "z"]), [false, false, false]);
-    assert_eq!(shared(["z", "y", "-y"]), [true, false, false]);
+    assert_eq!(joints_in_common_axes(["z", "z", "z"]), [false, false, false]);
+    assert_eq!(joints_in_common_axes(["z", "y", "-y"]), [true, false, false]);
     // The third joint rotates relative to the axes that the first two share.
-    assert_eq!(shared(["z", "z", "x"]), [false, false, true]);
-    assert_eq!(shared(["z", "y", "z"]), [false; 0]);
+    assert_eq!(joints_in_common_axes(["z", "z", "x"]), [false, false, true]);
+    assert_eq!(joints_in_common_axes(["z", "y", "z"]), [false; 0]);
 }
 
-/// Nearly zero lengths between axes, as exporters write them, must not carry large masses and lose digits.
-/// Nearly parallel axes must not place a frame far away.
+/// Checks that nearly zero lengths between axes, as exporters write them, are not multiplied by large masses
+/// and lose no digits. Nearly parallel axes must not place a frame far away.
 #[test]
 fn figures_next_to_zero_cost_no_digits() {
     let mut fields = String::new();
@@ -410,11 +411,11 @@ fn figures_next_to_zero_cost_no_digits() {
             ["z", "z", "x"][k % 3]
         );
     }
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let item = format!("pub struct Robot {{ {fields} }}");
-    let source =
-        read(tokens("gravity = -9.81 * y"), tokens(&item), Path::new(""), &mut cx).expect("it is read");
+    let source = read(parse_tokens("gravity = -9.81 * y"), parse_tokens(&item), Path::new(""), &mut cx)
+        .expect("it is read");
     let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
         let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");

@@ -56,15 +56,15 @@ struct Arm<T> {
 }
 
 fn arm<T: Real>() -> Arm<T> {
-    let number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
+    let convert_number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
     Arm {
-        g: number(9.7),
-        m: number(1.3),
-        l: number(0.6),
-        tilt: number(0.4),
-        stiffness: number(30.0),
-        damping: number(0.7),
-        dry: number(0.2),
+        g: convert_number(9.7),
+        m: convert_number(1.3),
+        l: convert_number(0.6),
+        tilt: convert_number(0.4),
+        stiffness: convert_number(30.0),
+        damping: convert_number(0.7),
+        dry: convert_number(0.2),
     }
 }
 
@@ -105,16 +105,16 @@ fn a_prepared_mechanism_is_the_mechanism() {
             centroidal_momentum_matrix(&q);
             centroidal_momentum_bias(&q, &v);
         }
-        let powers = |m: [f64; 4]| m;
+        let powers_of_motion = |m: [f64; 4]| m;
         assert_close(
             "powers",
-            &powers([
+            &powers_of_motion([
                 prepared.dissipated_power(&q, &v),
                 prepared.control_power(&q, &v, &u),
                 prepared.disturbance_power(&q, &v),
                 prepared.total_mass(),
             ]),
-            &powers([
+            &powers_of_motion([
                 arm.dissipated_power(&q, &v),
                 arm.control_power(&q, &v, &u),
                 arm.disturbance_power(&q, &v),
@@ -133,7 +133,7 @@ fn in_single_precision() {
     assert_close("mass matrix", mass.as_slice(), double.mass_matrix(&q).as_slice(), 1e-6);
 }
 
-/// Robot from a file with a parameter of its own.
+/// Panda arm from a file, with a load and a spring stiffness as parameters.
 #[mechanism(urdf = "../models/urdf/panda.urdf", prepare)]
 #[derive(Clone, Copy)]
 struct LoadedPanda {
@@ -176,10 +176,10 @@ fn driven_in_time() {
     for t in [0.0, 0.4] {
         assert_same_dynamics(&at(&prepared, t), &at(&hoop, t), 5, TOLERANCE);
     }
-    let end = |run: Result<Sample<f64, 1, 1, 0>, Error>| run.expect("it arrives").q[0];
+    let end_coordinate = |run: Result<Sample<f64, 1, 1, 0>, Error>| run.expect("it arrives").q[0];
     let one = simulate(&prepared).from([0.5], [0.0]).duration(1.0).finish();
     let other = simulate(&hoop).from([0.5], [0.0]).duration(1.0).finish();
-    assert!((end(one) - end(other)).abs() < 1e-9);
+    assert!((end_coordinate(one) - end_coordinate(other)).abs() < 1e-9);
 }
 
 /// Four-bar linkage with all options of generated functions.
@@ -247,18 +247,22 @@ fn with_a_closed_loop() {
 
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
-/// Returns the numbers of operations of the main functions, and of the prepared ones.
+/// Returns the numbers of operations of the main functions, first as generated, then with prepared
+/// parameters.
 fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let main = |functions: &[linkwork_compiler::derive::Function]| {
+    let main_operation_counts = |functions: &[linkwork_compiler::derive::Function]| {
         MAIN.map(|name| functions.iter().find(|f| f.name == name).map_or(0, |f| f.program.counts.total()))
     };
-    (main(&output.functions), output.prepared.map(|prepared| main(&prepared.functions)))
+    (
+        main_operation_counts(&output.functions),
+        output.prepared.map(|prepared| main_operation_counts(&prepared.functions)),
+    )
 }
 
 /// Returns the source of a 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986)
@@ -302,8 +306,12 @@ fn puma(lengths: bool, parameters: bool) -> String {
 fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     let mut fields = String::new();
     for k in 0..n {
-        let number = |name: &str, x: f64| if parameters { format!("{name}{k}") } else { format!("{x}") };
-        let (m, l) = (number("m", 2.0 + 0.1 * k as f64), number("l", 0.5 - 0.01 * k as f64));
+        let number_or_parameter_name =
+            |name: &str, x: f64| if parameters { format!("{name}{k}") } else { format!("{x}") };
+        let (m, l) = (
+            number_or_parameter_name("m", 2.0 + 0.1 * k as f64),
+            number_or_parameter_name("l", 0.5 - 0.01 * k as f64),
+        );
         let before = match parameters {
             true => format!("l{}", k.max(1) - 1),
             false => format!("{}", 0.5 - 0.01 * (k as f64 - 1.0)),
@@ -321,8 +329,8 @@ fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     format!("pub struct Chain {{ {fields} }}")
 }
 
-/// Prepared functions need at most ten per cent more operations than the mechanism with numbers, and exactly
-/// the stated counts. Where rods lie along an axis, two lengths merge into one.
+/// Checks that prepared functions need at most ten per cent more operations than a mechanism with constants,
+/// and exactly the stated counts. Where rods are along an axis, two lengths merge into one.
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [

@@ -1,5 +1,5 @@
-//! Published robots against the reference values of `data/robots` (Pinocchio 4.1.0), and consistency of their
-//! functions.
+//! Checks of published robots against the reference values in `data/robots` (Pinocchio 4.1.0), and of the
+//! consistency of their functions.
 
 use linkwork::nalgebra::SVector;
 use linkwork::{Mechanism, frame};
@@ -11,44 +11,45 @@ use support::table::Record;
 const DYNAMICS: f64 = 1e-11;
 /// Tolerance of forward dynamics, which includes the condition of the mass matrix.
 const FORWARD: f64 = 1e-9;
-/// Tolerance of frames, Jacobians and velocities.
+/// Tolerance of frame placements, Jacobians and velocities against the reference values.
 const KINEMATICS: f64 = 1e-12;
 
 fn table(robot: &str) -> Record {
     Record::load(&format!("robots/{robot}.json"))
 }
 
-/// Checks all functions of the trait `Mechanism` that the tables contain.
+/// Checks all functions of the trait `Mechanism` for which the tables have reference values.
 fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     for (i, case) in table(name).records("cases").iter().enumerate() {
-        let label = |what: &str| format!("{name}, case {i}: {what}");
+        let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
         let mass_matrix = case.symmetric::<NV>("M");
 
         assert_close(
-            label("mass matrix"),
+            label_of_case("mass matrix"),
             robot.mass_matrix(0.0, q).as_slice(),
             mass_matrix.as_slice(),
             DYNAMICS,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(label("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
+        assert_close(label_of_case("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
         let inverse = robot.inverse_dynamics(0.0, q, v, a);
-        assert_close(label("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
+        assert_close(label_of_case("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
         let forward = robot.forward_dynamics(0.0, q, v, tau);
-        assert_close(label("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
+        assert_close(label_of_case("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
         let energies = [robot.kinetic_energy(0.0, q, v), robot.potential_energy(0.0, q)];
         let expected = [case.number("kinetic_energy"), case.number("potential_energy")];
-        assert_close(label("energies"), &energies, &expected, DYNAMICS);
+        assert_close(label_of_case("energies"), &energies, &expected, DYNAMICS);
         let momentum = robot.generalized_momentum(0.0, q, v);
-        assert_close(label("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
+        assert_close(label_of_case("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
     }
 }
 
-/// Checks the names and the effect of the inputs: one for each moving joint, in the order of the reference.
+/// Checks the inputs of a robot: one for each moving joint, with the names and the order of the reference,
+/// and each with its force on that joint.
 fn check_inputs<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -89,27 +90,27 @@ macro_rules! check_kinematics {
         assert_eq!(table($name).string("last_link"), $last);
         let last = frame!($robot, $last);
         for (i, case) in table($name).records("cases").iter().enumerate() {
-            let label = |what: &str| format!("{}, case {i}: {what}", $name);
+            let label_of_case = |what: &str| format!("{}, case {i}: {what}", $name);
             let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
 
             let velocity = $robot.frame_velocity(last, q, v);
-            assert_close(label("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
+            assert_close(label_of_case("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
             let acceleration = $robot.frame_acceleration(last, q, v, a);
             assert_close(
-                label("acceleration"),
+                label_of_case("acceleration"),
                 acceleration.as_slice(),
                 &case.numbers("a_last_classical"),
                 KINEMATICS,
             );
             let jacobian = $robot.frame_jacobian(last, q);
             let expected = case.matrix::<6, { $robot::NV }>("J_last");
-            assert_close(label("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
+            assert_close(label_of_case("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
 
             let center = $robot.center_of_mass(q);
-            assert_close(label("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
+            assert_close(label_of_case("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
             let momentum = $robot.momentum(q, v);
             assert_close(
-                label("momentum"),
+                label_of_case("momentum"),
                 momentum.as_slice(),
                 &case.numbers("centroidal_momentum"),
                 DYNAMICS,
@@ -157,7 +158,7 @@ robot!(anymal_b, AnymalB, "anymal_b", "RH_FOOT");
 robot!(simple_humanoid, Humanoid, "simple_humanoid", "r_wrist");
 robot!(g1, G1, "g1", "right_rubber_hand");
 
-/// Panda arm whose second finger follows the first: it has one coordinate less.
+/// Checks of the Panda arm whose second finger follows the first one, so that it has one coordinate less.
 mod panda_mimic {
     use super::*;
 
@@ -165,25 +166,30 @@ mod panda_mimic {
     fn dynamics() {
         let robot = PandaMimic;
         for (i, case) in table("panda_mimic").records("cases").iter().enumerate() {
-            let label = |what: &str| format!("panda with mimic, case {i}: {what}");
+            let label_of_case = |what: &str| format!("panda with mimic, case {i}: {what}");
             let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
             let mass_matrix = case.symmetric::<{ PandaMimic::NV }>("M");
             assert_close(
-                label("mass matrix"),
+                label_of_case("mass matrix"),
                 robot.mass_matrix(q).as_slice(),
                 mass_matrix.as_slice(),
                 DYNAMICS,
             );
             assert_close(
-                label("bias forces"),
+                label_of_case("bias forces"),
                 robot.bias_forces(q, v).as_slice(),
                 &case.numbers("nle"),
                 DYNAMICS,
             );
             let forces = robot.inverse_dynamics(q, v, a);
-            assert_close(label("inverse dynamics"), forces.as_slice(), &case.numbers("rnea"), DYNAMICS);
+            assert_close(
+                label_of_case("inverse dynamics"),
+                forces.as_slice(),
+                &case.numbers("rnea"),
+                DYNAMICS,
+            );
             let acceleration = robot.forward_dynamics(q, v, &case.vector("rnea"));
-            assert_close(label("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
+            assert_close(label_of_case("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
         }
     }
 

@@ -30,7 +30,7 @@ struct Trap {
     magnet: Spring,
 }
 
-/// Random states as a structure of arrays.
+/// Random states of several mechanisms as a structure of arrays.
 struct States {
     q: Vec<f64>,
     v: Vec<f64>,
@@ -53,7 +53,7 @@ impl States {
     }
 }
 
-/// Returns state `k` of `count`.
+/// Returns state `k` from a structure of arrays with `count` states.
 fn column<const N: usize>(numbers: &[f64], count: usize, k: usize) -> SVector<f64, N> {
     SVector::from_fn(|i, _| numbers[i * count + k])
 }
@@ -77,7 +77,7 @@ fn one_law<const N: usize>(k: usize, t: f64, q: &SVector<f64, N>, v: &SVector<f6
     law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x]))).map(|x| x.0[0])
 }
 
-/// Integrates one state after another with the integrators for single states.
+/// Integrates the states one after another with the integrators for single states, as a reference.
 fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, count: usize) {
     for k in 0..count {
         let (q, v) = (column::<6>(&states.q, count, k), column::<6>(&states.v, count, k));
@@ -102,16 +102,16 @@ fn a_rollout_is_that_of_the_integrator_state_by_state() {
             let mut expected = States::new(&Ur5, count);
             one_by_one(method, 50, &mut expected, count);
             let rollout = Rollout::new(method, 50).from_time(0.5);
-            let compare = |found: &States, what: &str| {
+            let compare_bits = |found: &States, what: &str| {
                 assert_eq!(bits(&found.q), bits(&expected.q), "{what}, {count} states");
                 assert_eq!(bits(&found.v), bits(&expected.v), "{what}, {count} states");
             };
             let mut four = States::new(&Ur5, count);
             Ur5.lanes::<4>().roll_out(&rollout, &mut four.q, &mut four.v, law, unwatched).expect("finite");
-            compare(&four, "four lanes");
+            compare_bits(&four, "four lanes");
             let mut eight = States::new(&Ur5, count);
             Ur5.lanes::<8>().roll_out(&rollout, &mut eight.q, &mut eight.v, law, unwatched).expect("finite");
-            compare(&eight, "eight lanes");
+            compare_bits(&eight, "eight lanes");
         }
     }
     check(Rk4::step(2e-3));
@@ -127,14 +127,16 @@ fn threads_change_nothing() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let mut states = States::new(&Ur5, count);
         let seen = AtomicUsize::new(0);
-        let watch = |progress: Progress| {
+        let record_progress = |progress: Progress| {
             assert_eq!(progress.count, count);
             seen.fetch_max(progress.done, Ordering::Relaxed);
             ControlFlow::Continue(())
         };
         let lanes = Ur5.lanes::<4>();
-        pool.install(|| lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, watch))
-            .expect("finite");
+        pool.install(|| {
+            lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, record_progress)
+        })
+        .expect("finite");
         assert_eq!(bits(&states.q), bits(&expected.q), "{threads} threads");
         assert_eq!(bits(&states.v), bits(&expected.v), "{threads} threads");
         assert_eq!(seen.into_inner(), count);
@@ -146,17 +148,17 @@ fn a_free_rollout_keeps_its_energy() {
     let count = 20;
     let lanes = Solo12.lanes::<8>();
     let mut states = States::new(&Solo12, count);
-    let energies = |states: &States| {
+    let energies_of_states = |states: &States| {
         let (mut kinetic, mut potential) = (vec![0.0; count], vec![0.0; count]);
         lanes.kinetic_energy_all(0.0, &states.q, &states.v, &mut kinetic).expect("lengths");
         lanes.potential_energy_all(0.0, &states.q, &mut potential).expect("lengths");
         kinetic.iter().zip(&potential).map(|(t, u)| t + u).collect::<Vec<f64>>()
     };
-    let before = energies(&states);
+    let before = energies_of_states(&states);
     let rollout = Rollout::new(Rk4::step(1e-3), 250);
-    let none = |_, _, _: &_, _: &_| SVector::zeros();
-    lanes.roll_out(&rollout, &mut states.q, &mut states.v, none, unwatched).expect("finite");
-    for (k, (before, after)) in before.iter().zip(energies(&states)).enumerate() {
+    let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
+    lanes.roll_out(&rollout, &mut states.q, &mut states.v, zero_inputs, unwatched).expect("finite");
+    for (k, (before, after)) in before.iter().zip(energies_of_states(&states)).enumerate() {
         assert!(
             (after - before).abs() < 1e-9 * (1.0 + before.abs()),
             "state {k}: {before} J, then {after} J"
@@ -180,13 +182,15 @@ fn arrays_of_states_are_evaluated_state_by_state() {
         lanes.mass_matrix_all(0.0, &states.q, &mut mass).expect("lengths");
         // The reference uses one lane, since the function of a single state evaluates identical limbs in
         // lanes.
-        let one = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
+        let single_lane = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
         for k in 0..count {
-            let (q, v) =
-                (&column::<19>(&states.q, count, k).map(|q| Lanes([q])), &one(column(&states.v, count, k)));
-            let expected = Solo12.inverse_dynamics_lanes(q, v, &one(column(&a, count, k)));
-            assert_eq!(one(column(&tau, count, k)), expected);
-            assert_eq!(one(column(&back, count, k)), Solo12.forward_dynamics_lanes(q, v, &expected));
+            let (q, v) = (
+                &column::<19>(&states.q, count, k).map(|q| Lanes([q])),
+                &single_lane(column(&states.v, count, k)),
+            );
+            let expected = Solo12.inverse_dynamics_lanes(q, v, &single_lane(column(&a, count, k)));
+            assert_eq!(single_lane(column(&tau, count, k)), expected);
+            assert_eq!(single_lane(column(&back, count, k)), Solo12.forward_dynamics_lanes(q, v, &expected));
             let m = Solo12.mass_matrix_lanes::<1>(q).map(|m| m[0]);
             assert_eq!(column::<324>(&mass, count, k).as_slice(), m.as_slice());
         }
@@ -197,17 +201,17 @@ fn arrays_of_states_are_evaluated_state_by_state() {
 fn a_state_that_fails_leaves_the_others_alone() {
     let count = 11;
     let rollout = Rollout::new(Rk4::step(1e-2), 60);
-    let none = |_, _, _: &_, _: &_| SVector::zeros();
+    let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
     let mut q: Vec<f64> = (0..2 * count).map(|k| if k < count { 5.0 + k as f64 } else { 0.1 }).collect();
     let (start, mut v) = (q.clone(), vec![0.0; 2 * count]);
     let lanes = Trap.lanes::<4>();
     let (mut good, mut good_v) = (q.clone(), v.clone());
-    lanes.roll_out(&rollout, &mut good, &mut good_v, none, unwatched).expect("far from the magnet");
+    lanes.roll_out(&rollout, &mut good, &mut good_v, zero_inputs, unwatched).expect("far from the magnet");
     // These two states start at the magnet.
     for k in [2, 9] {
         q[k] = 0.0;
     }
-    let error = lanes.roll_out(&rollout, &mut q, &mut v, none, unwatched);
+    let error = lanes.roll_out(&rollout, &mut q, &mut v, zero_inputs, unwatched);
     let source = integrate::Error::NotFinite { t: 0.0 };
     assert_eq!(error, Err(Error::Motion { state: 2, count: 2, source }));
     for k in 0..count {
@@ -216,7 +220,7 @@ fn a_state_that_fails_leaves_the_others_alone() {
         assert_eq!(column::<2>(&q, count, k), expected, "state {k}");
     }
     let mut all_lost = vec![0.0; 2 * count];
-    let error = lanes.roll_out(&rollout, &mut all_lost, &mut vec![0.0; 2 * count], none, unwatched);
+    let error = lanes.roll_out(&rollout, &mut all_lost, &mut vec![0.0; 2 * count], zero_inputs, unwatched);
     assert_eq!(error, Err(Error::Motion { state: 0, count, source }));
 }
 
@@ -247,18 +251,20 @@ fn a_rollout_can_be_cancelled() {
     let (start, mut all) = (States::new(&Ur5, count), States::new(&Ur5, count));
     let lanes = Ur5.lanes::<8>();
     lanes.roll_out(&rollout, &mut all.q, &mut all.v, law, unwatched).expect("finite");
-    let watch = |p: Progress| if p.done < 16 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    let cancel_after_sixteen =
+        |p: Progress| if p.done < 16 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     let mut states = States::new(&Ur5, count);
-    let error = lanes.roll_out(&rollout, &mut states.q, &mut states.v, law, watch);
+    let error = lanes.roll_out(&rollout, &mut states.q, &mut states.v, law, cancel_after_sixteen);
     assert_eq!(error, Err(Error::Cancelled { done: 16 }));
     for k in 0..count {
         let expected = if k < 16 { &all.q } else { &start.q };
         assert_eq!(column::<6>(&states.q, count, k), column::<6>(expected, count, k), "state {k}");
     }
     let mut states = States::new(&Ur5, count);
-    let error = lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, watch);
+    let error = lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, cancel_after_sixteen);
     let Err(Error::Cancelled { done }) = error else { panic!("{error:?}") };
-    let is = |k: usize, of: &States| column::<6>(&states.q, count, k) == column::<6>(&of.q, count, k);
-    assert_eq!((0..count).filter(|k| is(*k, &all)).count(), done);
-    assert!((0..count).all(|k| is(k, &all) || is(k, &start)));
+    let has_same_configuration =
+        |k: usize, of: &States| column::<6>(&states.q, count, k) == column::<6>(&of.q, count, k);
+    assert_eq!((0..count).filter(|k| has_same_configuration(*k, &all)).count(), done);
+    assert!((0..count).all(|k| has_same_configuration(k, &all) || has_same_configuration(k, &start)));
 }

@@ -51,8 +51,9 @@ fn the_same_tree_of_nested_frames() {
             ["base", "upper", "plate", "carriage", "wheel", "hand::palm", "hand::tip::pad", "deck", "socket"]
         {
             let twin = link.rsplit("::").next().unwrap_or(link);
-            let index = |names: &[&str], name: &str| names.iter().position(|known| *known == name).unwrap();
-            let (a, b) = (all[index(&Sdf::FRAMES, link)], twins[index(&Urdf::FRAMES, twin)]);
+            let index_of_name =
+                |names: &[&str], name: &str| names.iter().position(|known| *known == name).unwrap();
+            let (a, b) = (all[index_of_name(&Sdf::FRAMES, link)], twins[index_of_name(&Urdf::FRAMES, twin)]);
             assert_close(link, a.to_homogeneous().as_slice(), b.to_homogeneous().as_slice(), TOLERANCE);
         }
     }

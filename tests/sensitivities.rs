@@ -7,7 +7,7 @@ use linkwork::{Derivatives, Sensitivities, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Tolerance against finite differences.
+/// Tolerance of derivatives against finite differences.
 const TOLERANCE: f64 = 1e-7;
 
 /// Arm whose lengths, masses, angles and elements are parameters.
@@ -239,12 +239,12 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP:
     for _ in 0..3 {
         let q = m.integrate(&m.neutral(), &random.vector(1.0));
         let (v, u, t) = (random.vector(1.5), random.vector(4.0), random.uniform(1.0));
-        let step = |m: &M| discrete::step(m, method, t, &q, &v, &u).expect("it moves");
-        let end = step(&m);
+        let step_mechanism = |m: &M| discrete::step(m, method, t, &q, &v, &u).expect("it moves");
+        let end = step_mechanism(&m);
         let (by_q, by_v) = discrete::by_parameters(&m, method, t, &q, &v, &u).expect("it moves");
-        let expected = slopes(m, parameters, |other| m.difference(&end.0, &step(other).0));
+        let expected = slopes(m, parameters, |other| m.difference(&end.0, &step_mechanism(other).0));
         assert_similar(&format!("{what}: ∂q/∂p"), by_q.as_slice(), expected.as_slice(), TOLERANCE);
-        let expected = slopes(m, parameters, |other| step(other).1);
+        let expected = slopes(m, parameters, |other| step_mechanism(other).1);
         assert_similar(&format!("{what}: ∂v/∂p"), by_v.as_slice(), expected.as_slice(), TOLERANCE);
     }
 }

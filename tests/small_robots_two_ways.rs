@@ -49,7 +49,7 @@ struct DoublePendulum {
     motor2: Torque,
 }
 
-/// UR5 arm, with the right angles rounded as in its file.
+/// UR5 arm in the struct language, with right angles rounded as in its URDF file.
 #[mechanism(gravity = -9.81 * z)]
 struct Ur5 {
     #[body(mass = 4, inertia = [[0.00443333156, 0, 0], [0, 0.00443333156, 0], [0, 0, 0.0072]])]
@@ -120,29 +120,45 @@ macro_rules! assert_same_kinematics {
     ($written:ident, $read:ident, $last:literal) => {
         let (written, read) = ($written {}, $read);
         let (last, last_read) = (frame!($written, $last), frame!($read, $last));
-        let same = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, TOLERANCE);
+        let assert_same_values = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, TOLERANCE);
         let mut random = Random::new(2);
         for _ in 0..10 {
             let q = random.configuration(&written);
             let (v, a, u) = (random.vector(2.0), random.vector(2.0), random.vector(2.0));
             let forces = written.generalized_forces(&q, &u);
-            same("inputs", forces.as_slice(), read.generalized_forces(&q, &u).as_slice());
-            same("total mass", &[written.total_mass()], &[read.total_mass()]);
-            same("centre of mass", written.center_of_mass(&q).as_slice(), read.center_of_mass(&q).as_slice());
-            same("momentum", written.momentum(&q, &v).as_slice(), read.momentum(&q, &v).as_slice());
+            assert_same_values("inputs", forces.as_slice(), read.generalized_forces(&q, &u).as_slice());
+            assert_same_values("total mass", &[written.total_mass()], &[read.total_mass()]);
+            assert_same_values(
+                "centre of mass",
+                written.center_of_mass(&q).as_slice(),
+                read.center_of_mass(&q).as_slice(),
+            );
+            assert_same_values(
+                "momentum",
+                written.momentum(&q, &v).as_slice(),
+                read.momentum(&q, &v).as_slice(),
+            );
 
             for (name, placement) in $written::FRAMES.iter().zip(written.frame_placements(&q)) {
                 let k = $read::FRAMES.iter().position(|frame| frame == name).expect("the same names");
                 let expected = read.frame_placements(&q)[k].to_homogeneous();
-                same(name, placement.to_homogeneous().as_slice(), expected.as_slice());
+                assert_same_values(name, placement.to_homogeneous().as_slice(), expected.as_slice());
             }
             let velocity = written.frame_velocity(last, &q, &v);
-            same("velocity", velocity.as_slice(), read.frame_velocity(last_read, &q, &v).as_slice());
+            assert_same_values(
+                "velocity",
+                velocity.as_slice(),
+                read.frame_velocity(last_read, &q, &v).as_slice(),
+            );
             let acceleration = written.frame_acceleration(last, &q, &v, &a);
             let expected = read.frame_acceleration(last_read, &q, &v, &a);
-            same("acceleration", acceleration.as_slice(), expected.as_slice());
+            assert_same_values("acceleration", acceleration.as_slice(), expected.as_slice());
             let jacobian = written.frame_jacobian(last, &q);
-            same("Jacobian", jacobian.as_slice(), read.frame_jacobian(last_read, &q).as_slice());
+            assert_same_values(
+                "Jacobian",
+                jacobian.as_slice(),
+                read.frame_jacobian(last_read, &q).as_slice(),
+            );
         }
     };
 }

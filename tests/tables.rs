@@ -6,7 +6,7 @@ use linkwork::{Lanes, Real, Table, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Tolerance between a table and the formula of its values.
+/// Tolerance between an interpolated table and the formula from which its values were computed.
 const FORMULA: f64 = 1e-10;
 /// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
@@ -101,7 +101,7 @@ struct State {
 
 fn states() -> Vec<State> {
     let mut random = Random::new(5);
-    let one = |k: usize| {
+    let random_state = |k: usize| {
         let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
         let r: SVector<f64, 3> = random.vector(100.0);
         let mut v: SVector<f64, 6> = random.vector(1.0);
@@ -110,7 +110,7 @@ fn states() -> Vec<State> {
         let q = SVector::from_column_slice(&[r[0], r[1], -1000.0 - r[2], turn[0], turn[1], turn[2], turn[3]]);
         State { q, v, u: random.vector(1.0) }
     };
-    (0..4).map(one).collect()
+    (0..4).map(random_state).collect()
 }
 
 #[test]
@@ -137,33 +137,34 @@ fn a_table_of_a_parabola_is_the_parabola_in_every_function() {
 fn tables_agree_with_differences_of_high_order() {
     let (lift, drag, thrust) = tables();
     for linear in [true, false] {
-        let shape = |smooth: bool| {
+        let aircraft_with_tables = |smooth: bool| {
             if smooth {
                 tabulated(900.0, 16.0)
             } else {
                 Tabulated { mass: 900.0, area: 16.0, lift: lift.extrapolated(), drag, thrust }
             }
         };
-        let aircraft = shape(!linear);
+        let aircraft = aircraft_with_tables(!linear);
         for State { q, v, u } in states() {
             let (state, input) = aircraft.linearize(&q, &v, &u);
             let zero = SVector::<f64, 6>::zeros();
-            let change = |dq: &SVector<f64, 6>, dv: &SVector<f64, 6>, du: &SVector<f64, 2>| {
-                let (q, v, u) = (aircraft.integrate(&q, dq), v + dv, u + du);
-                aircraft.forward_dynamics(&q, &v, &aircraft.generalized_forces(&q, &v, &u))
-            };
+            let acceleration_at_change =
+                |dq: &SVector<f64, 6>, dv: &SVector<f64, 6>, du: &SVector<f64, 2>| {
+                    let (q, v, u) = (aircraft.integrate(&q, dq), v + dv, u + du);
+                    aircraft.forward_dynamics(&q, &v, &aircraft.generalized_forces(&q, &v, &u))
+                };
             for k in 0..6 {
                 let unit = SVector::<f64, 6>::from_fn(|i, _| f64::from(u8::from(i == k)));
                 let none = SVector::<f64, 2>::zeros();
-                let by_q = slope(|s| change(&(unit * s), &zero, &none));
-                let by_v = slope(|s| change(&zero, &(unit * s), &none));
-                let rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
-                assert_similar("by q", rows(k).as_slice(), by_q.as_slice(), DIFFERENCE);
-                assert_similar("by v", rows(6 + k).as_slice(), by_v.as_slice(), DIFFERENCE);
+                let by_q = slope(|s| acceleration_at_change(&(unit * s), &zero, &none));
+                let by_v = slope(|s| acceleration_at_change(&zero, &(unit * s), &none));
+                let acceleration_rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
+                assert_similar("by q", acceleration_rows(k).as_slice(), by_q.as_slice(), DIFFERENCE);
+                assert_similar("by v", acceleration_rows(6 + k).as_slice(), by_v.as_slice(), DIFFERENCE);
             }
             for k in 0..2 {
                 let unit = SVector::<f64, 2>::from_fn(|i, _| f64::from(u8::from(i == k)));
-                let by_u = slope(|s| change(&zero, &zero, &(unit * s)));
+                let by_u = slope(|s| acceleration_at_change(&zero, &zero, &(unit * s)));
                 let column = input.fixed_view::<6, 1>(6, k).into_owned();
                 assert_similar("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
             }
@@ -188,10 +189,10 @@ fn several_states_at_once_look_up_each_for_itself() {
     let aircraft = tabulated(900.0, 16.0);
     let wide = tabulated(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
     let states = states();
-    let lanes = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
-    let q = SVector::<_, 7>::from_fn(|i, _| lanes(&|s| s.q[i]));
-    let v = SVector::<_, 6>::from_fn(|i, _| lanes(&|s| s.v[i]));
-    let u = SVector::<_, 2>::from_fn(|i, _| lanes(&|s| s.u[i]));
+    let lanes_of_states = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
+    let q = SVector::<_, 7>::from_fn(|i, _| lanes_of_states(&|s| s.q[i]));
+    let v = SVector::<_, 6>::from_fn(|i, _| lanes_of_states(&|s| s.v[i]));
+    let u = SVector::<_, 2>::from_fn(|i, _| lanes_of_states(&|s| s.u[i]));
     let (all, batched) = (wide.generalized_forces(&q, &v, &u), aircraft.generalized_forces_lanes(&q, &v, &u));
     for (lane, state) in states.iter().enumerate() {
         let one = aircraft.generalized_forces(&state.q, &state.v, &state.u);
@@ -241,8 +242,7 @@ fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
     assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
 }
 
-/// Fan with a table of torque over speed. The fixed speed ratio is a number in one use and a parameter in the
-/// other.
+/// Fan whose drive torque and output come from a table of torque over speed, looked up at constant arguments.
 #[mechanism(derivatives, prepare, batch, sensitivities)]
 struct Fan {
     torque: Table<1>,

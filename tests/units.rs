@@ -22,7 +22,8 @@ pub fn units(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
     model.map(|model| model.units).ok_or_else(|| cx.messages())
 }
 
-/// Returns the source of a mechanism with a body on a sleeve and one on a pin, and these additional fields.
+/// Returns the source of a mechanism with a body on a sleeve and one on a pin, and with the additional fields
+/// `more`.
 fn machine(more: &str) -> String {
     format!(
         "struct Machine {{ {more}
@@ -48,7 +49,7 @@ fn check(fields: &str, expected: &[&str]) {
     }
 }
 
-/// Returns the note of a line of a message, if it has one.
+/// Returns the text of a line of a compiler message if the line is a note.
 fn note(line: &str) -> Option<&str> {
     line.strip_prefix("= note: ")
 }
@@ -286,26 +287,26 @@ fn units_are_told_with_what_holds_the_mechanism() {
 fn like_is_added_to_like() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
-    let both = |first: &'static str| [first, sites[0], sites[1]];
+    let message_with_sites = |first: &'static str| [first, sites[0], sites[1]];
     refuse(
         &format!("{known} #[energy(3.5 * (a + b))] e: Potential,"),
-        &both("a length (m) cannot be added to a mass (kg)"),
+        &message_with_sites("a length (m) cannot be added to a mass (kg)"),
     );
     refuse(
         &format!("{known} #[energy(3.5 * (a - b))] e: Potential,"),
-        &both("a length (m) cannot be subtracted from a mass (kg)"),
+        &message_with_sites("a length (m) cannot be subtracted from a mass (kg)"),
     );
     refuse(
         &format!("{known} #[energy(3.5 * max(a, b))] e: Potential,"),
-        &both("`max` cannot compare a mass (kg) with a length (m)"),
+        &message_with_sites("`max` cannot compare a mass (kg) with a length (m)"),
     );
     refuse(
         &format!("{known} #[energy(3.5 * norm([a, 0, b]))] e: Potential,"),
-        &both("this component is a length (m), but another is a mass (kg)"),
+        &message_with_sites("this component is a length (m), but another is a mass (kg)"),
     );
     refuse(
         &format!("{known} #[energy(3.5 * atan2(a, b))] e: Potential,"),
-        &both("`atan2` cannot compare a mass (kg) with a length (m)"),
+        &message_with_sites("`atan2` cannot compare a mass (kg) with a length (m)"),
     );
     refuse(
         "#[energy(a * rail + a * hinge)] e: Potential,",
@@ -357,38 +358,42 @@ fn what_moves_is_added_to_like() {
 /// is.
 #[test]
 fn the_number_of_gravity_is_an_acceleration() {
-    let hovering = |gravity: &str, number: &str| {
+    let is_valid_hover_force = |gravity: &str, number: &str| {
         let item = machine(&format!(
             "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
             #[acts(on = load, value = {number} * m * y)] lift: Force,"
         ));
         units(gravity, &item).is_ok()
     };
-    assert!(hovering("gravity = -9.81 * y", "9.81") && hovering("gravity = [0, -9.8, 0]", "9.8"));
-    assert!(!hovering("gravity = -9.81 * y", "9.8") && !hovering("", "9.81"));
+    assert!(
+        is_valid_hover_force("gravity = -9.81 * y", "9.81")
+            && is_valid_hover_force("gravity = [0, -9.8, 0]", "9.8")
+    );
+    assert!(!is_valid_hover_force("gravity = -9.81 * y", "9.8") && !is_valid_hover_force("", "9.81"));
 }
 
 /// A number that multiplies a parameter is dimensionless, for every value.
 #[test]
 fn numbers_beside_parameters_are_plain() {
     for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {
-        let mass = |value: &str| {
+        let body_with_mass = |value: &str| {
             format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
         };
         for value in [format!("rho * {number}"), format!("{number} * rho"), format!("rho / ({number})")] {
-            let messages = of_machine(&mass(&value)).unwrap_err();
+            let messages = of_machine(&body_with_mass(&value)).unwrap_err();
             assert!(
                 messages[0].starts_with("`rho` is declared as a quantity in kg/m, but used as a mass (kg)")
             );
             assert!(messages[0].contains("`#[define(9.81)] g: Scalar`"), "{messages:?}");
         }
-        of_machine(&format!("{} #[define({number})] length: Scalar,", mass("rho * length"))).unwrap();
+        of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
+            .unwrap();
     }
 }
 
 #[test]
 fn attributes_pin_units_down() {
-    let unit = |written: &str| {
+    let unit_of_attribute = |written: &str| {
         let units = of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
     };
@@ -401,18 +406,18 @@ fn attributes_pin_units_down() {
         ("rad / s", "rad/s"),
         ("1", "1"),
     ] {
-        assert_eq!(unit(written).as_deref(), Ok(shown));
+        assert_eq!(unit_of_attribute(written).as_deref(), Ok(shown));
     }
-    let message = |written: &str| unit(written).unwrap_err().join("; ");
-    assert!(message("mm").contains(
+    let error_message_of_unit = |written: &str| unit_of_attribute(written).unwrap_err().join("; ");
+    assert!(error_message_of_unit("mm").contains(
         "unknown unit `mm`\n\n= help: all quantities are in SI units, angles in radians: write `m`"
     ));
-    assert!(message("deg").contains("write `rad`"));
-    assert!(message("kq").contains("did you mean `kg`?"));
-    assert!(message("m99").contains("unknown unit `m99`"));
-    assert!(message("2 * kg").contains("expected a unit"));
-    assert!(message("kg +").contains("missing operand after this operator"));
-    assert!(message("").contains("missing unit"));
+    assert!(error_message_of_unit("deg").contains("write `rad`"));
+    assert!(error_message_of_unit("kq").contains("did you mean `kg`?"));
+    assert!(error_message_of_unit("m99").contains("unknown unit `m99`"));
+    assert!(error_message_of_unit("2 * kg").contains("expected a unit"));
+    assert!(error_message_of_unit("kg +").contains("missing operand after this operator"));
+    assert!(error_message_of_unit("").contains("missing unit"));
     refuse(
         "#[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar, #[body(mass = a)] w: Body, \
          #[joint(cart -> w)] j: Weld,",
@@ -504,9 +509,10 @@ fn constraints_and_multipliers_have_units() {
 fn large_structs_are_read_in_time() {
     let n = 800;
     let fields: String = (0..n).map(|k| format!("p{k}: f64, ")).collect();
-    let window = |k: usize| (k..k + 120).map(|j| format!("p{}", j % n)).collect::<Vec<_>>().join(" * ");
+    let product_of_parameters =
+        |k: usize| (k..k + 120).map(|j| format!("p{}", j % n)).collect::<Vec<_>>().join(" * ");
     let energies: String =
-        (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", window(k))).collect();
+        (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", product_of_parameters(k))).collect();
     let mut cx = Diagnostics::new();
     let source = read(
         "".parse().unwrap(),

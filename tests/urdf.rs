@@ -105,8 +105,8 @@ fn passive_forces_are_honoured() {
     }
 }
 
-/// With `c_follow = 0.2 − 0.5 b_turn`, the equations are those of the independent joints reduced by that
-/// relation.
+/// Checks a mimic joint with factor and offset, `c_follow = 0.2 − 0.5 b_turn`. The equations are those of
+/// independent joints reduced by that relation.
 #[test]
 fn follower_with_factor_and_offset() {
     #[mechanism(urdf = "data/urdf/everything.urdf", passive = ignore, gravity = x - 9 * z)]
@@ -229,16 +229,23 @@ fn rounded_frames_are_those_that_were_meant() {
 /// The documentation of the struct states the rounded numbers.
 #[test]
 fn rounded_numbers_are_documented() {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let arguments = |more: &str| tokens(&format!("urdf = \"../models/urdf/gen3.urdf\"{more}"));
-    let docs = linkwork_compiler::expand(arguments(", snap = 1e-4"), tokens("struct Robot;"), folder)
-        .tokens
-        .to_string();
+    let arguments_with_options =
+        |more: &str| parse_tokens(&format!("urdf = \"../models/urdf/gen3.urdf\"{more}"));
+    let docs = linkwork_compiler::expand(
+        arguments_with_options(", snap = 1e-4"),
+        parse_tokens("struct Robot;"),
+        folder,
+    )
+    .tokens
+    .to_string();
     assert!(
         docs.contains("Rounded numbers") && docs.contains("`Actuator1`: roll 3.1416 → 3.141592653589793")
     );
-    let docs = linkwork_compiler::expand(arguments(""), tokens("struct Robot;"), folder).tokens.to_string();
+    let docs = linkwork_compiler::expand(arguments_with_options(""), parse_tokens("struct Robot;"), folder)
+        .tokens
+        .to_string();
     assert!(!docs.contains("Rounded numbers"));
 }
 
@@ -277,7 +284,7 @@ fn kinematics_need_no_inertia() {
     assert_close("difference", Bare.difference(&q, &q).as_slice(), &[0.0; 5], TOLERANCE);
 }
 
-/// With `inertia = none`, the kinematics of a file with inertia do not change.
+/// Checks that with `inertia = none` the kinematics of a file with inertia do not change.
 #[test]
 fn kinematics_are_those_of_the_whole_robot() {
     #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
@@ -359,7 +366,7 @@ fn the_ground_may_be_a_link() {
     assert_eq!((Grounded.total_mass(), Grounded.mass_matrix(&q)[0]), (2.0, 2.0));
 }
 
-/// Two parallel cranks and a coupler, one of whose joints closes a loop.
+/// Parallelogram linkage of two parallel cranks and a coupler, whose loop is closed by one of its joints.
 #[mechanism(urdf = "data/urdf/parallelogram.urdf", loops = close)]
 struct Parallelogram;
 

@@ -5,7 +5,7 @@ use linkwork::{Fault, Lanes, ParameterError, Real, mechanism};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use std::path::Path;
 
-/// Defines a mechanism with parameters, and the text of its elements.
+/// Defines a mechanism with parameters, and a constant with the text of its elements.
 macro_rules! with_text {
     ($text:ident, $name:ident { $($parameter:ident: $value:literal,)* } { $($elements:tt)* }) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -72,7 +72,7 @@ with_text! { WHEELS, Wheels {
 
 /// Returns the tokens with parameters replaced by numbers.
 fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
-    let number = |token: TokenTree| match &token {
+    let replace_by_number = |token: TokenTree| match &token {
         TokenTree::Ident(name) => match values.iter().find(|(known, _)| name == known) {
             Some((_, value)) => format!("({value:e})").parse().unwrap(),
             None => TokenStream::from(token),
@@ -83,7 +83,7 @@ fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
         }
         _ => token.into(),
     };
-    tokens.into_iter().map(number).collect()
+    tokens.into_iter().map(replace_by_number).collect()
 }
 
 /// Returns the error messages of the compiler for the mechanism with these numbers.

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Routine {
     /// Number of instructions, without padding.
     pub instructions: usize,
-    /// Size of its own stack frame, bytes.
+    /// Size of the stack frame of the function itself, bytes.
     pub stack: usize,
     /// Linker names of the functions that it calls or jumps to.
     pub calls: BTreeSet<String>,
@@ -77,7 +77,7 @@ impl Reader {
         }
     }
 
-    /// Records that an address is copied from one register to another.
+    /// Records that an instruction copies the address of a function from one register to another.
     fn copy(&mut self, operands: &str) {
         if let Some((from, to)) = operands.split_once(", ")
             && let Some(function) = self.addresses.get(from)

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 /// Text of a mechanism as the attribute receives it.
 pub struct Source {
-    /// Arguments in the attribute's parentheses.
+    /// Arguments in the parentheses of `#[mechanism]`.
     pub arguments: String,
-    /// Text of the struct.
+    /// Text of the struct with its attributes.
     pub item: String,
 }
 

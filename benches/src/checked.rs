@@ -1,4 +1,4 @@
-//! Costs of rustc on generated code.
+//! Costs of compiling generated code with rustc: time and memory.
 
 use std::error::Error;
 use std::fs::{read_to_string, write};
@@ -19,7 +19,7 @@ pub struct Library {
     pub rlib: PathBuf,
 }
 
-/// Cost of a run of rustc.
+/// Cost of one run of rustc: time and memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// Processor time of the run.

@@ -13,7 +13,7 @@ pub use urdf::Options;
 
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
 
-/// Motion of a link relative to its parent.
+/// Motion that a joint allows for a link relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// Rotation about an axis.
@@ -91,11 +91,11 @@ pub struct Link {
     pub placement: Placement,
     /// Motion of the link in the joint's frame.
     pub motion: Motion,
-    /// Index of the first entry of `q`.
+    /// Index in `q` of the link's first coordinate.
     pub q: usize,
-    /// Index of the first entry of `v`.
+    /// Index in `v` of the link's first velocity.
     pub v: usize,
-    /// Inertia about the link's origin.
+    /// Inertia of the link about its origin.
     pub inertia: Inertia,
 }
 
@@ -106,7 +106,7 @@ pub struct Frame {
     pub name: String,
     /// Index of the link; `None` for the ground.
     pub link: Option<usize>,
-    /// Placement in the link.
+    /// Placement of the frame in its link.
     pub placement: Placement,
 }
 
@@ -125,7 +125,7 @@ pub struct Model {
     pub nv: usize,
 }
 
-/// Intermediate results of one link.
+/// Intermediate results of the recursive algorithms for one link.
 #[derive(Clone, Debug)]
 struct LinkData {
     placement: Placement,
@@ -152,7 +152,7 @@ impl Model {
 
     /// Allocates the intermediate results.
     pub fn data(&self) -> Data {
-        let of_link = |link: &Link| LinkData {
+        let initial_link_data = |link: &Link| LinkData {
             placement: link.placement,
             twist: Spatial::zero(),
             acceleration: Spatial::zero(),
@@ -163,7 +163,7 @@ impl Model {
             inverse: 0.0,
             force: 0.0,
         };
-        Data(self.links.iter().map(of_link).collect())
+        Data(self.links.iter().map(initial_link_data).collect())
     }
 
     fn place(&self, data: &mut Data, q: &[f64]) {

@@ -31,7 +31,7 @@ impl Size {
     }
 }
 
-/// Output of the compiler for a mechanism.
+/// Output of the compiler for a mechanism, whose operations are counted.
 pub struct Operations {
     output: Output,
     /// Number of nodes of the expression graph.
@@ -44,11 +44,11 @@ impl Operations {
     /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if the mechanism
     /// has an error.
     pub fn compile(arguments: &str, item: &str) -> Operations {
-        let tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
+        let parse_tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
         let cx = &mut Diagnostics::new();
         let graph = Graph::new();
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let found = read(tokens(arguments), tokens(item), folder, cx);
+        let found = read(parse_tokens(arguments), parse_tokens(item), folder, cx);
         let found = found.and_then(|source| compile(&source, &graph, cx));
         let Some((model, output)) = found else {
             panic!("{}", cx.messages().join("\n"));

@@ -12,19 +12,19 @@ use std::rc::Rc;
 
 /// Function of a robot in both implementations. The closures take the index of a state.
 pub struct Pair {
-    /// Name of the function.
+    /// Name of the measured function.
     pub function: &'static str,
-    /// Runs the generated code.
+    /// Closure that runs the generated code for a state.
     pub generated: Box<dyn FnMut(usize)>,
-    /// Runs the generic implementation.
+    /// Closure that runs the generic implementation for a state.
     pub generic: Box<dyn FnMut(usize)>,
-    /// Returns the largest difference of both results, relative to one plus their magnitude.
+    /// Closure that returns the largest difference of both results, relative to one plus their magnitude.
     pub difference: Box<dyn FnMut(usize) -> f64>,
     /// Numbers of operations of the generated code.
     pub size: Size,
 }
 
-/// Robot with its functions.
+/// Robot with its functions in both implementations.
 pub struct Robot {
     /// Name of the robot.
     pub name: &'static str,
@@ -32,7 +32,7 @@ pub struct Robot {
     pub pairs: Vec<Pair>,
 }
 
-/// Returns all robots.
+/// Returns all robots of the comparison of generated and generic code.
 pub fn robots() -> Vec<Robot> {
     macro_rules! robot {
         ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
@@ -66,19 +66,19 @@ pub fn robots() -> Vec<Robot> {
     ]
 }
 
-/// Source of a robot for both implementations.
+/// Source text of a robot for both implementations.
 struct Source {
     name: &'static str,
     /// Text of the file, and the options with which the generic implementation reads it.
     text: &'static str,
     options: Options<'static>,
-    /// Arguments of the attribute.
+    /// Arguments of the attribute `#[mechanism]`.
     arguments: &'static str,
-    /// Name of the frame of the Jacobian.
+    /// Name of the frame whose Jacobian is measured.
     frame: &'static str,
 }
 
-/// Generic model with the storage for its results.
+/// Generic model with storage for the results of its algorithms.
 struct Generic {
     model: Rc<Model>,
     data: Data,
@@ -172,7 +172,7 @@ where
     Robot { name: source.name, pairs }
 }
 
-/// Model with its states.
+/// Generic model with the states at which it is evaluated.
 struct Bench<const NQ: usize, const NV: usize> {
     model: Rc<Model>,
     frame: usize,

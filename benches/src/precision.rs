@@ -62,7 +62,7 @@ pub struct Pleiades {
 }
 
 impl Pleiades {
-    /// Initial configuration and velocity.
+    /// Initial configuration and velocity of Andrews' squeezer.
     pub const START: ([f64; 14], [f64; 14]) = (
         [3.0, 3.0, 3.0, -3.0, -1.0, 2.0, -3.0, 0.0, 2.0, 0.0, -2.0, -4.0, 2.0, 4.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.25, 0.0, 1.0, 1.75, 0.0, -1.5, 0.0],
@@ -91,7 +91,7 @@ pub struct StiffGovernor {
     air: Dashpot,
 }
 
-/// Mechanism that counts its evaluations.
+/// Mechanism that counts its evaluations by an integrator.
 struct Counted<'m, M> {
     mechanism: &'m M,
     evaluations: &'m Cell<usize>,
@@ -193,7 +193,7 @@ where
     }
 }
 
-/// Result of a method on a problem.
+/// Result of an integration method on a test problem.
 pub struct Found {
     /// Final configuration of the motion.
     pub q: Vec<f64>,
@@ -208,7 +208,7 @@ pub struct Found {
 /// Names of the problems, by index.
 pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "stiff governor"];
 
-/// Operation on a problem, generic over its type.
+/// Operation on a test problem, generic over the type of its mechanism.
 trait Visit {
     type Result;
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 /// Number of states that the calls cycle through.
 pub const STATES: usize = 256;
 
-/// Arguments of the functions.
+/// Arguments of the measured functions at one state.
 #[derive(Clone, Copy, Debug)]
 pub struct State<const NQ: usize, const NV: usize> {
     /// Configuration of the robot.
@@ -33,7 +33,7 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
         State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
     }
 
-    /// Returns all numbers, one after another.
+    /// Returns all numbers of the state: `q`, `v`, `a` and `τ`, concatenated.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         [self.q.as_slice(), self.v.as_slice(), self.a.as_slice(), self.tau.as_slice()].concat().into_iter()
     }

@@ -1,7 +1,7 @@
 //! Detection of a `#[derive(…)]` above the attribute: it has already seen the struct with its elements. The
 //! attribute cannot detect this from its tokens, so the source file is searched.
 
-/// Returns true if an attribute that begins at a line and column, counted from one, comes after a
+/// Returns true if an attribute, which begins at the given line and column (counted from one), comes after a
 /// `#[derive(…)]` of the same item.
 pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
     let lines: Vec<&str> = text.lines().take(line).collect();

@@ -155,12 +155,12 @@ impl Fourier {
 fn robot_as_it_is() -> Arm {
     let mut random = Random(7);
     let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    let other = |link: Inertial<f64>| {
+    let perturbed_inertial = |link: Inertial<f64>| {
         let off = [(); 3].map(|()| 0.04 * random.next());
         let at = [0, 1, 2].map(|k| link.com[k] + off[k]);
         link.scaled(0.9).plus(&Inertial::point(0.15 * link.mass, at))
     };
-    arm.set_inertials(&arm.inertials().map(other));
+    arm.set_inertials(&arm.inertials().map(perturbed_inertial));
     arm.panda_hand = arm.panda_hand.plus(&Inertial::point(1.2, [0.01, 0.02, 0.12]));
     arm.with_joints([
         [0.8, 0.7, 0.6, 0.5, 0.3, 0.25, 0.2].into(),
@@ -185,11 +185,11 @@ fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
 
 /// Returns the root mean square of the difference between two robots' torques on a trajectory, N·m.
 fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
-    let square = |k: usize| {
+    let squared_torque_difference = |k: usize| {
         let [q, v, a] = trajectory.evaluate(0.02 * k as f64);
         (one.inverse_dynamics(&q, &v, &a) - other.inverse_dynamics(&q, &v, &a)).norm_squared()
     };
-    ((0..500).map(square).sum::<f64>() / (500.0 * 7.0)).sqrt()
+    ((0..500).map(squared_torque_difference).sum::<f64>() / (500.0 * 7.0)).sqrt()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -215,9 +215,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Conversion: the parameters of the joints, then the bodies nearest to the file's that reproduce the
     // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
-    let part = |first: usize| Joints::from_fn(|j, _| found[first + j]);
+    let joint_values_from = |first: usize| Joints::from_fn(|j, _| found[first + j]);
     let rotors = Joints::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
-    arm = arm.with_joints([part(BASE), part(BASE + 7), rotors]);
+    arm = arm.with_joints([joint_values_from(BASE), joint_values_from(BASE + 7), rotors]);
     let base = found.fixed_rows::<BASE>(0).into_owned();
     approach(&mut arm, &base, 1e-6)?;
     arm.validate()?;

@@ -213,9 +213,12 @@ fn main() -> Result<(), Error> {
         "  t, s     x, m   y, m   z, m   off by, m   turned, rad   by, m/s   squared error by its spread"
     );
     let flights = [fly(1, 5.0, true)?, fly(2, 5.0, false)?, fly(3, 5.0, false)?];
-    let mean = |figure: fn(&Figures) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
-    let [position, tilt, speed] = [mean(|f| f.position), mean(|f| f.tilt), mean(|f| f.speed)].map(f64::sqrt);
-    let normalised = mean(|f| f.normalised);
+    let mean_over_flights =
+        |figure: fn(&Figures) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
+    let [position, tilt, speed] =
+        [mean_over_flights(|f| f.position), mean_over_flights(|f| f.tilt), mean_over_flights(|f| f.speed)]
+            .map(f64::sqrt);
+    let normalised = mean_over_flights(|f| f.normalised);
     println!(
         "\nof three flights: {position:.3} m, {tilt:.3} rad, {speed:.3} m/s; {normalised:.1} by the spread, \
          of 12"

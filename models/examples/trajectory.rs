@@ -132,8 +132,9 @@ fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
         // states that are not finite.
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
         let mut tried = lengths.filter_map(|length| best.followed(&policies, length).ok());
-        let enough = |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;
-        let Some(next) = tried.find(enough) else {
+        let has_sufficient_decrease =
+            |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;
+        let Some(next) = tried.find(has_sufficient_decrease) else {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
         };

@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         start.fixed_rows_mut::<3>(7 + 3 * leg).copy_from_slice(&POSTURE);
     }
     start[2] -= robot.contact_gaps(&start).min();
-    let slip = |q: &Configuration, v: &Velocity| {
+    let largest_slip_speed = |q: &Configuration, v: &Velocity| {
         let rates = robot.contact_rates(q, v);
         (0..4).map(|foot| rates.fixed_rows::<2>(3 * foot + 1).norm()).fold(0.0, f64::max)
     };
@@ -131,7 +131,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let moved = robot.difference(&start, &q);
         let off = robot.difference(&q, &led(&start, t)).fixed_rows::<6>(0).amax();
         let (_, forces) = control(&start, t, &q, &v);
-        let slip = slip(&q, &v);
+        let slip = largest_slip_speed(&q, &v);
         println!(
             "{t:6.2} {:10.2} {:9.2} {:11.1} {:9.3} {:10.2} {:11.1e}",
             1e3 * moved[1],

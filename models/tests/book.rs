@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const FOLDERS: [&str; 4] =
     ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/equations/tests"];
 
-/// The chapters, with those on flight and linear systems combined.
+/// Chapters of the textbook; those on flight and linear systems are combined.
 const CHAPTERS: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10–16"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -29,7 +29,7 @@ fn tests(text: &str) -> impl Iterator<Item = &str> {
     text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next())
 }
 
-/// Returns the texts between backticks.
+/// Returns the texts between backquotes in a table cell.
 fn quoted(cell: &str) -> impl Iterator<Item = &str> {
     cell.split('`').skip(1).step_by(2)
 }
@@ -42,7 +42,7 @@ fn sections_name_what_exists() {
     FOLDERS.iter().for_each(|folder| sources(&root.join(folder), &mut paths));
     let texts: Vec<String> = paths.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
     let functions: BTreeSet<&str> = texts.iter().flat_map(|text| tests(text)).collect();
-    let is_test = |name: &str| {
+    let is_test_name = |name: &str| {
         let file = if name.ends_with(".rs") { name.to_string() } else { format!("{name}.rs") };
         functions.contains(name) || paths.iter().any(|path| path.ends_with(&file))
     };
@@ -73,8 +73,11 @@ fn sections_name_what_exists() {
             mistakes.push(format!("{topic}: neither proved nor left out with a reason"));
         }
         for name in quoted(proof) {
-            let exists =
-                if proof.contains(&format!("[`{name}`]")) { exported.contains(name) } else { is_test(name) };
+            let exists = if proof.contains(&format!("[`{name}`]")) {
+                exported.contains(name)
+            } else {
+                is_test_name(name)
+            };
             if !exists {
                 mistakes.push(format!("{topic}: no `{name}`"));
             }

@@ -1,11 +1,11 @@
-//! Functions of mechanisms return values or errors for any input, also in builds with debug assertions and
-//! overflow checks: NaN, infinite, very large and very small numbers, and runs with such times.
+//! Checks that functions of mechanisms return values or errors for any input, also in builds with debug
+//! assertions and overflow checks: NaN, infinite, very large and very small numbers.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork_models::{FourBar, RollingDisk, Solo12};
 
-/// Pathological numbers.
+/// Pathological numbers that are passed to functions: NaN, infinities, very large and very small numbers.
 const HOSTILE: [f64; 12] = [
     f64::NAN,
     f64::INFINITY,
@@ -71,9 +71,13 @@ fn functions_take_any_figures() {
         let _ = machine.forward_dynamics_derivatives(&q, &v, &a);
         let _ = machine.linearize(&q, &v, &SVector::repeat(f64::MAX));
         let _ = machine.frame_placements(&q);
-        let wide = |x: f64| Lanes::<f64, 4>::splat(x);
-        let _ = machine.forward_dynamics_lanes(&q.map(wide), &v.map(wide), &a.map(wide));
-        let _ = machine.forward_dynamics_derivatives_lanes(&q.map(wide), &v.map(wide), &a.map(wide));
+        let splat_lanes = |x: f64| Lanes::<f64, 4>::splat(x);
+        let _ = machine.forward_dynamics_lanes(&q.map(splat_lanes), &v.map(splat_lanes), &a.map(splat_lanes));
+        let _ = machine.forward_dynamics_derivatives_lanes(
+            &q.map(splat_lanes),
+            &v.map(splat_lanes),
+            &a.map(splat_lanes),
+        );
     }
     for (q, v) in vectors().zip(vectors()) {
         let a = Solo12.forward_dynamics(&q, &v, &v);
@@ -105,11 +109,12 @@ fn runs_take_any_times() {
     let (q, v) = (machine.neutral(), SVector::repeat(0.1));
     for (x, y) in HOSTILE.into_iter().flat_map(|x| HOSTILE.map(|y| (x, y))) {
         // Only a few steps each, since some of these runs never end.
-        let run = || simulate(&machine).from(q, v);
-        let _ = run().start_at(x).duration(y).take(3).count();
-        let _ = run().duration(1e-3).sample_every(x).take(3).count();
-        let _ = run().method(Rk4::step(x)).duration(y).take(3).count();
-        let _ = run().method(ImplicitMidpoint::step(x)).duration(y).take(3).count();
-        let _ = run().method(DormandPrince::new().tolerance(x, y)).duration(1e-6).take(3).count();
+        let simulate_machine = || simulate(&machine).from(q, v);
+        let _ = simulate_machine().start_at(x).duration(y).take(3).count();
+        let _ = simulate_machine().duration(1e-3).sample_every(x).take(3).count();
+        let _ = simulate_machine().method(Rk4::step(x)).duration(y).take(3).count();
+        let _ = simulate_machine().method(ImplicitMidpoint::step(x)).duration(y).take(3).count();
+        let _ =
+            simulate_machine().method(DormandPrince::new().tolerance(x, y)).duration(1e-6).take(3).count();
     }
 }

@@ -16,7 +16,7 @@ pub fn close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
 }
 
-/// Checks that a mode has this eigenvalue, within a tolerance relative to its magnitude.
+/// Checks that a mode has the eigenvalue `re + i im`, within a tolerance relative to its magnitude.
 #[track_caller]
 pub fn is_at(mode: Option<&Mode>, re: f64, im: f64, relative: f64) {
     let pole = mode.expect("the mode is there").exponent;

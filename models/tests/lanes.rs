@@ -5,18 +5,18 @@ use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use std::thread;
 
-/// Quadruped with a free base.
+/// Quadruped Solo12 from its URDF file, with a free base.
 #[mechanism(urdf = "urdf/solo12.urdf", base = free, batch, derivatives)]
 struct Solo12;
 
-/// Stack of the thread, bytes.
+/// Stack size of the test thread, bytes.
 const STACK: usize = 128 << 10;
 
 type Q<T> = SVector<T, 19>;
 type V<T> = SVector<T, 18>;
 type Eight = Lanes<f64, 8>;
 
-/// Returns eight states, some steps away from the neutral one.
+/// Returns eight states of the quadruped in SIMD lanes, with configurations displaced from the neutral one.
 fn states() -> (Q<Eight>, V<Eight>) {
     let v = V::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
     let q = Solo12.neutral().map(Lanes::splat);
@@ -42,12 +42,12 @@ fn eight_states_are_those_of_one() {
 
 #[test]
 fn eight_states_fit_into_a_small_stack() {
-    let run = || {
+    let largest_lane_difference = || {
         let (q, v) = states();
         let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &V::zeros());
         let eight = Solo12.forward_dynamics_lanes(&q, &v, &V::zeros());
         (eight.map(|x| x.0[0]) - a).amax()
     };
-    let thread = thread::Builder::new().stack_size(STACK).spawn(run).expect("a thread");
+    let thread = thread::Builder::new().stack_size(STACK).spawn(largest_lane_difference).expect("a thread");
     assert_eq!(thread.join().expect("it ends"), 0.0);
 }

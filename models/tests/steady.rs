@@ -34,12 +34,12 @@ fn a_disk_rolls_in_a_circle() {
 #[test]
 fn a_bicycle_turns() {
     let bicycle = Bicycle::BENCHMARK;
-    let straight = |speed: f64| {
+    let straight_rolling_velocity = |speed: f64| {
         let mut v = SVector::<f64, 9>::zeros();
         (v[0], v[6], v[8]) = (speed, -speed / bicycle.rear_radius, -speed / bicycle.front_radius);
         v
     };
-    let steered = |steer: f64| {
+    let steered_configuration = |steer: f64| {
         let mut q = bicycle.neutral();
         q[8] = steer;
         q
@@ -54,8 +54,8 @@ fn a_bicycle_turns() {
     );
     for speed in [2.0, 4.6, 9.0] {
         let problem = constrained_equilibrium(&bicycle)
-            .from(steered(steer))
-            .moving(straight(speed))
+            .from(steered_configuration(steer))
+            .moving(straight_rolling_velocity(speed))
             .coordinates(places)
             .hold(["steer"])
             .speeds(speeds.clone())
@@ -69,8 +69,8 @@ fn a_bicycle_turns() {
         assert!((found.holding[0].1 - torque).abs() < 1e-6 * torque.abs(), "{:?} {torque}", found.holding);
     }
     let circle = constrained_equilibrium(&bicycle)
-        .from(steered(steer))
-        .moving(straight(5.5))
+        .from(steered_configuration(steer))
+        .moving(straight_rolling_velocity(5.5))
         .coordinates(places)
         .speeds(speeds)
         .speeds(["hub", "front_hub"]);
@@ -155,9 +155,13 @@ fn a_bicycle_has_the_published_matrices() {
         let system = form.state_space().unwrap();
         let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
         let lateral = ["pose.wx", "steer"].map(|name| names.iter().position(|n| *n == name).expect(name));
-        let part = |m: &DMatrix<f64>| m.select_rows(&lateral).select_columns(&lateral);
-        same(&part(&form.mass), &mass, 1e-12);
-        same(&part(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
-        same(&part(&(&form.stiffness + &form.circulatory)), &(&k0 * 9.81 + &k2 * (speed * speed)), 1e-11);
+        let lateral_block = |m: &DMatrix<f64>| m.select_rows(&lateral).select_columns(&lateral);
+        same(&lateral_block(&form.mass), &mass, 1e-12);
+        same(&lateral_block(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
+        same(
+            &lateral_block(&(&form.stiffness + &form.circulatory)),
+            &(&k0 * 9.81 + &k2 * (speed * speed)),
+            1e-11,
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Embeds the sources of the gallery: declarations, and the robot files that they name.
+//! Build script that embeds the sources of the model gallery: declarations, and the robot files that they
+//! name.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};

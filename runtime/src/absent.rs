@@ -5,7 +5,8 @@
 //! The lifetime parameter makes rustc accept a bound that names no other parameter; without it the
 //! declaration itself would be rejected.
 
-/// Mechanism with the option `derivatives`.
+/// Trait bound, never satisfied, of functions that need the option `derivatives`: a call is an error that
+/// names the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `derivatives`",
     label = "this needs the option `derivatives`",
@@ -13,7 +14,8 @@
 )]
 pub trait AsksForDerivatives<'a> {}
 
-/// Mechanism with the option `second_derivatives`.
+/// Trait bound, never satisfied, of functions that need the option `second_derivatives`: a call is an error
+/// that names the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `second_derivatives`",
     label = "this needs the option `second_derivatives`",
@@ -21,7 +23,8 @@ pub trait AsksForDerivatives<'a> {}
 )]
 pub trait AsksForSecondDerivatives<'a> {}
 
-/// Mechanism with the option `momentum_derivatives`.
+/// Trait bound, never satisfied, of functions that need the option `momentum_derivatives`: a call is an error
+/// that names the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `momentum_derivatives`",
     label = "this needs the option `momentum_derivatives`",
@@ -29,7 +32,8 @@ pub trait AsksForSecondDerivatives<'a> {}
 )]
 pub trait AsksForMomentumDerivatives<'a> {}
 
-/// Mechanism with the option `centroidal`.
+/// Trait bound, never satisfied, of functions that need the option `centroidal`: a call is an error that
+/// names the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `centroidal`",
     label = "this needs the option `centroidal`",
@@ -37,7 +41,8 @@ pub trait AsksForMomentumDerivatives<'a> {}
 )]
 pub trait AsksForCentroidal<'a> {}
 
-/// Mechanism with the option `hamilton`.
+/// Trait bound, never satisfied, of functions that need the option `hamilton`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `hamilton`",
     label = "this needs the option `hamilton`",
@@ -45,7 +50,8 @@ pub trait AsksForCentroidal<'a> {}
 )]
 pub trait AsksForHamilton<'a> {}
 
-/// Mechanism with the option `routh`.
+/// Trait bound, never satisfied, of functions that need the option `routh`: a call is an error that names the
+/// missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `routh`",
     label = "this needs the option `routh`",
@@ -54,7 +60,8 @@ pub trait AsksForHamilton<'a> {}
 )]
 pub trait AsksForRouth<'a> {}
 
-/// Mechanism with the option `conserved`.
+/// Trait bound, never satisfied, of functions that need the option `conserved`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `conserved`",
     label = "this needs the option `conserved`",
@@ -62,7 +69,8 @@ pub trait AsksForRouth<'a> {}
 )]
 pub trait AsksForConserved<'a> {}
 
-/// Mechanism with the option `regressor`.
+/// Trait bound, never satisfied, of functions that need the option `regressor`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `regressor`",
     label = "this needs the option `regressor`",
@@ -70,7 +78,8 @@ pub trait AsksForConserved<'a> {}
 )]
 pub trait AsksForRegressor<'a> {}
 
-/// Mechanism with the option `sensitivities`.
+/// Trait bound, never satisfied, of functions that need the option `sensitivities`: a call is an error that
+/// names the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `sensitivities`",
     label = "this needs the option `sensitivities`",
@@ -79,7 +88,8 @@ pub trait AsksForRegressor<'a> {}
 )]
 pub trait AsksForSensitivities<'a> {}
 
-/// Mechanism with the option `packed`.
+/// Trait bound, never satisfied, of functions that need the option `packed`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `packed`",
     label = "this needs the option `packed`",
@@ -87,7 +97,8 @@ pub trait AsksForSensitivities<'a> {}
 )]
 pub trait AsksForPacked<'a> {}
 
-/// Mechanism with the option `prepare`.
+/// Trait bound, never satisfied, of functions that need the option `prepare`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `prepare`",
     label = "this needs the option `prepare`",
@@ -95,7 +106,8 @@ pub trait AsksForPacked<'a> {}
 )]
 pub trait AsksForPrepare<'a> {}
 
-/// Mechanism with the option `batch`.
+/// Trait bound, never satisfied, of functions that need the option `batch`: a call is an error that names the
+/// missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `batch`",
     label = "this needs the option `batch`",
@@ -103,7 +115,8 @@ pub trait AsksForPrepare<'a> {}
 )]
 pub trait AsksForBatch<'a> {}
 
-/// Mechanism with the option `drawing`.
+/// Trait bound, never satisfied, of functions that need the option `drawing`: a call is an error that names
+/// the missing option.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is compiled without `drawing`",
     label = "this needs the option `drawing`",
@@ -119,7 +132,7 @@ pub trait AsksForDrawing<'a> {}
 )]
 pub trait HasConstraints<'a> {}
 
-/// A mechanism with masses and inertias.
+/// Trait bound, never satisfied, of functions that need a mechanism with masses and inertias.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no inertia",
     label = "only mechanisms with inertia have this",
@@ -127,7 +140,7 @@ pub trait HasConstraints<'a> {}
 )]
 pub trait HasInertia<'a> {}
 
-/// A mechanism without constraints.
+/// Trait bound, never satisfied, of functions that need a mechanism without constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has constraints",
     label = "only mechanisms without constraints have this",
@@ -135,7 +148,7 @@ pub trait HasInertia<'a> {}
 )]
 pub trait HasNoConstraints<'a> {}
 
-/// Mechanism with sliding contacts.
+/// Trait bound, never satisfied, of functions that need a mechanism with sliding contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that slip",
     label = "only mechanisms with friction at contacts have this",
@@ -143,7 +156,7 @@ pub trait HasNoConstraints<'a> {}
 )]
 pub trait HasSlipping<'a> {}
 
-/// Mechanism without sliding contacts.
+/// Trait bound, never satisfied, of functions that need a mechanism without sliding contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has contacts that slip",
     label = "only mechanisms whose friction does not follow from multipliers have this",
@@ -151,7 +164,7 @@ pub trait HasSlipping<'a> {}
 )]
 pub trait HasNoSlipping<'a> {}
 
-/// Mechanism with unilateral contacts.
+/// Trait bound, never satisfied, of functions that need a mechanism with unilateral contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that open and close",
     label = "only mechanisms with contacts or stops have this",
@@ -160,7 +173,7 @@ pub trait HasNoSlipping<'a> {}
 )]
 pub trait HasContacts<'a> {}
 
-/// Mechanism with declared generalized speeds.
+/// Trait bound, never satisfied, of functions that need a mechanism with declared generalized speeds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no speeds of its own",
     label = "only mechanisms with declared speeds have this",
@@ -169,7 +182,8 @@ pub trait HasContacts<'a> {}
 )]
 pub trait HasSpeeds<'a> {}
 
-/// Mechanism whose velocities are those of its joints.
+/// Trait bound, never satisfied, of functions that need joint velocities, not declared generalized speeds, as
+/// the velocities of the mechanism.
 #[diagnostic::on_unimplemented(
     message = "velocities of `{Self}` are declared speeds, whose effect on a configuration depends on it",
     label = "this does not depend on the configuration",
@@ -196,7 +210,7 @@ pub trait HasRegularMass<'a> {}
 )]
 pub trait HasJacobian<'a> {}
 
-/// Mechanism with frames, unlike a prepared mechanism.
+/// Trait bound, never satisfied, of functions that need frames, which a prepared mechanism lacks.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no frames",
     label = "the mechanism that it was prepared from has them",
@@ -204,7 +218,7 @@ pub trait HasJacobian<'a> {}
 )]
 pub trait HasFrames<'a> {}
 
-/// A mechanism with parameters.
+/// Trait bound, never satisfied, of functions that need a mechanism with parameters.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no parameters",
     label = "only mechanisms with parameters have this",
@@ -237,7 +251,7 @@ pub trait HasFileParameters<'a> {}
 )]
 pub trait HasFileInertials<'a> {}
 
-/// A mechanism that declares equilibria.
+/// Trait bound, never satisfied, of functions that need a mechanism with declared equilibria.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` declares no equilibrium",
     label = "this needs a declared equilibrium",

@@ -12,37 +12,37 @@ macro_rules! elementary_functions {
         $make! {
             /// Returns the square root; NaN for `x < 0`.
             sqrt(x);
-            /// Returns the sine of `x`, rad.
+            /// Returns the sine of the angle `x`, rad.
             sin(x);
-            /// Returns the cosine of `x`, rad.
+            /// Returns the cosine of the angle `x`, rad.
             cos(x);
-            /// Returns the tangent of `x`, rad.
+            /// Returns the tangent of the angle `x`, rad.
             tan(x);
             /// Returns the arc sine, rad; NaN outside [−1, 1].
             asin(x);
             /// Returns the arc cosine, rad; NaN outside [−1, 1].
             acos(x);
-            /// Returns the arc tangent, rad.
+            /// Returns the arc tangent of `x`, rad.
             atan(x);
             /// Returns the angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
             atan2(y, x);
-            /// Returns the hyperbolic sine.
+            /// Returns the hyperbolic sine of `x`.
             sinh(x);
-            /// Returns the hyperbolic cosine.
+            /// Returns the hyperbolic cosine of `x`.
             cosh(x);
-            /// Returns the hyperbolic tangent.
+            /// Returns the hyperbolic tangent of `x`.
             tanh(x);
-            /// Returns the exponential.
+            /// Returns the exponential function of `x`.
             exp(x);
             /// Returns the natural logarithm; NaN for `x < 0`.
             ln(x);
             /// Returns `x` to the power `y`; NaN for `x < 0` and noninteger `y`.
             powf(x, y);
-            /// Returns the smaller number; the other number if one is NaN.
+            /// Returns the smaller of two numbers; if one is NaN, the other one.
             min(x, y);
-            /// Returns the larger number; the other number if one is NaN.
+            /// Returns the larger of two numbers; if one is NaN, the other one.
             max(x, y);
-            /// Returns the magnitude.
+            /// Returns the magnitude of `x`.
             abs(x);
             /// Returns 1 or −1 with the sign of `x`, also for zeros.
             signum(x);
@@ -104,7 +104,7 @@ pub trait Arithmetic: Registers {
         if Self::FUSED { X::fused(-a, b, c) } else { c - a * b }
     }
 
-    /// Returns a vector of these lanes.
+    /// Returns a vector with the given lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn lanes<T, const N: usize>(numbers: [T; N]) -> Vector<Self, T, N> {
@@ -118,7 +118,7 @@ pub trait Arithmetic: Registers {
         Vector::from(Lanes([x; N]))
     }
 
-    /// Returns `x a`.
+    /// Returns the product `x a` of a scalar and a vector of lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn scale<T: Real, const N: usize>(x: T, a: Vector<Self, T, N>) -> Vector<Self, T, N> {
@@ -168,8 +168,8 @@ pub trait Arithmetic: Registers {
         Vector::joined(&a, &b)
     }
 
-    /// Stores lane `I` of one vector and lane `J` of another to rows `ROW` and `ROW + 1` of a column. Does
-    /// not compile if there are fewer lanes or rows.
+    /// Stores lane `I` of one vector and lane `J` of another vector to rows `ROW` and `ROW + 1` of a matrix
+    /// column. Fails to compile if there are fewer lanes or rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_two<
@@ -208,9 +208,9 @@ pub trait Arithmetic: Registers {
         }
     }
 
-    /// Stores the lanes of one vector to row `ROW` of the columns from `COLUMN` on, and those of another
-    /// vector to the row below. Does not compile if there are fewer rows or columns, or more than eight
-    /// lanes.
+    /// Stores the lanes of one vector to row `ROW` of a matrix, one lane per column from column `COLUMN` on,
+    /// and those of another vector to the row below. Fails to compile if there are fewer rows or columns, or
+    /// more than eight lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_columns<
@@ -243,7 +243,7 @@ pub trait Arithmetic: Registers {
         store!(0 1 2 3 4 5 6 7);
     }
 
-    /// Returns arguments in lanes as vectors.
+    /// Returns arguments that are given as lanes as SIMD vectors.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {

@@ -8,13 +8,13 @@
 use crate::Real;
 use crate::private::constant;
 
-/// Standard acceleration of free fall, m/s².
+/// Standard gravitational acceleration, m/s².
 const G: f64 = 9.80665;
-/// Gas constant of air, J/(kg·K).
+/// Specific gas constant of air, J/(kg·K).
 const R: f64 = 287.05287;
-/// Temperature at sea level, K.
+/// Air temperature at sea level, K.
 const T0: f64 = 288.15;
-/// Pressure at sea level, Pa.
+/// Air pressure at sea level, Pa.
 const P0: f64 = 101_325.0;
 
 /// Layer of the atmosphere: its base height, m, and its temperature gradient, K/m.
@@ -35,7 +35,7 @@ static LAYERS: [Layer; 8] = [
     Layer { base: 84_852.0, lapse: 0.0 },
 ];
 
-/// Returns the layers with their upper ends.
+/// Returns the layers of the atmosphere with the heights of their upper ends; the last layer has none.
 fn layers() -> impl Iterator<Item = (&'static Layer, Option<f64>)> {
     let ends = LAYERS.iter().skip(1).map(|next| Some(next.base)).chain([None]);
     LAYERS.iter().zip(ends)
@@ -56,13 +56,13 @@ fn step<T: Real>(x: T) -> T {
 
 /// Standard atmosphere as functions of a geopotential height, m.
 pub trait Atmosphere: Real {
-    /// Returns the temperature, K.
+    /// Returns the temperature of the standard atmosphere at this height, K.
     fn isa_temperature(self) -> Self {
         layers().fold(constant(T0), |sum, (layer, end)| sum + depth(self, layer, end) * constant(layer.lapse))
     }
 
-    /// Returns the derivative of the temperature with respect to height, K/m; at the boundary of two layers,
-    /// that of the upper one.
+    /// Returns the derivative of the standard temperature with respect to height, K/m. At the boundary of two
+    /// layers it is that of the upper layer.
     fn isa_lapse_rate(self) -> Self {
         let mut rate: Self = constant(0.0);
         let mut before = 0.0;
@@ -75,7 +75,7 @@ pub trait Atmosphere: Real {
         rate
     }
 
-    /// Returns the pressure, Pa.
+    /// Returns the pressure of the standard atmosphere at this height, Pa.
     fn isa_pressure(self) -> Self {
         let (mut pressure, mut base): (Self, f64) = (constant(P0), T0);
         for (layer, end) in layers() {
@@ -144,10 +144,10 @@ mod tests {
             90_000.0_f64,
         ] {
             let d = 1e-1;
-            let slope = |f: fn(f64) -> f64| (f(h + d) - f(h - d)) / (2.0 * d);
+            let central_difference = |f: fn(f64) -> f64| (f(h + d) - f(h - d)) / (2.0 * d);
             let expected = -G * h.isa_pressure() / (R * h.isa_temperature());
-            assert!((slope(f64::isa_pressure) / expected - 1.0).abs() < 1e-6, "{h}");
-            assert!((slope(f64::isa_temperature) - h.isa_lapse_rate()).abs() < 1e-9, "{h}");
+            assert!((central_difference(f64::isa_pressure) / expected - 1.0).abs() < 1e-6, "{h}");
+            assert!((central_difference(f64::isa_temperature) - h.isa_lapse_rate()).abs() < 1e-9, "{h}");
         }
     }
 

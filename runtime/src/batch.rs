@@ -30,12 +30,12 @@ pub use rollout::{Lockstep, Progress, Rollout, unwatched};
 use crate::{Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
 
-/// Column vector of lanes.
+/// Column vector whose entries are SIMD lanes over several states.
 type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 
-/// Mechanism with functions of several states at once, implemented by `#[mechanism(…, batch)]`. Shapes, units
-/// and conventions are those of [`Mechanism`], for the state of every lane; `t` has no effect if the
-/// mechanism does not depend on time.
+/// Mechanism with functions that evaluate several states at once, implemented by `#[mechanism(…, batch)]`.
+/// Shapes, units and conventions are those of [`Mechanism`] for the state in each lane. `t` has no effect if
+/// the mechanism does not depend on time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no functions of several states at once",
     label = "this needs the option `batch`",
@@ -64,16 +64,16 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
         to: &Column<Self::Scalar, L, NQ>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`tangent_rate`](Mechanism::tangent_rate) of each lane: the rate of `dv` such that `q ⊕ dv`
-    /// moves with velocity `v`.
+    /// Returns [`tangent_rate`](Mechanism::tangent_rate) for the state in each lane: the rate of `dv` such
+    /// that `q ⊕ dv` moves with velocity `v`.
     fn tangent_rate_lanes<const L: usize>(
         &self,
         dv: &Column<Self::Scalar, L, NV>,
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`displacement_rate`](Mechanism::displacement_rate) of each lane: the rate of `dv` such that
-    /// `q ⊕ dv` moves with velocity `v`, from `q`.
+    /// Returns [`displacement_rate`](Mechanism::displacement_rate) for the state in each lane: the rate of
+    /// the displacement `dv` from `q` such that `q ⊕ dv` moves with velocity `v`.
     fn displacement_rate_lanes<const L: usize>(
         &self,
         _q: &Column<Self::Scalar, L, NQ>,
@@ -127,7 +127,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
         u: &Column<Self::Scalar, L, NU>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// Returns [`kinetic_energy`](Mechanism::kinetic_energy) of each lane, J.
+    /// Returns [`kinetic_energy`](Mechanism::kinetic_energy) for the state in each lane, J.
     fn kinetic_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -135,7 +135,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Lanes<Self::Scalar, L>;
 
-    /// Returns [`potential_energy`](Mechanism::potential_energy) of each lane, J.
+    /// Returns [`potential_energy`](Mechanism::potential_energy) for the state in each lane, J.
     fn potential_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,

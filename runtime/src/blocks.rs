@@ -1,4 +1,4 @@
-//! Products of fixed-size matrices for loops of the runtime, without copies. nalgebra's own products add
+//! Products of matrices of fixed size for loops of the runtime, without copies. The products of nalgebra add
 //! columns one by one, and multiply transposed matrices entry by entry.
 
 use crate::Real;
@@ -39,7 +39,7 @@ pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usi
     dispatch::<2, T, _, _>(&Chosen { places, a, b }, sum);
 }
 
-/// Factors of a product.
+/// Factors `A` and `B` of a matrix product.
 struct Product<'a, T, const R: usize, const K: usize, const C: usize> {
     a: &'a SMatrix<T, R, K>,
     b: &'a SMatrix<T, K, C>,
@@ -102,15 +102,15 @@ fn rolled<T>(list: &[T]) -> &[T] {
     core::hint::black_box(list)
 }
 
-/// Returns the number of rows left for a last strip of more than one and at most three registers, after
-/// strips of two registers of width `W`.
+/// Returns the number of rows left after strips of two registers of width `W`. The last strip has more than
+/// one and at most three registers, unless the matrix is smaller.
 const fn remaining_rows(rows: usize, w: usize) -> usize {
     if rows > 3 * w { (rows - w - 1) % (2 * w) + w + 1 } else { rows }
 }
 
-/// Computes all rows in registers of width `W`: two registers at a time, and finally the remaining up to
-/// three. The last register overlaps the previous one if fewer rows remain; all rows are read before any is
-/// written.
+/// Computes all rows of a matrix product in registers of width `W`: two registers at a time, and finally the
+/// remaining up to three. If fewer rows remain, the last register overlaps the previous one; all rows are
+/// read before any is written.
 #[inline(always)]
 fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -131,8 +131,9 @@ fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: 
     }
 }
 
-/// Computes [`rows_of`] with registers of eight, and one register of four at the end if it can hold the
-/// remaining rows: instructions on four are half as long on processors that split instructions on eight.
+/// Computes a matrix product as [`rows_of`] does, with registers of eight, and a final register of four if it
+/// can hold the remaining rows. Instructions on four are half as long on processors that split instructions
+/// on eight.
 #[inline(always)]
 fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -275,7 +276,7 @@ fn tile<
     }
 }
 
-/// Returns `A B`.
+/// Returns the product `A B` of two matrices.
 #[inline]
 pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
@@ -286,7 +287,7 @@ pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     sum
 }
 
-/// Whether all entries are zero.
+/// Returns whether all entries of a matrix are zero.
 #[inline]
 pub fn is_zero<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
     // Comparing without early exit lets a column be compared at once.
@@ -299,7 +300,7 @@ pub fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[T::zero(); R]; C]))
 }
 
-/// Returns `Aᵀ`.
+/// Returns the transpose `Aᵀ` of a matrix.
 #[inline]
 pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> SMatrix<T, C, R> {
     let mut turned = zeros();
@@ -356,7 +357,7 @@ pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>
     out
 }
 
-/// Computes `A += s (B + Bᵀ)`.
+/// Adds a multiple of a symmetrised matrix in place: `A += s (B + Bᵀ)`.
 #[inline(never)]
 pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s: T, b: &SMatrix<T, N, N>) {
     let mut turned = zeros();
@@ -381,13 +382,13 @@ pub fn sum_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// Computes `A *= s`.
+/// Multiplies a matrix by a number in place: `A *= s`.
 #[inline]
 pub fn scale<T: Real, const R: usize, const C: usize>(matrix: &mut SMatrix<T, R, C>, s: T) {
     matrix.data.0.as_flattened_mut().iter_mut().for_each(|x| *x *= s);
 }
 
-/// Writes `s A` to a matrix.
+/// Writes the multiple `s A` of a matrix to another matrix.
 #[inline]
 pub fn multiple_into<T: Real, const R: usize, const C: usize>(
     s: T,
@@ -399,7 +400,7 @@ pub fn multiple_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// Computes `A += s B`.
+/// Adds a multiple of a matrix in place: `A += s B`.
 #[inline]
 pub fn add_multiple<T: Real, const R: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,

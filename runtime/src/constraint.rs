@@ -51,13 +51,14 @@ pub use stabilized::{Stabilized, stabilized};
 /// Relative change of velocity above which a projection may have switched to another branch.
 const TURN: f64 = 0.01;
 
-/// Maximum number of Newton steps of a projection; a state that has drifted needs one or two.
+/// Maximum number of Newton steps when a state is projected onto the constraints; a state that has drifted
+/// needs one or two.
 const MOST_STEPS: usize = 20;
 
-/// Configuration and velocity that satisfy the constraints.
+/// Configuration and velocity after projection onto the constraints.
 pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);
 
-/// Accelerations `v̇` and multipliers `λ`.
+/// Accelerations `v̇` and constraint multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
 /// Returns the holonomic constraints of a mechanism at an instant, for assembly.
@@ -91,7 +92,7 @@ macro_rules! loops {
 pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>:
     Mechanism<NQ, NV, NU>
 {
-    /// Names of the constraints.
+    /// Names of the scalar constraints.
     const CONSTRAINTS: [&'static str; NC];
 
     /// Indices of the entries of `q` that are angles, rad: coordinates of pins and of other rotations.
@@ -461,7 +462,7 @@ fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), Con
     Ok(found)
 }
 
-/// Returns the largest magnitude of the entries, but at least one.
+/// Returns the largest magnitude of the entries of a vector, but at least one.
 fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
 }
@@ -492,7 +493,7 @@ fn open<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
     rate <= epsilon::<T>().sqrt().sqrt() * v.iter().fold(T::zero(), |most, v| most.max(v.abs()))
 }
 
-/// Returns the largest entry of the Jacobian, but at least one.
+/// Returns the largest magnitude of the entries of the Jacobian, but at least one.
 fn farthest<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
     jacobian
         .column_iter()

@@ -136,23 +136,24 @@ use solution::{Acted, act};
 pub use stepping::step;
 use stepping::{Came, closed};
 
-/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a
-/// moment of friction ([`PRESSED_BY`](Contacts::PRESSED_BY)) are of turning alone, rad/s.
+/// Indices of the contact velocities of one contact: the gap velocity first, then the slip velocities. Those
+/// of a friction moment ([`PRESSED_BY`](Contacts::PRESSED_BY)) are relative angular velocities only, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
     /// Index of the rate of the gap; of a moment of friction that of its first rate.
     pub first: usize,
-    /// How many there are: one without friction, up to three with it; of spin one, of rolling up to two.
+    /// Number of contact velocities: one without friction, up to three with friction; one for a spin moment,
+    /// up to two for a rolling moment.
     pub count: usize,
 }
 
-/// What a contact is taken to do.
+/// Contact mode that is assumed for a contact: open, sticking or sliding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// No force acts.
+    /// Open contact: no contact force acts.
     Open,
-    /// Surfaces stay together, and do not slip if there is friction; of a moment of friction, they do not
-    /// turn.
+    /// Sticking contact: surfaces stay together without slip if there is friction. For a friction moment, the
+    /// surfaces do not rotate relative to each other.
     Sticks,
     /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has
     /// no direction, and does not act.
@@ -172,13 +173,13 @@ pub enum Touch {
 pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>:
     Mechanism<NQ, NV, NU>
 {
-    /// Name of every contact.
+    /// Names of all contacts, in the order of declaration.
     const CONTACTS: [&'static str; NK];
-    /// Which rates belong to each contact.
+    /// Indices of the contact velocities of each contact.
     const CONTACT_ROWS: [Rows; NK];
-    /// Which contact presses whose friction each one is: itself, but for the moments of friction against spin
-    /// and rolling. These follow their contact, as `foot.spin` and `foot.roll` follow `foot`, have its gap,
-    /// and rates of turning alone.
+    /// Index of the contact whose normal force limits the friction of each entry: the contact itself, except
+    /// for friction moments. Spin and rolling moments such as `foot.spin` and `foot.roll` belong to the
+    /// contact `foot` and share its gap; their contact velocities are relative angular velocities.
     const PRESSED_BY: [usize; NK] = layout::own();
 
     /// Returns [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY), from which a
@@ -189,8 +190,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         (Self::CONTACT_ROWS, Self::PRESSED_BY)
     }
 
-    /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they
-    /// overlap.
+    /// Returns the gap (signed distance) of each contact, m or rad: zero at touch, negative for overlapping
+    /// surfaces.
     fn contact_gaps(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NK>;
 
     /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents; of
@@ -217,8 +218,9 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NR>;
 
-    /// What impulses at the contacts do to velocities and rates, through the constraints of the mechanism.
-    /// Only those contacts matter that are `closed`; entries of others may be zero.
+    /// Returns the changes of velocities and contact velocities due to unit contact impulses, including the
+    /// constraints of the mechanism. Only contacts marked `closed` are needed; entries of other contacts may
+    /// be zero.
     fn contact_responses(
         &self,
         t: Self::Scalar,
@@ -245,7 +247,7 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         None
     }
 
-    /// The coefficients of every contact.
+    /// Returns the coefficients of friction and restitution of every contact.
     fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
 }
 
@@ -253,16 +255,17 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
 /// [`visit_contacts`](crate::integrate::Hooks::visit_contacts), which provides the trait [`Contacts`] with
 /// the numbers of the mechanism.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// Type of the result.
+    /// Type of the value that the visitor returns.
     type Output;
 
-    /// Returns the result for a mechanism.
+    /// Runs the generic code on a mechanism with contacts and returns the result.
     fn visit<M, const NK: usize, const NR: usize>(self, mechanism: &M) -> Self::Output
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>;
 }
 
-/// What impulses at contacts do at once.
+/// Instantaneous responses to unit contact impulses: the resulting changes of velocities and of contact
+/// velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Responses<T, const NV: usize, const NR: usize> {
     /// `M⁻¹ Gᵀ`, with what constraints add: by how much each impulse changes the velocities.
@@ -272,12 +275,13 @@ pub struct Responses<T, const NV: usize, const NR: usize> {
 }
 
 impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
-    /// No effects.
+    /// Returns zero responses: impulses change no velocity.
     fn zeros() -> Self {
         Self { velocities: zeros::<T, NV, NR>(), rates: zeros::<T, NR, NR>() }
     }
 
-    /// From all entries, column by column. As generated code calls it.
+    /// Returns the responses from a list of all matrix entries, column by column. Generated code calls this
+    /// function.
     #[doc(hidden)]
     pub fn from_list<const N: usize>(list: &[T; N]) -> Self {
         let (mut velocities, mut rates) = (zeros::<T, NV, NR>(), zeros::<T, NR, NR>());
@@ -290,17 +294,17 @@ impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     }
 }
 
-/// End of a step with contacts.
+/// State at the end of a time step with contacts, with data for the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touched<T, const NQ: usize, const NV: usize> {
-    /// The configuration.
+    /// Configuration at the end of the step.
     pub q: SVector<T, NQ>,
-    /// The velocity.
+    /// Velocity at the end of the step.
     pub v: SVector<T, NV>,
     /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
     /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
     pub held: SVector<T, NV>,
-    /// Impulses from which the search of the next step begins.
+    /// Contact impulses with which the next step starts its iteration.
     #[doc(hidden)]
     pub impulses: Impulses<T, NV>,
     /// Largest violation of the contact conditions by the impulses, as a contact velocity.
@@ -308,24 +312,24 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
-    /// State that no contact has changed.
+    /// Returns the end of a step on which no contact acted: state without impulses or violation.
     pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
         Self { q, v, held: SVector::zeros(), impulses: Impulses::none(), violation: T::zero() }
     }
 }
 
-/// Velocity and impulses after contacts have acted.
+/// Velocity after contact impulses have acted, with these impulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved<T, const NV: usize, const NR: usize> {
-    /// The velocity.
+    /// Velocity after the contact impulses, m/s and rad/s.
     pub v: SVector<T, NV>,
-    /// The impulses of the contacts, N·s, and N·m·s of stops about an axis: of each the normal one, then
-    /// those along its tangents.
+    /// Contact impulses, N·s, or N·m·s for stops about an axis: for each contact the normal impulse, followed
+    /// by those along its tangents.
     pub impulses: SVector<T, NR>,
 }
 
-/// Surfaces nearer than this touch, m: what rounding does to places of some metres, and well below what
-/// matters.
+/// Returns the gap below which surfaces count as touching, m: the rounding error of positions of some metres,
+/// far below relevant distances.
 fn near<T: Real>() -> T {
     epsilon::<T>().sqrt() * constant(0.67)
 }
@@ -430,20 +434,21 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     positive("the time", h)?;
-    let reported = |reason| Error::Constraint { t: to_f64(t), reason };
+    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
     let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
-    let (rate, impulses) = holding(&mut system, &start, &at_start, &Impulses::none(), h).map_err(reported)?;
+    let (rate, impulses) =
+        holding(&mut system, &start, &at_start, &Impulses::none(), h).map_err(constraint_error)?;
     let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = settled(&system, free, t)?;
     let came = Came::from((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
-    let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(reported)? else {
+    let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(constraint_error)? else {
         return Ok(SVector::zeros());
     };
-    let before = || came.rates(mechanism, t + h, &free.q);
+    let previous_contact_rates = || came.rates(mechanism, t + h, &free.q);
     let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
     let mut acted = Acted::nothing(selection, true);
     let solved = act(
@@ -451,10 +456,10 @@ where
         t + h,
         (&free.q, &end),
         &closed,
-        (before, Some(((&given, &impulses), true))),
+        (previous_contact_rates, Some(((&given, &impulses), true))),
         &mut acted,
     );
-    Ok(solved.map_err(reported)?.impulses / h)
+    Ok(solved.map_err(constraint_error)?.impulses / h)
 }
 
 /// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact
@@ -504,7 +509,7 @@ where
     let laws = lawful(mechanism)?;
     let responses = mechanism.contact_responses(t, q, &closed);
     let slip = mechanism.contact_rates(t, q, v);
-    let solved = |free: &SVector<T, NR>| {
+    let solve_contacts = |free: &SVector<T, NR>| {
         let mut problem = Problem::new(layout, &laws, &closed, free);
         problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= near());
         problem.weigh(&responses.rates);
@@ -526,7 +531,7 @@ where
             return Ok(impulses / h);
         }
     }
-    let (impulses, touches) = solved(&free)?;
+    let (impulses, touches) = solve_contacts(&free)?;
     let forces = impulses / h;
     if phase::stopped_contact(&slip, &touches, &laws, layout).is_none() {
         return Ok(forces);
@@ -534,7 +539,7 @@ where
     // Friction stops slip within this short time: it may be strong, or there is no finite force.
     let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
     phase::sustain_slip(&mut accelerations, &slip, layout);
-    let (lasting, touches) = solved(&accelerations)?;
+    let (lasting, touches) = solve_contacts(&accelerations)?;
     match phase::stopped_contact(&slip, &touches, &laws, layout) {
         Some(contact) => Err(failed::<M, T, NQ, NV, NU, NK, NR>(contact)),
         None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),

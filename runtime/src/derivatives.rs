@@ -7,7 +7,7 @@ use crate::private::constant;
 use crate::{At, Mechanism, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
-/// Matrix of `NV` by `NV`.
+/// Square matrix with one row and one column for each of the `NV` velocities.
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Derivatives with respect to configuration, velocity, and `N` forces or inputs.
@@ -29,12 +29,11 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// [`momentum_rate_derivatives`](Self::momentum_rate_derivatives) are available, through the option
     /// `momentum_derivatives`.
     const MOMENTUM_DERIVATIVES: bool = false;
-    /// Index of the velocity along which each input acts, if every input is one entry of the generalized
-    /// forces, as motors at joints are. Derivatives with respect to inputs are then columns of those with
-    /// respect to forces.
+    /// Index of the velocity on which each input acts, if every input is exactly one generalized force, such
+    /// as a joint motor. Derivatives with respect to inputs are then columns of those with respect to forces.
     const DIRECT_INPUTS: Option<[usize; NU]> = None;
-    /// Half-open range of the velocities of ball and free joints, outside which the derivatives of `q ⊕ dv`
-    /// are those of the identity; `None` if unknown.
+    /// Half-open range of the velocities of ball and free joints. Outside this range the derivatives of
+    /// `q ⊕ dv` are those of a vector space (identity); `None` if unknown.
     const TURNED: Option<(usize, usize)> = None;
 
     /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
@@ -137,7 +136,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         self.forward_dynamics(t, q, v, tau)
     }
 
-    /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
+    /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the generalized forces `τ` of the inputs
+    /// ([`generalized_forces`](Mechanism::generalized_forces)).
     fn generalized_forces_derivatives(
         &self,
         t: Self::Scalar,
@@ -213,7 +213,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     }
 }
 
-/// Implements [`Derivatives::linear_motion`].
+/// Computes the linearised motion as the default implementation of [`Derivatives::linear_motion`].
 pub(crate) fn linear_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<M::Scalar, NQ>,
@@ -228,8 +228,8 @@ where
     LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(m, q, v) }
 }
 
-/// Returns the derivatives of the accelerations with respect to state and inputs, given those with respect to
-/// state and forces, and the derivatives of the forces.
+/// Converts acceleration derivatives with respect to state and forces to derivatives with respect to state
+/// and inputs, given the derivatives of the forces of the inputs.
 pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (mut by_q, mut by_v, by_force): ByMotion<T, NV, NV>,
     (force_by_q, force_by_v, force_by_u): &ByMotion<T, NV, NU>,
@@ -269,7 +269,7 @@ where
     acceleration
 }
 
-/// Implements [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) for mechanisms
+/// Computes [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) for mechanisms
 /// with derivatives.
 pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
@@ -295,13 +295,13 @@ pub(crate) fn unknown<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R
 /// and of changes of velocity, `δq̇ = turning δq + δv`, `δv̇ = by_q δq + by_v δv + by_u δu`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearMotion<T, const NV: usize, const NU: usize> {
-    /// `v̇`, m/s² and rad/s².
+    /// Acceleration `v̇` at the state of linearisation, m/s² and rad/s².
     pub acceleration: SVector<T, NV>,
-    /// `∂v̇/∂q`.
+    /// Derivative `∂v̇/∂q` of the acceleration with respect to the configuration.
     pub by_q: SMatrix<T, NV, NV>,
-    /// `∂v̇/∂v`.
+    /// Derivative `∂v̇/∂v` of the acceleration with respect to the velocity.
     pub by_v: SMatrix<T, NV, NV>,
-    /// `∂v̇/∂u`.
+    /// Derivative `∂v̇/∂u` of the acceleration with respect to the inputs.
     pub by_u: SMatrix<T, NV, NU>,
     /// Contribution of rotating axes to the rates of displacements, `δq × v`; zero for plain coordinates.
     pub turning: SMatrix<T, NV, NV>,
@@ -315,7 +315,7 @@ pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], 
     block.copied().unwrap_or(T::zero())
 }
 
-/// Returns a matrix of two blocks, one above the other.
+/// Returns the matrix that stacks the block `above` on the block `below`.
 pub(crate) fn column<T: Real, const NV: usize, const NU: usize, const NX: usize>(
     above: &SMatrix<T, NV, NU>,
     below: &SMatrix<T, NV, NU>,

@@ -85,7 +85,8 @@ where
     Ok((step.end.q, step.end.v))
 }
 
-/// Returns one step of the method, with the displacement within the step.
+/// Computes one step of an integration method with constant inputs and returns it with its start, end and
+/// displacement.
 fn take_step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -357,9 +358,10 @@ pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub v_by_v: SMatrix<T, NV, NV>,
     /// Derivative of the velocity after the step with respect to the inputs.
     pub v_by_u: SMatrix<T, NV, NU>,
-    /// Relation between configuration and velocity after a step with `q⁺ = q ⊕ h v⁺` ([`SemiImplicitEuler`]
-    /// without constraints). It halves the work of [`backward`](crate::optimal::backward), because the
-    /// derivatives of the configuration follow from those of the velocity.
+    /// Relation between the changes of configuration and velocity for steps `q⁺ = q ⊕ h v⁺`
+    /// ([`SemiImplicitEuler`] without constraints). It halves the work of
+    /// [`backward`](crate::optimal::backward), because configuration derivatives follow from velocity
+    /// derivatives.
     pub chained: Option<Chained<T, NV>>,
 }
 
@@ -382,7 +384,7 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
         Self { period, by_q, by_displacement, others }
     }
 
-    /// Returns the period `h`, s.
+    /// Returns the length `h` of the step, s.
     pub fn period(&self) -> T {
         self.period
     }
@@ -410,7 +412,7 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
-    /// Returns a transition of zeros, for [`transition_into`].
+    /// Returns a transition whose entries are all zero, as a buffer for [`transition_into`].
     pub fn zeros() -> Self {
         Self {
             q: zeros(),
@@ -480,6 +482,7 @@ pub fn split<T: Real, const NV: usize, const NX: usize>(
     x: &SVector<T, NX>,
 ) -> (SVector<T, NV>, SVector<T, NV>) {
     const { assert!(NX == 2 * NV, "the vector has twice as many numbers as there are velocities") };
-    let part = |first: usize| SVector::from_fn(|k, _| x.get(first + k).copied().unwrap_or(T::zero()));
-    (part(0), part(NV))
+    let vector_from_entry =
+        |first: usize| SVector::from_fn(|k, _| x.get(first + k).copied().unwrap_or(T::zero()));
+    (vector_from_entry(0), vector_from_entry(NV))
 }

@@ -11,7 +11,7 @@ pub struct Piece {
     pub name: &'static str,
     /// Part of the declaration that the piece shows.
     pub role: Role,
-    /// Shape of the piece.
+    /// Shape of the piece, which also defines the count of its dimensions.
     pub kind: Kind,
     /// Indices of the frames in which the first vector and, if it has a frame of its own, the second vector
     /// are fixed; `None` is the ground.
@@ -32,15 +32,15 @@ pub enum Role {
     Link,
     /// A body, drawn from the visual geometry of a file.
     Visual,
-    /// A joint.
+    /// The piece shows a joint.
     Joint,
-    /// A contact surface.
+    /// The piece shows a contact surface.
     Surface,
-    /// A spring or a dashpot.
+    /// The piece shows a spring or a dashpot.
     Element,
-    /// An input.
+    /// The piece shows the force or torque of an input.
     Input,
-    /// Uniform gravity.
+    /// The piece shows the vector of uniform gravity.
     Gravity,
 }
 
@@ -50,59 +50,60 @@ pub enum Role {
 pub enum Kind {
     /// Axis, length; the position is the centre, as for all solids.
     Rod,
-    /// Axis, radius.
+    /// Thin ring. Its numbers are axis and radius.
     Ring,
-    /// Axis, radius.
+    /// Thin disk. Its numbers are axis and radius.
     Disk,
-    /// Axis, radius, height.
+    /// Solid cylinder. Its numbers are axis, radius and height.
     Cylinder,
-    /// Axis, inner radius, outer radius, height.
+    /// Hollow cylinder. Its numbers are axis, inner radius, outer radius and height.
     Tube,
     /// Axis, radius, height; the position is the centre of mass, a quarter of the height above the base.
     Cone,
     /// Axis, radius, distance between the centres of the end spheres.
     Capsule,
-    /// Radius of the sphere.
+    /// Sphere. Its number is the radius.
     Sphere,
-    /// Axes, edge lengths.
+    /// Rectangular box. Its numbers are the axes and the edge lengths.
     Cuboid,
-    /// Axes, semi-axes.
+    /// Ellipsoid. Its numbers are the axes and the semi-axes.
     Ellipsoid,
     /// Mass, kg, and inertia about the position, kg·m²: xx, yy, zz, xy, xz, yz.
     Inertia,
-    /// Normal of the plane.
+    /// Unbounded plane. Its numbers are the normal.
     Plane,
-    /// Axis, half angle, rad: a cone of unbounded length from its apex.
+    /// Funnel: surface of a cone of unbounded length from its apex. Its numbers are the axis and the half
+    /// angle, rad.
     Funnel,
-    /// Axis, radius: a cylinder of unbounded length.
+    /// Pipe: surface of a cylinder of unbounded length. Its numbers are axis and radius.
     Pipe,
     /// Axis, radius of the centre line, radius of the cross section.
     Torus,
-    /// Radius: a sphere seen from inside.
+    /// Sphere that is seen from inside. Its number is the radius.
     Bowl,
-    /// No further numbers.
+    /// Point. It has no numbers other than its position.
     Point,
     /// Position of the other end, in the second frame.
     Bar,
-    /// Axis of a revolute joint.
+    /// Revolute joint. Its numbers are the joint axis.
     Hinge,
-    /// Axis of a prismatic joint.
+    /// Prismatic joint. Its numbers are the joint axis.
     Slide,
-    /// No further numbers: a ball joint.
+    /// Ball joint. It has no numbers other than its position.
     Ball,
     /// Position of the other end, in the second frame: a translational spring.
     Coil,
-    /// Axis: a torsional spring.
+    /// Torsional spring. Its numbers are the axis.
     Spiral,
     /// Position of the other end, in the second frame: a translational dashpot.
     Damper,
-    /// Axis: a torsional dashpot.
+    /// Torsional dashpot. Its numbers are the axis.
     Brake,
     /// Direction in the second frame; index of the input.
     Force(usize),
     /// Direction in the second frame; index of the input.
     Torque(usize),
-    /// Acceleration, m/s², at the ground's origin.
+    /// Gravity, drawn at the ground's origin. Its numbers are the acceleration, m/s².
     Gravity,
     /// Axes; ground surface whose height along the third axis, as a function of the coordinates along the
     /// first two, is the entry of [`Drawn::drawing_heights`] with this index.
@@ -166,7 +167,7 @@ impl Kind {
     note = "add the option to the attribute: `#[mechanism(…, drawing)]`"
 )]
 pub trait Drawn<const NQ: usize, const NV: usize>: Frames<NQ, NV> {
-    /// Pieces of the drawing.
+    /// Pieces of the mechanism's drawing.
     const DRAWING: &'static [Piece];
 
     /// Returns the numbers of all pieces, for the current parameters.

@@ -25,7 +25,7 @@ pub use outputs::OutputsByStates;
 pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>:
     Mechanism<NQ, NV, NU> + Sized
 {
-    /// Name of every state.
+    /// Names of the first-order states.
     const STATES: [&'static str; NX];
     /// Unit of every state, in the format of [`Mechanism::VELOCITY_UNITS`](crate::Mechanism::VELOCITY_UNITS).
     const STATE_UNITS: [&'static str; NX] = [""; NX];
@@ -96,8 +96,9 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
     }
 }
 
-/// Derivatives with respect to first-order states, and of their rates. `#[mechanism(…, derivatives)]`
-/// implements the trait for mechanisms with such states and without constraints.
+/// Derivatives of the dynamics with respect to first-order states, and derivatives of the rates of these
+/// states. `#[mechanism(…, derivatives)]` implements the trait for mechanisms with first-order states and
+/// without constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives by states of first order",
     note = "enable them with the option: `#[mechanism(…, derivatives)]`; mechanisms with constraints have \
@@ -111,7 +112,8 @@ pub trait FirstOrderDerivatives<
     const NE: usize,
 >: FirstOrder<NQ, NV, NU, NX, NE> + Derivatives<NQ, NV, NU>
 {
-    /// Returns the derivatives of [`state_rates`](FirstOrder::state_rates).
+    /// Returns the derivatives of the rates of the first-order states
+    /// ([`state_rates`](FirstOrder::state_rates)).
     fn state_rate_derivatives(
         &self,
         t: Self::Scalar,
@@ -120,7 +122,8 @@ pub trait FirstOrderDerivatives<
         u: &SVector<Self::Scalar, NU>,
     ) -> RateDerivatives<Self::Scalar, NV, NU, NX>;
 
-    /// Returns `∂τ/∂x` of [`inverse_dynamics`](Mechanism::inverse_dynamics).
+    /// Returns `∂τ/∂x`, the derivative of [`inverse_dynamics`](Mechanism::inverse_dynamics) with respect to
+    /// the first-order states `x`.
     fn inverse_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -129,7 +132,8 @@ pub trait FirstOrderDerivatives<
         a: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// Returns `∂v̇/∂x` of [`forward_dynamics`](Mechanism::forward_dynamics).
+    /// Returns `∂v̇/∂x`, the derivative of [`forward_dynamics`](Mechanism::forward_dynamics) with respect to
+    /// the first-order states `x`.
     fn forward_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -138,7 +142,8 @@ pub trait FirstOrderDerivatives<
         tau: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// Returns `∂τ/∂x` of the inputs' [`generalized_forces`](Mechanism::generalized_forces).
+    /// Returns `∂τ/∂x`, the derivative of the [`generalized_forces`](Mechanism::generalized_forces) of the
+    /// inputs with respect to the first-order states `x`.
     fn generalized_forces_by_states(
         &self,
         t: Self::Scalar,
@@ -158,12 +163,12 @@ pub struct RateDerivatives<T, const NV: usize, const NU: usize, const NX: usize>
     pub by_v: SMatrix<T, NX, NV>,
     /// Derivative with respect to the states, 1/s between states of the same unit.
     pub by_x: SMatrix<T, NX, NX>,
-    /// Derivative with respect to the inputs.
+    /// Derivative of the rates of the first-order states with respect to the inputs.
     pub by_u: SMatrix<T, NX, NU>,
 }
 
 impl<T: Real, const NV: usize, const NU: usize, const NX: usize> RateDerivatives<T, NV, NU, NX> {
-    /// Returns zero derivatives.
+    /// Returns the derivatives of state rates that are all zero.
     pub fn zeros() -> Self {
         Self {
             by_q: SMatrix::zeros(),

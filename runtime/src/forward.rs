@@ -88,8 +88,9 @@ macro_rules! each_function {
     };
 }
 
-/// Defines functions that call those of a trait on an object: `plain` without time, `pass` with the argument
-/// of time, `at` with the time of the object's wrapper in place of the argument.
+/// Writes functions of a wrapper that call the trait functions of the same names on the wrapped object.
+/// `plain` has no time argument, `pass` passes the argument on, and `at` passes the fixed time of the wrapper
+/// instead.
 macro_rules! write_functions {
     ([$scalar:ty] plain $trait:ident, $self:ident => $object:expr;
      $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
@@ -114,7 +115,7 @@ macro_rules! write_functions {
     )+};
 }
 
-/// Expands to the type of an argument.
+/// Expands a short name of an argument kind, such as `scalar`, to the type of the argument.
 macro_rules! kind {
     ($scalar:ty, scalar) => { $scalar };
     ($scalar:ty, truth) => { bool };
@@ -141,8 +142,8 @@ macro_rules! linear_motion {
     };
 }
 
-/// Defines the constants of a wrapper as those of the mechanism type: `names` of `Mechanism`, `hooks` of
-/// `Hooks`, `derivatives` of `Derivatives`.
+/// Defines the associated constants of a wrapper as those of the wrapped mechanism type: `names` of
+/// `Mechanism`, `hooks` of `Hooks`, `derivatives` of `Derivatives`.
 macro_rules! constants {
     (names, $m:ident) => {
         const CONFIGURATION: [&'static str; NQ] = $m::CONFIGURATION;

@@ -99,7 +99,7 @@ macro_rules! index {
 pub struct Index<const I: usize>;
 
 impl<const I: usize> Index<I> {
-    /// Value of the index.
+    /// Value of the frame index as a constant.
     pub const VALUE: usize = I;
 }
 
@@ -112,7 +112,7 @@ impl<const I: usize> Index<I> {
     note = "name a frame of the mechanism itself: `frame!({Self}, \"…\")`"
 )]
 pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
     /// Returns the rotation matrix by rows (columns are the frame's axes in ground axes), then the position
@@ -149,10 +149,10 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
             trait `Frames`"
 )]
 pub trait FrameName<M, const NQ: usize, const NV: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
-    /// Returns the placement in the ground frame.
+    /// Returns the placement of the frame in the ground frame: its axes and its origin, m.
     fn placement(
         self,
         m: &M,
@@ -262,7 +262,7 @@ where
     note = "a mechanism is a struct with the attribute `#[mechanism(…)]`; its prepared form has no frames"
 )]
 pub trait Frames<const NQ: usize, const NV: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
     /// Names of the frames, in the order of their indices.
@@ -372,7 +372,7 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
     true
 }
 
-/// Returns a placement as nalgebra's type.
+/// Converts a placement from twelve numbers (rotation matrix by rows, then position) to nalgebra's type.
 #[inline(always)]
 pub fn placement<T: Real>(p: &[T; 12]) -> IsometryMatrix3<T> {
     let [a, b, c, d, e, f, g, h, i, x, y, z] = *p;
@@ -390,7 +390,7 @@ pub fn identity_placement<T: Real>() -> [T; 12] {
     [i, o, o, o, i, o, o, o, i, o, o, o]
 }
 
-/// Returns the position of a placement.
+/// Returns the position of the origin of a placement, which is given as twelve numbers.
 #[inline(always)]
 pub fn origin<T: Real>(p: &[T; 12]) -> [T; 3] {
     let [.., x, y, z] = *p;
@@ -404,14 +404,14 @@ pub fn twist<T: Real>(motion: &[T; 12]) -> [T; 6] {
     [a, b, c, d, e, f]
 }
 
-/// Returns the sum of two motions.
+/// Returns the sum of two twists or accelerations of six numbers each.
 #[inline(always)]
 pub fn sum<T: Real>(a: &[T; 6], b: &[T; 6]) -> [T; 6] {
     let ([a0, a1, a2, a3, a4, a5], [b0, b1, b2, b3, b4, b5]) = (*a, *b);
     [a0 + b0, a1 + b1, a2 + b2, a3 + b3, a4 + b4, a5 + b5]
 }
 
-/// Returns six numbers as nalgebra's type.
+/// Converts an array of six numbers to nalgebra's vector type.
 #[inline(always)]
 pub fn six<T: Real>(s: [T; 6]) -> SVector<T, 6> {
     SVector::from_array_storage(ArrayStorage([s]))

@@ -7,15 +7,16 @@ use nalgebra::SVector;
 /// Origin of an action in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Uniform gravity, at the centre of mass.
+    /// The action is the weight of the body in uniform gravity, at the centre of mass.
     Gravity,
     /// A force element: a spring, a dashpot, a force or torque with a value, an energy.
     Element,
-    /// An input.
+    /// The action is the force or torque of an input.
     Input,
     /// A joint: its constraint forces, plus the forces on its own coordinates.
     Joint,
-    /// A constraint, such as rolling, including the friction of a sliding one.
+    /// The action is the force of a constraint, such as rolling, including the friction of a sliding contact
+    /// constraint.
     Constraint,
     /// A unilateral contact: zero if it is separated. A stop on a joint's own coordinate is included in the
     /// joint.
@@ -25,15 +26,15 @@ pub enum Origin {
 /// A force and a torque on a body. Vectors are in the axes of the diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Action<T> {
-    /// Name of the element, joint or constraint.
+    /// Name of the force element, input, joint, constraint or contact that acts on the body.
     pub name: &'static str,
-    /// Kind of the element.
+    /// Origin of the action: gravity, force element, input, joint, constraint or contact.
     pub origin: Origin,
     /// Point of application, relative to the body's centre of mass, m.
     pub point: SVector<T, 3>,
-    /// Force, N.
+    /// Force of the action on the body, N.
     pub force: SVector<T, 3>,
-    /// Torque about the point of application, N·m.
+    /// Torque of the action about its point of application, N·m.
     pub torque: SVector<T, 3>,
 }
 
@@ -88,9 +89,9 @@ impl<T: Real> Action<T> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diagram<T, const N: usize> {
-    /// Name of the body.
+    /// Name of the body that the diagram shows.
     pub body: &'static str,
-    /// Actions on the body.
+    /// Forces and torques that act on the body.
     pub actions: [Action<T>; N],
 }
 

@@ -11,21 +11,21 @@ use crate::{Inertial, Real};
 use core::fmt;
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, SVector, Vector3};
 
-/// Mechanism whose links' mass properties are parameters and whose base parameters are available: one with
-/// `parameters = inertial` and the option `regressor`. It has `N` such links and `B` base parameters.
+/// Mechanism in which the mass properties of `N` links are parameters, with `B` base parameters. It has the
+/// options `parameters = inertial` and `regressor`.
 #[diagnostic::on_unimplemented(
     message = "identified values cannot be written to `{Self}`",
     label = "expected a mechanism whose links' mass properties are parameters",
     note = "write `#[mechanism(urdf = \"…\", parameters = inertial, regressor)]`"
 )]
 pub trait Identifiable<const N: usize, const B: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
     /// Returns the mass properties of the links, in the order of `LINKS`.
     fn inertials(&self) -> [Inertial<Self::Scalar>; N];
 
-    /// Sets the mass properties of the links.
+    /// Sets the mass properties of the links, in the order of `LINKS`.
     fn set_inertials(&mut self, links: &[Inertial<Self::Scalar>; N]);
 
     /// Returns the base parameters for the current mass properties, in the order of `BASE_PARAMETERS`.
@@ -36,8 +36,8 @@ pub trait Identifiable<const N: usize, const B: usize> {
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum PutBackError {
-    /// The initial mass properties of a link are not those of a body: a mass that is not positive, or an
-    /// inertia that no body has.
+    /// The initial mass properties of a link are impossible for a body: the mass is not positive, or no body
+    /// has the inertia.
     Prior {
         /// Index of the link, in the order of `LINKS`.
         link: usize,
@@ -51,7 +51,7 @@ pub enum PutBackError {
     NotFinite,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl fmt::Debug for PutBackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -72,7 +72,7 @@ impl fmt::Display for PutBackError {
 
 impl core::error::Error for PutBackError {}
 
-/// Maximum number of Newton iterations.
+/// Maximum number of Newton iterations in the search for mass properties.
 const MOST_ITERATIONS: usize = 200;
 
 /// Sets the links' mass properties to those nearest to the current ones that have the base parameters `base`.
@@ -207,8 +207,8 @@ fn inner<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + a.dot(b))
 }
 
-/// Minimises the change of the mass properties by Newton's method. The step length preserves positive
-/// definite pseudo-inertias: a step shorter than one in the norm of the Hessian does (Boyd and Vandenberghe,
+/// Minimises the change of the mass properties by Newton's method. The step length keeps pseudo-inertias
+/// positive definite, which a step shorter than one in the norm of the Hessian does (Boyd and Vandenberghe,
 /// *Convex Optimization*, 2004, ch. 9.6).
 fn least_change<T: Real, const N: usize, const B: usize>(
     map: &Map<T, N, B>,
@@ -218,7 +218,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
 ) -> Result<[Matrix4<T>; N], PutBackError> {
     let prior_inverse = prior.map(|p| inverse(&p));
     let mut p = *prior;
-    let failed = |p: &[Matrix4<T>; N]| {
+    let not_physical_error = |p: &[Matrix4<T>; N]| {
         let residual = (map.value(p) + map.rest - base).amax();
         Err(PutBackError::NotPhysical { residual: to_f64(residual) })
     };
@@ -229,7 +229,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     let least = softness.unwrap_or(T::one());
     let mut share = T::one().max(least);
     if least * T::zero() != T::zero() || least <= T::zero() {
-        return failed(&p);
+        return not_physical_error(&p);
     }
     for _ in 0..MOST_ITERATIONS {
         // Newton step: P − P P₀⁻¹ P − Σ νᵢ P Aᵢ P.
@@ -251,7 +251,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         for (i, soft) in soft.iter().enumerate() {
             s[(i, i)] += *soft;
         }
-        let Some(factor) = Cholesky::new(s) else { return failed(&p) };
+        let Some(factor) = Cholesky::new(s) else { return not_physical_error(&p) };
         let ahead: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] + free[k]);
         let mut nu = map.value(&ahead) + map.rest - base;
         if softness.is_none() {
@@ -274,7 +274,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         }
         let length = length.max(T::zero()).sqrt();
         if length * T::zero() != T::zero() {
-            return failed(&p);
+            return not_physical_error(&p);
         }
         let part = if length < constant(0.25) { T::one() } else { (T::one() + length).recip() };
         for (p, step) in p.iter_mut().zip(&step) {
@@ -288,15 +288,15 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         } else if length < enough {
             let holds = (map.value(&p) + map.rest - base).amax() <= base.amax() * enough;
             let exact = soft.iter().all(|x| *x == T::zero());
-            return if holds || !exact { Ok(p) } else { failed(&p) };
+            return if holds || !exact { Ok(p) } else { not_physical_error(&p) };
         }
     }
-    failed(&p)
+    not_physical_error(&p)
 }
 
-/// Returns the diagonal regularisation of the multipliers' matrix, relative to its diagonal entries: `asked`,
-/// if any. Otherwise it is zero for a matrix of full rank, so that base parameters are satisfied exactly, and
-/// the square root of machine epsilon for a singular one.
+/// Returns the diagonal regularisation for the matrix of the multipliers: `asked` (relative to the diagonal),
+/// if given. Otherwise it is zero for full rank, so that base parameters are met exactly, and `√ε` for a
+/// singular matrix.
 fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) -> SVector<T, B> {
     let regular = asked.is_none()
         && Cholesky::new(*s).is_some_and(|factor| {
@@ -343,7 +343,7 @@ fn pseudo_inertia<T: Real>(link: &Inertial<T>) -> Option<Matrix4<T>> {
     Some(p)
 }
 
-/// Returns the mass properties with a pseudo-inertia.
+/// Returns the mass properties of a link from its 4 × 4 pseudo-inertia matrix.
 fn of_pseudo_inertia<T: Real>(p: &Matrix4<T>) -> Inertial<T> {
     let (xx, yy, zz) = (p[(0, 0)], p[(1, 1)], p[(2, 2)]);
     Inertial::from_standard([

@@ -19,7 +19,7 @@ use crate::private::constant;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertial<T> {
-    /// Mass, kg.
+    /// Mass of the link, kg.
     pub mass: T,
     /// Position of the centre of mass relative to the link's origin, in the link's axes, m.
     pub com: [T; 3],
@@ -28,13 +28,13 @@ pub struct Inertial<T> {
     pub ixx: T,
     /// Entry xy, a product of inertia with the sign of the matrix, kg·m².
     pub ixy: T,
-    /// Entry xz, kg·m².
+    /// Entry xz of the inertia about the centre of mass, kg·m².
     pub ixz: T,
-    /// Entry yy, kg·m².
+    /// Entry yy of the inertia about the centre of mass, kg·m².
     pub iyy: T,
-    /// Entry yz, kg·m².
+    /// Entry yz of the inertia about the centre of mass, kg·m².
     pub iyz: T,
-    /// Entry zz, kg·m².
+    /// Entry zz of the inertia about the centre of mass, kg·m².
     pub izz: T,
 }
 
@@ -76,7 +76,7 @@ impl<T: Real> Inertial<T> {
         }
     }
 
-    /// Returns the mass properties of two bodies fixed to each other, such as a link and its payload.
+    /// Returns the combined mass properties of two rigidly connected bodies, such as a link and its payload.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let (a, b) = (self.to_standard(), other.to_standard());
@@ -106,17 +106,17 @@ impl<T: Real> Inertial<T> {
     where
         T: Into<f64>,
     {
-        let convert = |x: T| constant::<U>(x.into());
+        let convert_number = |x: T| constant::<U>(x.into());
         let Inertial { mass, com, ixx, ixy, ixz, iyy, iyz, izz } = *self;
         Inertial {
-            mass: convert(mass),
-            com: com.map(convert),
-            ixx: convert(ixx),
-            ixy: convert(ixy),
-            ixz: convert(ixz),
-            iyy: convert(iyy),
-            iyz: convert(iyz),
-            izz: convert(izz),
+            mass: convert_number(mass),
+            com: com.map(convert_number),
+            ixx: convert_number(ixx),
+            ixy: convert_number(ixy),
+            ixz: convert_number(ixz),
+            iyy: convert_number(iyy),
+            iyz: convert_number(iyz),
+            izz: convert_number(izz),
         }
     }
 }
@@ -126,7 +126,7 @@ impl<T: Real> Inertial<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Placement<T> {
-    /// Position, m.
+    /// Position of the joint on its parent link, m.
     pub xyz: [T; 3],
     /// Roll, pitch and yaw, rad: rotations about the parent's x, y and z axes, in this order.
     pub rpy: [T; 3],

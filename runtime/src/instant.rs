@@ -1,4 +1,4 @@
-//! Mechanisms at an instant: those whose equations contain time, with the time fixed.
+//! Mechanisms at a fixed time, for functions that require equations without time.
 
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};

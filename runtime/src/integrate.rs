@@ -63,11 +63,11 @@ use nalgebra::SVector;
 /// State of a mechanism: time, s, configuration and velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T, const NQ: usize, const NV: usize> {
-    /// Time, s.
+    /// Time of the state, s.
     pub t: T,
-    /// Configuration, `NQ` numbers in the mechanism's order.
+    /// Configuration `q` of `NQ` numbers, in the order that the mechanism defines.
     pub q: SVector<T, NQ>,
-    /// Velocity, `NV` numbers in the mechanism's order.
+    /// Velocity `v` of `NV` numbers, in the order that the mechanism defines.
     pub v: SVector<T, NV>,
 }
 
@@ -98,9 +98,9 @@ pub(crate) fn settled<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 /// Discontinuity that invalidates the memory of a method from earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jump {
-    /// The inputs jumped; the state did not.
+    /// The inputs changed discontinuously, the state did not.
     Inputs,
-    /// The state, and possibly the inputs, jumped.
+    /// The state changed discontinuously, and possibly the inputs as well.
     State,
 }
 
@@ -108,7 +108,7 @@ pub enum Jump {
 ///
 /// The method itself contains the user's settings (step, tolerance); `Memory` is its state between steps.
 pub trait Method<T: Real> {
-    /// Data passed from one step to the next.
+    /// Memory of the method: data that one step passes to the next.
     type Memory<const NV: usize>: Clone + core::fmt::Debug;
 
     /// Whether steps must end on sample times; otherwise samples are interpolated.
@@ -121,7 +121,7 @@ pub trait Method<T: Real> {
     /// ([`Dynamics::follow`]).
     const LOCATES: bool = false;
 
-    /// Checks the settings: [`Error::InvalidStep`] names the first invalid one.
+    /// Checks the settings of the method. Returns [`Error::InvalidStep`] for the first invalid setting.
     fn check(&self) -> Result<(), Error>;
 
     /// Returns the memory at the start of a run.
@@ -157,7 +157,7 @@ pub(crate) fn is_finite<T: Real, const N: usize>(x: &SVector<T, N>) -> bool {
     x.iter().all(|x| x.is_finite())
 }
 
-/// Returns the largest magnitude of the entries.
+/// Returns the largest magnitude of the entries of a vector.
 fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
 }

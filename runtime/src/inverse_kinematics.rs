@@ -34,7 +34,7 @@ use crate::private::{constant, to_f64};
 use crate::{Frames, Limits, Mechanism, Real, placement_difference};
 use nalgebra::{IsometryMatrix3, SMatrix, SVector};
 
-/// Target pose of a frame.
+/// Target pose of a frame for inverse kinematics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target<T: Real> {
     /// Index of the frame in the list of frames: `index!(Arm::FRAMES, "tool")`, or
@@ -49,7 +49,8 @@ pub struct Target<T: Real> {
 }
 
 impl<T: Real> Target<T> {
-    /// Returns a target of position and orientation, in which one metre has the same weight as one radian.
+    /// Returns a target of position and orientation for a frame. One metre of position error has the same
+    /// weight as one radian of orientation error.
     pub fn pose(frame: usize, placement: IsometryMatrix3<T>) -> Self {
         Self { frame, placement, position: T::one(), orientation: T::one() }
     }
@@ -61,43 +62,43 @@ impl<T: Real> Target<T> {
     }
 }
 
-/// Solution that reaches the targets.
+/// Result of inverse kinematics whose configuration reaches all targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached<T, const NQ: usize> {
     /// Configuration that reaches the targets.
     pub q: SVector<T, NQ>,
-    /// Number of iterations.
+    /// Number of iterations that the solver took.
     pub iterations: usize,
 }
 
-/// Error for targets that were not reached.
+/// Error for targets of inverse kinematics that were not reached.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Unreached<T, const NQ: usize> {
     /// The index of the frame is out of range.
     UnknownFrame {
-        /// Index of the target.
+        /// Index of the target whose frame does not exist.
         target: usize,
     },
     /// A weight or a placement of a target, or the placement of its frame at the start, is not finite, or a
     /// weight is negative.
     NotFinite {
-        /// Index of the target.
+        /// Index of the target that is not finite or has a negative weight.
         target: usize,
     },
     /// The targets are out of reach, contradict each other, or are separated from this start by joint limits.
     OutOfReach {
-        /// Nearest configuration found.
+        /// Configuration nearest to the targets that the solver found.
         q: SVector<T, NQ>,
         /// Largest position error in `q` over the targets with nonzero position weight, m.
         position: f64,
         /// Largest orientation error in `q` over the targets with nonzero orientation weight, rad.
         orientation: f64,
-        /// Number of iterations.
+        /// Number of iterations that the solver took.
         iterations: usize,
     },
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl<T, const NQ: usize> core::fmt::Debug for Unreached<T, NQ> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         core::fmt::Display::fmt(self, f)
@@ -126,14 +127,14 @@ impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
 
 impl<T, const NQ: usize> core::error::Error for Unreached<T, NQ> {}
 
-/// Settings of the solver.
+/// Settings of the inverse-kinematics solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseKinematics<T> {
-    /// Position tolerance, m.
+    /// Position error below which a target counts as reached, m.
     pub position: T,
-    /// Orientation tolerance, rad.
+    /// Orientation error below which a target counts as reached, rad.
     pub orientation: T,
-    /// Maximum number of iterations.
+    /// Maximum number of iterations of the solver.
     pub iterations: usize,
 }
 

@@ -48,16 +48,16 @@ pub struct Lanes<T, const N: usize>(
     pub [T; N],
 );
 
-/// Four double-precision lanes: a register of AVX2.
+/// SIMD vector of four double-precision numbers: one register of AVX2.
 #[allow(non_camel_case_types, reason = "the customary name")]
 pub type f64x4 = Lanes<f64, 4>;
 /// Eight double-precision lanes: a register of AVX-512, two of AVX2, four of SSE2 or NEON.
 #[allow(non_camel_case_types, reason = "the customary name")]
 pub type f64x8 = Lanes<f64, 8>;
-/// Eight single-precision lanes: a register of AVX2.
+/// SIMD vector of eight single-precision numbers: one register of AVX2.
 #[allow(non_camel_case_types, reason = "the customary name")]
 pub type f32x8 = Lanes<f32, 8>;
-/// Sixteen single-precision lanes: a register of AVX-512.
+/// SIMD vector of sixteen single-precision numbers: one register of AVX-512.
 #[allow(non_camel_case_types, reason = "the customary name")]
 pub type f32x16 = Lanes<f32, 16>;
 
@@ -84,7 +84,7 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
         Lanes::from_fn(|k| self.0[k])
     }
 
-    /// Applies a function to each lane.
+    /// Applies a function to each lane and returns the results as lanes.
     #[inline(always)]
     #[must_use]
     pub fn map<U: Copy>(self, f: impl FnMut(T) -> U) -> Lanes<U, N> {
@@ -108,8 +108,8 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
 
 impl<T: Real, const N: usize> Lanes<T, N> {
     /// Returns the sum of all lanes. The upper half of the lanes is added to the lower half until one lane is
-    /// left; for an odd number, the middle lane is carried over to the next round. Four lanes are summed as
-    /// `(x₀ + x₂) + (x₁ + x₃)`.
+    /// left, so that four lanes are summed as `(x₀ + x₂) + (x₁ + x₃)`. For an odd number of lanes, the middle
+    /// one waits for the next round.
     #[inline(always)]
     #[must_use]
     pub fn sum(self) -> T {
@@ -147,7 +147,7 @@ pub fn splat<T: Copy, const N: usize>(x: T) -> Lanes<T, N> {
     Lanes::splat(x)
 }
 
-/// Returns one lane of a matrix, for generated code.
+/// Extracts lane `k` of a matrix of SIMD lanes as a matrix of scalars, for generated code.
 #[inline]
 pub fn lane<T: Real, const N: usize, const R: usize, const C: usize>(
     x: &SMatrix<Lanes<T, N>, R, C>,
@@ -156,8 +156,8 @@ pub fn lane<T: Real, const N: usize, const R: usize, const C: usize>(
     x.map(|x| x.0.get(k).copied().unwrap_or(T::zero()))
 }
 
-/// Returns a matrix from the matrices of its lanes, for generated code. The matrices are computed one after
-/// another, because in a debug build each occupies stack.
+/// Assembles a matrix of SIMD lanes from the scalar matrices of the lanes, for generated code. The scalar
+/// matrices are computed one after another, because each occupies stack in a debug build.
 #[inline]
 pub fn lane_by_lane<T: Real, const N: usize, const R: usize, const C: usize>(
     mut f: impl FnMut(usize) -> SMatrix<T, R, C>,
@@ -242,7 +242,7 @@ macro_rules! operators {
             }
         }
 
-        /// Combines each lane with the same number.
+        /// Combines each lane with the same scalar `other`.
         impl<T: Real, const N: usize> $operator<T> for Lanes<T, N> {
             type Output = Self;
 

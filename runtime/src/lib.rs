@@ -237,7 +237,7 @@ pub mod __private {
 #[cfg(test)]
 mod testing;
 
-/// Runs the README's examples as tests.
+/// Item whose documentation is the README, so that its examples are run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;

@@ -40,7 +40,7 @@ fn scale<T: Real>([a, b, c]: [T; 3], s: T) -> [T; 3] {
     [a * s, b * s, c * s]
 }
 
-/// Returns the Hamilton product of two quaternions.
+/// Returns the Hamilton product of two quaternions x y z w.
 fn product<T: Real>([ax, ay, az, aw]: [T; 4], [bx, by, bz, bw]: [T; 4]) -> [T; 4] {
     let [x, y, z] = cross([ax, ay, az], [bx, by, bz]);
     [
@@ -67,8 +67,8 @@ fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
     add(a, scale(cross(u, inner), constant(2.0)))
 }
 
-/// Returns `small(x)` below the limit and `large(x)` otherwise. If lanes differ, both are evaluated, each at
-/// arguments on its own side of the limit, and every lane has exactly the result that it would have alone.
+/// Returns `small(x)` if `x` is below the limit and `large(x)` otherwise. If lanes differ, both functions are
+/// evaluated within their own ranges, and every lane has the result of a single number.
 fn choose<T: Real, const K: usize>(
     x: T,
     limit: T,
@@ -203,7 +203,7 @@ fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
     [x, y, z, rx, ry, rz]
 }
 
-/// Returns `a + s b`.
+/// Returns the sum `a + s b` of two vectors of six numbers.
 fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
     [a0 + s * b0, a1 + s * b1, a2 + s * b2, a3 + s * b3, a4 + s * b4, a5 + s * b5]
 }

@@ -89,10 +89,11 @@ fn tangent_rates_give_the_velocity() {
         let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
         let rate = free_tangent_rate(dv, v);
         let step = 1e-3;
-        let pose = |t: f64| free_integrate(POSE, plus(dv, t, rate));
-        let slope = |h: f64| plus([0.0; 6], 0.5 / h, free_difference(pose(-h), pose(h)));
+        let pose_at_time = |t: f64| free_integrate(POSE, plus(dv, t, rate));
+        let tangent_velocity =
+            |h: f64| plus([0.0; 6], 0.5 / h, free_difference(pose_at_time(-h), pose_at_time(h)));
         // Central differences, extrapolated: the error is of order step⁴.
-        let (coarse, fine) = (slope(step), slope(step / 2.0));
+        let (coarse, fine) = (tangent_velocity(step), tangent_velocity(step / 2.0));
         let body = plus(plus([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
         assert!(difference(body, v) < 1e-9, "{angle}: {body:?}");
         let [.., rx, ry, rz] = rate;
@@ -114,14 +115,14 @@ fn closed_forms_continue_the_series() {
 #[test]
 fn single_precision_is_accurate_to_its_rounding() {
     for angle in ANGLES {
-        let single = |x: f64| x as f32;
+        let to_single_precision = |x: f64| x as f32;
         let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
         let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
         let exact = free_integrate(POSE, dv);
-        let found = free_integrate(POSE.map(single), dv.map(single)).map(f64::from);
+        let found = free_integrate(POSE.map(to_single_precision), dv.map(to_single_precision)).map(f64::from);
         assert!(difference(found, exact) < 2e-6, "{angle}");
         let exact = free_tangent_rate(dv, v);
-        let found = free_tangent_rate(dv.map(single), v.map(single)).map(f64::from);
+        let found = free_tangent_rate(dv.map(to_single_precision), v.map(to_single_precision)).map(f64::from);
         assert!(difference(found, exact) < 2e-5, "{angle}");
     }
 }

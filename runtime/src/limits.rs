@@ -1,4 +1,4 @@
-//! Limits of coordinates, for controllers and planners.
+//! Limits of the coordinates, velocities and forces of a mechanism, for controllers and planners.
 
 use crate::private::constant;
 use crate::{At, Real};
@@ -31,7 +31,7 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 #[diagnostic::on_unimplemented(message = "`{Self}` has no limits", label = "expected a mechanism")]
 pub trait Limits<const NQ: usize, const NV: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
     /// Returns the lower limit of the coordinate whose rate is each entry of `v`, m or rad; −∞ if unlimited.
@@ -101,7 +101,7 @@ pub fn at_most<T: Real>(x: T, bound: T) -> T {
     x.clamp(constant(f64::NEG_INFINITY), bound)
 }
 
-/// Forwards every function.
+/// Writes functions that return the limits of a wrapped mechanism.
 macro_rules! pass_on {
     ($self:ident => $to:expr) => {
         fn lower_limits(&$self) -> SVector<Self::Scalar, NV> {

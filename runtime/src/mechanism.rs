@@ -5,8 +5,8 @@ use crate::forward::{constants, each_function};
 use crate::integrate::Hooks;
 use nalgebra::{RealField, SMatrix, SVector};
 
-/// Scalar types of generated code: every `Copy` real field of nalgebra, such as `f64`, `f32`, dual numbers
-/// for automatic differentiation and SIMD lanes.
+/// Scalar type of generated code: any `Copy` real field of nalgebra, such as `f64`, `f32`, dual numbers for
+/// automatic differentiation and SIMD lanes.
 pub trait Real: RealField + Copy {}
 
 impl<T: RealField + Copy> Real for T {}
@@ -37,14 +37,14 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
     /// The scalar type: `f64`, `f32` or the struct's own parameter.
     type Scalar: Real;
 
-    /// Name of every entry of `q`.
+    /// Names of the entries of the configuration `q`.
     const CONFIGURATION: [&'static str; NQ];
-    /// Name of every entry of `v`.
+    /// Names of the entries of the velocity `v`.
     const VELOCITIES: [&'static str; NV];
-    /// Name of every entry of `u`.
+    /// Names of the inputs, the entries of `u`.
     const INPUTS: [&'static str; NU];
-    /// SI unit of every entry of `v`, as inferred, such as `rad/s`; `any` if it is undetermined, empty if
-    /// unknown. The corresponding displacement has this unit without `/s`.
+    /// SI units of the entries of `v`, inferred from the declaration, such as `rad/s`. A unit is `any` if
+    /// undetermined, and empty if unknown. The corresponding displacement has this unit times s.
     const VELOCITY_UNITS: [&'static str; NV] = [""; NV];
     /// SI unit of every entry of `u`, in the format of [`VELOCITY_UNITS`](Self::VELOCITY_UNITS).
     const INPUT_UNITS: [&'static str; NU] = [""; NU];
@@ -99,8 +99,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Returns the generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. They depend on `v`
-    /// only if inputs act through the velocity, such as the control surfaces of an aircraft.
+    /// Returns the generalized forces `τ` of the inputs `u`, N and N·m, by the principle of virtual work.
+    /// They depend on `v` only if the effect of inputs does, as for the control surfaces of an aircraft.
     fn generalized_forces(
         &self,
         t: Self::Scalar,
@@ -153,8 +153,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
         dv: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NQ>;
 
-    /// Returns `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so
-    /// that `integrate(from, difference(from, to))` is `to`. Rotations are by the smaller angle.
+    /// Returns the tangent vector `to ⊖ from` that leads from one configuration to another, so that
+    /// `integrate(from, difference(from, to))` is `to`. Rotations take the smaller angle.
     fn difference(
         &self,
         from: &SVector<Self::Scalar, NQ>,
@@ -196,7 +196,8 @@ pub trait Scleronomic {}
 
 impl<M: Scleronomic + ?Sized> Scleronomic for &M {}
 
-/// Implements the trait for references to mechanisms: a controller may borrow its plant.
+/// Implements the trait for references to mechanisms, so that a controller can borrow the mechanism that it
+/// controls.
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for &M
 where

@@ -25,8 +25,8 @@ const fn is_long(numbers: usize) -> bool {
     registers_of_eight(numbers, true) > 1
 }
 
-/// Returns the number of rows of a matrix that are computed together: all rows, if they leave registers for
-/// several columns.
+/// Returns the number of rows of a matrix that are computed together. It is all rows if that leaves registers
+/// for several columns.
 #[must_use]
 pub const fn rows(numbers: usize, wide: bool) -> usize {
     let most = if wide { 48 } else { 24 };
@@ -37,7 +37,7 @@ pub const fn rows(numbers: usize, wide: bool) -> usize {
     numbers.div_ceil(blocks).next_multiple_of(4)
 }
 
-/// Half-open range of neighbouring rows or columns.
+/// Half-open range of adjacent rows or columns.
 type Range = (usize, usize);
 
 /// Neighbouring columns, the rows of the trunk in which their factors are nonzero, and the index of the first

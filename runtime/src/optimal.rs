@@ -78,38 +78,38 @@ pub use limits::{EmptyRange, InputLimits};
 /// are in body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadratic<T, const NV: usize, const NU: usize> {
-    /// Gradient with respect to the configuration.
+    /// Gradient of the costs with respect to the configuration.
     pub q: SVector<T, NV>,
-    /// Gradient with respect to the velocity.
+    /// Gradient of the costs with respect to the velocity.
     pub v: SVector<T, NV>,
-    /// Gradient with respect to the inputs.
+    /// Gradient of the costs with respect to the inputs.
     pub u: SVector<T, NU>,
-    /// Block of the Hessian: configuration by configuration.
+    /// Block of the Hessian of the costs: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
     /// Block of the Hessian: configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
-    /// Block of the Hessian: velocity by velocity.
+    /// Block of the Hessian of the costs: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
     /// Block of the Hessian: configuration (rows) by inputs (columns).
     pub qu: SMatrix<T, NV, NU>,
     /// Block of the Hessian: velocity (rows) by inputs (columns).
     pub vu: SMatrix<T, NV, NU>,
-    /// Block of the Hessian: inputs by inputs.
+    /// Block of the Hessian of the costs: second derivatives with respect to the inputs.
     pub uu: SMatrix<T, NU, NU>,
 }
 
 /// Second-order model of the cost-to-go from a state: [`Quadratic`] without inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value<T, const NV: usize> {
-    /// Gradient with respect to the configuration.
+    /// Gradient of the cost-to-go with respect to the configuration.
     pub q: SVector<T, NV>,
-    /// Gradient with respect to the velocity.
+    /// Gradient of the cost-to-go with respect to the velocity.
     pub v: SVector<T, NV>,
-    /// Block of the Hessian: configuration by configuration.
+    /// Block of the Hessian of the cost-to-go: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
     /// Block of the Hessian: configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
-    /// Block of the Hessian: velocity by velocity.
+    /// Block of the Hessian of the cost-to-go: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
 }
 
@@ -119,9 +119,9 @@ pub struct Value<T, const NV: usize> {
 pub struct Policy<T, const NV: usize, const NU: usize> {
     /// Feedforward change of the inputs that minimises the costs to second order.
     pub change: SVector<T, NU>,
-    /// Feedback gain on displacements of the configuration.
+    /// Feedback gain of the policy on displacements of the configuration.
     pub by_q: SMatrix<T, NU, NV>,
-    /// Feedback gain on changes of the velocity.
+    /// Feedback gain of the policy on changes of the velocity.
     pub by_v: SMatrix<T, NU, NV>,
     /// Coefficients of the expected change of the costs due to `α change`: `α expected[0] + α² expected[1]`.
     pub expected: [T; 2],
@@ -135,7 +135,7 @@ pub struct Indefinite {
     pub input: usize,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl core::fmt::Debug for Indefinite {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         core::fmt::Display::fmt(self, f)
@@ -155,7 +155,7 @@ impl core::fmt::Display for Indefinite {
 impl core::error::Error for Indefinite {}
 
 impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
-    /// Returns zero costs.
+    /// Returns a cost model whose gradients and Hessian are zero.
     pub fn zeros() -> Self {
         let (state, mixed) = (SMatrix::zeros(), SMatrix::zeros());
         Self {
@@ -171,9 +171,10 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         }
     }
 
-    /// Adds the costs `½ weight |r|²` of a residual `r`, given its derivatives with respect to configuration,
-    /// velocity and inputs. The curvature of `r` is neglected (Gauss-Newton). The residual is a quantity to
-    /// be driven to zero, such as the distance of a hand from its target or the violation of a friction cone.
+    /// Adds the costs `½ weight |r|²` of a residual `r` (Gauss–Newton: second derivatives of `r` are
+    /// neglected), given the derivatives of `r` with respect to configuration, velocity and inputs. A
+    /// residual is driven to zero, such as a hand's distance from a target or the violation of a friction
+    /// cone.
     pub fn add_squares<const R: usize>(
         &mut self,
         weight: T,
@@ -260,14 +261,14 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
 }
 
 impl<T: Real, const NV: usize> Value<T, NV> {
-    /// Returns a zero cost-to-go.
+    /// Returns a cost-to-go whose gradient and Hessian are zero.
     pub fn zeros() -> Self {
         let zero = SMatrix::zeros();
         Self { q: SVector::zeros(), v: SVector::zeros(), qq: zero, qv: zero, vv: zero }
     }
 
-    /// Returns the Hessian with respect to `x = (δq, δv)` as one matrix. `NX` is `2 NV`, inferred from the
-    /// requested type; any other value is a compile error.
+    /// Returns the Hessian of the cost-to-go with respect to `x = (δq, δv)` as one matrix. `NX` is `2 NV`,
+    /// inferred from the requested type; any other value is a compile error.
     pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let vq = transposed(&self.qv);

@@ -1,24 +1,25 @@
-//! Outputs of a mechanism for generic code: sensor measurements and their derivatives.
+//! Outputs of a mechanism, such as sensor measurements, and their derivatives, for generic code.
 
 use crate::At;
 use crate::{LinearMotion, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// All outputs of a mechanism in one vector of `NY` numbers, except outputs that name reactions. A generic
-/// estimator compares this vector with measurements. `#[mechanism]` implements the trait for mechanisms with
+/// Vector of all `NY` outputs of a mechanism, except outputs that contain reactions. A generic estimator
+/// compares this vector with measurements. `#[mechanism]` implements the trait for mechanisms with
 /// `#[output(…)]`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no outputs, or another number of them",
     note = "`#[output(expression)] name: Scalar` declares one; reactions are left out"
 )]
 pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: usize> {
-    /// The scalar type.
+    /// Scalar type of the mechanism.
     type Scalar: Real;
 
     /// Name of every entry: that of the output, with `.x`, `.y` and `.z` appended for the components of a
     /// vector.
     const OUTPUTS: [&'static str; NY];
-    /// SI unit of every entry, as inferred, such as `m/s²`; `any` if it is undetermined, empty if unknown.
+    /// SI units of the entries of the output vector, inferred from the declaration, such as `m/s²`; `any` if
+    /// undetermined, empty if unknown.
     const OUTPUT_UNITS: [&'static str; NY] = [""; NY];
 
     /// Returns the outputs in SI units, at time `t` (which matters only if a function of the mechanism
@@ -103,12 +104,12 @@ pub struct OutputJacobians<T, const NY: usize, const NV: usize, const NU: usize>
     pub by_v: SMatrix<T, NY, NV>,
     /// Derivative with respect to the acceleration, per m/s² and rad/s².
     pub by_a: SMatrix<T, NY, NV>,
-    /// Derivative with respect to the inputs.
+    /// Partial derivative of the outputs with respect to the inputs.
     pub by_u: SMatrix<T, NY, NU>,
 }
 
 impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians<T, NY, NV, NU> {
-    /// Returns zero derivatives.
+    /// Returns output derivatives that are all zero.
     pub fn zeros() -> Self {
         let (state, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { by_q: state, by_v: state, by_a: state, by_u }
@@ -158,9 +159,9 @@ impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians
         }
     }
 
-    /// Returns `C` of `δy = C x + D δu`, with `x` the displacements, then the changes of velocity; `D` is
-    /// `by_u`. Call [`in_motion`](Self::in_motion) first, so that the derivatives include those of the
-    /// acceleration. `NX` is `2 NV`, inferred from the requested type; any other value does not compile.
+    /// Returns the matrix `C` of the linearised outputs `δy = C x + D δu`, where `x` has displacements, then
+    /// velocity changes, and `D` is `by_u`. Call [`in_motion`](Self::in_motion) first to include derivatives
+    /// of the acceleration. `NX` is `2 NV`, inferred from the requested type.
     pub fn c<const NX: usize>(&self) -> SMatrix<T, NY, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many columns as there are velocities") };
         SMatrix::from_fn(|i, j| {

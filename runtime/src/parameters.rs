@@ -31,7 +31,7 @@ use core::fmt;
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct ParameterError {
-    /// Violated condition.
+    /// Condition that the checked value violates.
     pub fault: Fault,
     /// Description of the checked value: ``the mass of `rod` ``.
     pub figure: &'static str,
@@ -47,14 +47,14 @@ pub struct ParameterError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The value is infinite or NaN.
+    /// The checked value is infinite or NaN.
     NotFinite,
     /// The value is negative. Masses, sizes and coefficients of friction or damping must be zero or positive.
     Negative,
     /// The value is zero or negative. Sizes of surfaces and the velocities of smooth friction laws must be
     /// positive.
     NotPositive,
-    /// The value is so large that products with it overflow.
+    /// The checked value is so large that products with it overflow.
     TooLarge,
     /// The value is not zero, but so small that its reciprocal overflows.
     TooSmall,
@@ -62,7 +62,7 @@ pub enum Fault {
     NotHalfAngle,
     /// The squared norm of a unit quaternion or vector is not one.
     NotUnit,
-    /// The coefficient of restitution is not between zero and one.
+    /// The coefficient of restitution is below zero or above one.
     NotFraction,
     /// The upper end of a range is below its lower end.
     EmptyRange,
@@ -70,7 +70,7 @@ pub enum Fault {
     Inertia,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl fmt::Debug for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -113,12 +113,13 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Check of one value or of several values together, written into generated code.
+/// Check of the values of parameters that generated code performs: of one value, or of several values
+/// together.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// Condition to check.
+    /// Condition that the values must satisfy.
     pub rule: Rule,
-    /// Description of the value for messages.
+    /// Description of the checked value for error messages.
     pub name: &'static str,
     /// Names of the parameters on which the value depends.
     pub parameters: &'static [&'static str],
@@ -172,11 +173,11 @@ pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), Paramet
 
 /// Limits of magnitudes for a scalar type. The compiler checks constants against the same limits.
 struct Range {
-    /// Largest mass and moment of inertia.
+    /// Maximum mass and moment of inertia that the check accepts, kg and kg·m².
     most: f64,
-    /// Largest length.
+    /// Maximum length that the check accepts, m.
     length: f64,
-    /// Smallest mass other than zero.
+    /// Minimum mass other than zero that the check accepts, kg.
     least: f64,
     /// Relative tolerance of inertias: published values are rounded, and single precision rounds more.
     tolerance: f64,
@@ -191,8 +192,8 @@ impl Range {
     }
 }
 
-/// Moment of inertia, kg·m², below which it counts as zero: exporters write such residues for bodies without
-/// inertia.
+/// Moment of inertia, kg·m², below which a value counts as zero. Exporters of robot files write such small
+/// values for bodies without inertia.
 const NOTHING: f64 = 1e-18;
 
 /// Square of the radius of gyration, m², below which the moments of inertia of a body with mass count as
@@ -206,26 +207,26 @@ fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     }
     let Range { most, length, least, tolerance } = Range::of_scalar::<T>();
     let zero = T::zero();
-    let wrong = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
+    let fault_unless = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
     match (rule, values) {
         (Rule::Mass, [m]) => {
             let (m, least) = (*m, constant(least));
-            wrong(is_at_least(m, zero), Fault::Negative, m)
-                .or_else(|| wrong(is_at_most(m, constant(most)), Fault::TooLarge, m))
-                .or_else(|| wrong(is_zero_or_at_least(m, least), Fault::TooSmall, m))
+            fault_unless(is_at_least(m, zero), Fault::Negative, m)
+                .or_else(|| fault_unless(is_at_most(m, constant(most)), Fault::TooLarge, m))
+                .or_else(|| fault_unless(is_zero_or_at_least(m, least), Fault::TooSmall, m))
         }
-        (Rule::Length, [x]) => wrong(is_at_most(x.abs(), constant(length)), Fault::TooLarge, *x),
-        (Rule::NotNegative, [x]) => wrong(is_at_least(*x, zero), Fault::Negative, *x),
-        (Rule::Positive, [x]) => wrong(*x > zero, Fault::NotPositive, *x),
-        (Rule::HalfAngle, [x]) => wrong(*x > zero && *x < T::frac_pi_2(), Fault::NotHalfAngle, *x),
+        (Rule::Length, [x]) => fault_unless(is_at_most(x.abs(), constant(length)), Fault::TooLarge, *x),
+        (Rule::NotNegative, [x]) => fault_unless(is_at_least(*x, zero), Fault::Negative, *x),
+        (Rule::Positive, [x]) => fault_unless(*x > zero, Fault::NotPositive, *x),
+        (Rule::HalfAngle, [x]) => fault_unless(*x > zero && *x < T::frac_pi_2(), Fault::NotHalfAngle, *x),
         (Rule::Unit, [square]) => {
             let off = (*square - T::one()).abs();
-            wrong(is_at_most(off, constant(tolerance)), Fault::NotUnit, *square)
+            fault_unless(is_at_most(off, constant(tolerance)), Fault::NotUnit, *square)
         }
         (Rule::Fraction, [x]) => {
-            wrong(is_at_least(*x, zero) && is_at_most(*x, T::one()), Fault::NotFraction, *x)
+            fault_unless(is_at_least(*x, zero) && is_at_most(*x, T::one()), Fault::NotFraction, *x)
         }
-        (Rule::Order, [low, high]) => wrong(is_at_least(*high, *low), Fault::EmptyRange, *low - *high),
+        (Rule::Order, [low, high]) => fault_unless(is_at_least(*high, *low), Fault::EmptyRange, *low - *high),
         (Rule::Inertia, [xx, yy, zz, xy, xz, yz, m]) => {
             let moments = [*xx, *yy, *zz, *xy, *xz, *yz];
             let large = moments.iter().find(|x| !is_at_most(x.abs(), constant(most)));
@@ -357,19 +358,20 @@ mod tests {
 
     #[test]
     fn one_lane_suffices_for_a_fault() {
-        let figure = |rule| [Figure { rule, name: "x", parameters: &[] }];
+        let figure_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
         for (rule, values, fault) in TABLE {
             // The other lanes contain values that every rule except `Order` admits.
-            let sound = |k: usize| {
+            let valid_value = |k: usize| {
                 if rule == Rule::Order { k as f64 } else { [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0][k] }
             };
-            let lanes = |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { sound(k) });
-            let values: std::vec::Vec<f64x4> = (0..values.len()).map(lanes).collect();
-            let found = validate(&figure(rule), &values).err().map(|error| error.fault);
+            let lanes_with_one_fault =
+                |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { valid_value(k) });
+            let values: std::vec::Vec<f64x4> = (0..values.len()).map(lanes_with_one_fault).collect();
+            let found = validate(&figure_with_rule(rule), &values).err().map(|error| error.fault);
             assert_eq!(found, fault, "{rule:?} {values:?}");
         }
-        assert_eq!(validate(&figure(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
-        let small = validate(&figure(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
+        assert_eq!(validate(&figure_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
+        let small = validate(&figure_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
         assert_eq!(small.unwrap_err().fault, Fault::TooSmall);
     }
 
@@ -387,8 +389,8 @@ mod tests {
         let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
         let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];
         let moments = [0.1, 0.5, 0.2];
-        let entry = |i: usize, j: usize| (0..3).map(|k| moments[k] * axes[k][i] * axes[k][j]).sum();
-        let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| entry(i, j));
+        let inertia_entry = |i: usize, j: usize| (0..3).map(|k| moments[k] * axes[k][i] * axes[k][j]).sum();
+        let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| inertia_entry(i, j));
         assert!((lacking(full) + 0.2).abs() < 1e-12);
         let [xx, yy, zz, xy, xz, yz] = full;
         let figure = Figure { rule: Rule::Inertia, name: "the inertia of `hand`", parameters: &["m", "l"] };

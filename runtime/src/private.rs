@@ -10,7 +10,7 @@ pub fn constant<T: Real>(x: f64) -> T {
     nalgebra::convert(x)
 }
 
-/// Returns `x` as `f64`, for error messages; NaN if it has no such value.
+/// Converts a scalar to `f64` for error messages; NaN if the conversion is impossible.
 pub(crate) fn to_f64<T: Real>(x: T) -> f64 {
     nalgebra::try_convert(x).unwrap_or(f64::NAN)
 }

@@ -8,7 +8,7 @@ use crate::private::constant;
 use crate::{At, Derivatives, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
-/// Matrix of `NV` by `NV`.
+/// Square matrix with one row and one column for each of the `NV` velocities.
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Second derivatives contracted with factors `λ`: with respect to configuration twice; configuration (rows)

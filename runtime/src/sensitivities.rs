@@ -4,7 +4,7 @@
 use crate::{At, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Derivatives of a mechanism's functions with respect to its `NP` parameters, one column for each.
+/// Derivatives of the functions of a mechanism with respect to its `NP` parameters, one column per parameter.
 /// `#[mechanism(…, sensitivities)]` implements the trait for mechanisms with parameters and without
 /// constraints. Time `t`, s, matters only if a function depends on it.
 #[diagnostic::on_unimplemented(
@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
     Mechanism<NQ, NV, NU>
 {
-    /// Name of every parameter.
+    /// Names of the parameters.
     const PARAMETERS: [&'static str; NP];
 
     /// Returns `∂τ/∂p` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per unit of the

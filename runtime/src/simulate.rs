@@ -65,21 +65,22 @@ where
     }
 }
 
-/// The events `E` and one more event.
+/// List of the events `E` extended by one more event.
 type With<E, T, G, A> = (E, Event<T, G, A>);
-/// The events `E` and an impact.
+/// List of the events `E` extended by one more event whose effect is an impact.
 type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
 
-/// State and inputs at one instant.
+/// Sample of a simulation: state and inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
-    /// Time, s.
+    /// Time of the sample, s.
     pub t: T,
-    /// Configuration.
+    /// Configuration at the time of the sample.
     pub q: SVector<T, NQ>,
-    /// Velocity.
+    /// Velocity at the time of the sample.
     pub v: SVector<T, NV>,
-    /// Inputs; at a control instant those after it.
+    /// Inputs at the time of the sample. At an instant at which a digital controller acts, these are its new
+    /// values.
     pub u: SVector<T, NU>,
     /// Index of the event that this sample reports, in the order of declaration; `None` for other samples.
     pub event: Option<usize>,
@@ -135,14 +136,14 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
     }
 }
 
-/// Times of the samples.
+/// Times at which a simulation emits samples.
 #[derive(Clone, Copy, Debug)]
 enum Samples<'m, T> {
-    /// The end of every step.
+    /// Samples at the end of every step.
     Steps,
-    /// Equal intervals, s.
+    /// Samples at equal intervals of this length, s.
     Every(T),
-    /// Listed times, s.
+    /// Samples at these times, s.
     At(&'m [T]),
 }
 
@@ -157,9 +158,9 @@ pub enum Overlaps {
     /// The surfaces are separated by displacements that satisfy the constraints
     /// ([`contact::project`](crate::contact::project)). If this is impossible, the error is that of `Refuse`.
     Part,
-    /// The overlap remains. Use this option to continue a run: at the end of a step of
-    /// [`TimeStepping`](crate::integrate::TimeStepping), colliding surfaces overlap by up to their approach
-    /// in one step. Bodies that overlap deeply at the start remain so.
+    /// The simulation starts with the overlap unchanged. Use this option to continue a run:
+    /// [`TimeStepping`](crate::integrate::TimeStepping) leaves overlaps of up to the approach of surfaces in
+    /// one step. Deep overlaps at the start remain, too.
     Keep,
 }
 
@@ -281,8 +282,9 @@ where
         Self { samples: Samples::At(times), ..self.reset() }
     }
 
-    /// Sets the inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For
-    /// functions with jumps, such as digital controllers, use [`control_every`](Self::control_every).
+    /// Sets the inputs `u` of the mechanism to a function `|t, q, v|` that is continuous in time, and
+    /// replaces earlier inputs. For functions with jumps, such as digital controllers, use
+    /// [`control_every`](Self::control_every).
     pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, ContinuousInputs<F>, S, E, NQ, NV, NU>
     where
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
@@ -398,12 +400,12 @@ where
         last
     }
 
-    /// Returns the simulation before its first sample.
+    /// Returns the simulation with its progress discarded, so that it starts again with its first sample.
     fn reset(self) -> Self {
         Self { progress: None, over: false, ..self }
     }
 
-    /// Sets inputs of any type.
+    /// Sets the inputs of the simulation to a source of any type.
     #[doc(hidden)]
     pub fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
         let Self { system, method, events, start, overlaps, duration, samples, .. } = self;

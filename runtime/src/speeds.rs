@@ -41,7 +41,7 @@ pub(crate) fn way<T: Real, const N: usize>(
     way
 }
 
-/// Returns [`way`] for a mechanism.
+/// Returns the displacement [`way`] for the displacement rate of a mechanism.
 pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -115,9 +115,9 @@ pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(
     (y * (by_q * z + by_dv * changes), y * by_dv * z)
 }
 
-/// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of `f = Y(q) R(Z(q) dv, Z(q₁) v)`, the rate of `dv` such that `q₁ = q ⊕ dv`
-/// moves with the speeds `v`. The arguments are `Y(q)`, `Z(q)` and `Z(q₁)`; the derivatives of `R`; those of
-/// `q₁`; and `G(q, dv)`, `G(q, f)` and `G(q₁, v)`.
+/// Returns the derivatives `(∂/∂q, ∂/∂dv, ∂/∂v)` of `f = Y(q) R(Z(q) dv, Z(q₁) v)`: the rate of `dv` for
+/// which `q₁ = q ⊕ dv` moves with the generalized speeds `v`. Arguments are `Y(q)`, `Z(q)` and `Z(q₁)`; the
+/// derivatives of `R` and of `q₁`; and `G(q, dv)`, `G(q, f)` and `G(q₁, v)`.
 pub fn displacement_rate_derivatives_in_speeds<T: Real, const N: usize>(
     [y, z, z_there]: [&Square<T, N>; 3],
     (by_way, by_rates): &(Square<T, N>, Square<T, N>),

@@ -60,28 +60,28 @@ pub struct Table<const N: usize> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// An axis has fewer than two points.
+    /// An axis of the table has fewer than two grid points.
     TooFewPoints {
-        /// Index of the axis, counted from zero.
+        /// Index of the invalid axis, counted from zero.
         axis: usize,
     },
     /// A point of an axis is not greater than the point before it, or is infinite or NaN.
     NotIncreasing {
-        /// Index of the axis, counted from zero.
+        /// Index of the invalid axis, counted from zero.
         axis: usize,
-        /// Index of the point on the axis.
+        /// Index of the grid point on the axis that does not increase or is not finite.
         place: usize,
     },
     /// The number of values differs from the number of grid points.
     Size {
-        /// Number of grid points.
+        /// Number of grid points, which is the expected number of values.
         expected: usize,
-        /// Number of values.
+        /// Number of values that were provided.
         found: usize,
     },
-    /// A value is infinite or NaN.
+    /// A value of the table is infinite or NaN.
     NotFinite {
-        /// Index of the value.
+        /// Index of the value that is infinite or NaN.
         place: usize,
     },
 }
@@ -99,7 +99,7 @@ impl TableError {
     }
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl fmt::Debug for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -180,7 +180,7 @@ impl<const N: usize> Table<N> {
         Table { extrapolated: true, ..self }
     }
 
-    /// Returns the grid points of each axis.
+    /// Returns the grid points of each axis of the table.
     #[must_use]
     pub const fn axes(&self) -> &[&'static [f64]; N] {
         &self.axes
@@ -202,9 +202,9 @@ impl<const N: usize> Table<N> {
         self.derivative(x, core::array::from_fn(|i| u8::from(i == k)))
     }
 
-    /// Returns the derivative of the interpolation at `x`, of the given order in each variable; `[1, 1]` is
-    /// ∂²f/∂x₀∂x₁. Second and higher derivatives with respect to one variable are zero in a linear table;
-    /// derivatives above the third are zero in all tables.
+    /// Returns the partial derivative of the interpolated function at `x`, with these orders in each
+    /// variable: `[1, 1]` is ∂²f/∂x₀∂x₁. Higher than first derivatives in one variable are zero for a linear
+    /// table; higher than third ones are zero for every table.
     #[must_use]
     pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
         let mut all = [Weights::one(); 3];
@@ -230,8 +230,8 @@ impl<const N: usize> Table<N> {
         sum
     }
 
-    /// Returns the weights of the four values around a cell of an axis. An axis that the table does not have
-    /// is treated as a single point with weight one.
+    /// Returns the interpolation weights of the four grid values around a cell of an axis. For an axis beyond
+    /// the dimension of the table, only one value has a weight, which is one.
     fn weights<T: Real>(&self, axis: usize, cell: usize, range: [usize; 2], all: &[Weights<T>; 3]) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
         let (Some(points), Some(Weights { place: Some(place), order })) =
@@ -259,21 +259,21 @@ impl<const N: usize> Table<N> {
 
     /// Returns the weighted sum of the values around a cell.
     fn block<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
-        let length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
+        let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
-        let point = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
-        let weight = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
-        let (rows, columns) = (length(1), length(2));
+        let point_index = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
+        let weight_of_slot = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
+        let (rows, columns) = (axis_length(1), axis_length(2));
         let mut sum = T::zero();
         for a in self.slots(0) {
-            let Some(i) = point(0, a) else { continue };
+            let Some(i) = point_index(0, a) else { continue };
             for b in self.slots(1) {
-                let Some(j) = point(1, b) else { continue };
-                let both = weight(0, a) * weight(1, b);
+                let Some(j) = point_index(1, b) else { continue };
+                let both = weight_of_slot(0, a) * weight_of_slot(1, b);
                 for c in self.slots(2) {
-                    let value = point(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
+                    let value = point_index(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
                     if let Some(value) = value {
-                        sum += both * weight(2, c) * constant(*value);
+                        sum += both * weight_of_slot(2, c) * constant(*value);
                     }
                 }
             }
@@ -303,8 +303,8 @@ impl<T> Weights<T> {
     }
 }
 
-/// Position of a variable on an axis: clamped to the axis, its distance beyond the axis, and whether it is
-/// within (one or zero).
+/// Position of an argument on an axis of a table: its value clamped to the axis, its distance beyond the
+/// axis, and one if it is within the axis, otherwise zero.
 #[derive(Clone, Copy)]
 struct AxisPosition<T> {
     x: T,
@@ -312,23 +312,23 @@ struct AxisPosition<T> {
     within: T,
 }
 
-/// Returns one for a nonnegative number and zero for a negative one, lane by lane.
+/// Returns the unit step of each lane: one for a nonnegative number and zero for a negative one.
 fn step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
 impl<T: Real> AxisPosition<T> {
     fn locate(points: &[f64], x: T) -> AxisPosition<T> {
-        let coordinate = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
-        let (low, high) = (coordinate(points.first()), coordinate(points.last()));
+        let coordinate_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
+        let (low, high) = (coordinate_or_zero(points.first()), coordinate_or_zero(points.last()));
         let inner = x.max(low).min(high);
         // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
         AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
     }
 
-    /// Returns the half-open range of cells that can contain the position: one cell, or all cells if lanes
-    /// differ.
+    /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
+    /// if SIMD lanes differ.
     fn cells(&self, points: &[f64]) -> [usize; 2] {
         let last = points.len().saturating_sub(2);
         let (mut low, mut high) = (0, last);
@@ -347,27 +347,27 @@ impl<T: Real> AxisPosition<T> {
         [low, low + 1]
     }
 
-    /// Returns one if the cell contains the position and zero otherwise, lane by lane.
+    /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
     fn share(&self, points: &[f64], cell: usize) -> T {
-        let step_at = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { step_at(cell) };
-        low - if last { T::zero() } else { step_at(cell + 1) }
+        let low = if cell == 0 { T::one() } else { step_at_point(cell) };
+        low - if last { T::zero() } else { step_at_point(cell + 1) }
     }
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.
     fn weights(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
         let around = Around::new(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
-        let value = |order| around.weights(s, order);
+        let weights_of_order = |order| around.weights(s, order);
         match (order, shape.extrapolated) {
             (0, true) => {
-                let (value, slope) = (value(0), value(1));
+                let (value, slope) = (weights_of_order(0), weights_of_order(1));
                 core::array::from_fn(|k| value[k] + self.beyond * slope[k])
             }
-            (0, false) => value(0),
-            (1, true) => value(1),
-            _ => value(order).map(|w| w * self.within),
+            (0, false) => weights_of_order(0),
+            (1, true) => weights_of_order(1),
+            _ => weights_of_order(order).map(|w| w * self.within),
         }
     }
 }
@@ -382,11 +382,12 @@ struct Around {
 
 impl Around {
     fn new(points: &[f64], cell: usize, smooth: bool) -> Around {
-        let coordinate = |k: usize| points.get(k).copied();
-        let (start, end) = (coordinate(cell).unwrap_or(0.0), coordinate(cell + 1).unwrap_or(1.0));
+        let coordinate_of_point = |k: usize| points.get(k).copied();
+        let (start, end) =
+            (coordinate_of_point(cell).unwrap_or(0.0), coordinate_of_point(cell + 1).unwrap_or(1.0));
         let h = end - start;
-        let before = cell.checked_sub(1).and_then(coordinate).map(|p| start - p);
-        let after = coordinate(cell + 2).map(|p| p - end);
+        let before = cell.checked_sub(1).and_then(coordinate_of_point).map(|p| start - p);
+        let after = coordinate_of_point(cell + 2).map(|p| p - end);
         let slopes = smooth.then(|| {
             // Slope of the parabola through three points, times `h`: at the middle point, otherwise at the
             // first or the last point.

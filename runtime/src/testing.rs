@@ -13,10 +13,10 @@ pub(crate) struct OneDof<T> {
     pub(crate) energy: fn(T) -> T,
 }
 
-/// Returns the oscillator `q̈ = −q`.
+/// Returns the harmonic oscillator `q̈ = −q` as a test mechanism.
 pub(crate) fn oscillator<T: Real>() -> OneDof<T> {
-    let half = |q: T| q * q * constant(0.5);
-    OneDof { inertia: T::one(), damping: T::zero(), force: |q| -q, energy: half }
+    let half_square = |q: T| q * q * constant(0.5);
+    OneDof { inertia: T::one(), damping: T::zero(), force: |q| -q, energy: half_square }
 }
 
 /// Returns a pendulum of unit mass and length under unit gravity.

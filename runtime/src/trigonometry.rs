@@ -40,8 +40,8 @@ pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N],
     one_by_one(&x)
 }
 
-/// Numbers aligned to cache lines. A function with such a value on its stack aligns its whole stack frame, so
-/// that spilled registers never cross a cache line.
+/// Value that is aligned to cache lines. A function with such a value on its stack aligns the whole stack
+/// frame, so that spilled registers never cross a cache line.
 #[repr(align(64))]
 pub(crate) struct Aligned<T>(pub(crate) T);
 
@@ -96,8 +96,8 @@ fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
     rotate_quadrant(s, c, shifted)
 }
 
-/// Coefficients of `(sin r - r) / r³` by powers of `r²`: those of fdlibm's `__kernel_sin` (Sun Microsystems
-/// 1993).
+/// Coefficients of the polynomial for `(sin r - r) / r³` in `r²`, from fdlibm's `__kernel_sin` (Sun
+/// Microsystems 1993).
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
 const SINE: [f64; 6] = [
     -1.666_666_666_666_663_243_48e-1,
@@ -108,7 +108,7 @@ const SINE: [f64; 6] = [
     1.589_690_995_211_550_102_21e-10,
 ];
 
-/// Coefficients of `(cos r - 1 + r² / 2) / r⁴` by powers of `r²`: those of fdlibm's `__kernel_cos`.
+/// Coefficients of the polynomial for `(cos r - 1 + r² / 2) / r⁴` in `r²`, from fdlibm's `__kernel_cos`.
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
 const COSINE: [f64; 6] = [
     4.166_666_666_666_660_190_37e-2,
@@ -154,8 +154,8 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     (s, c, shifted)
 }
 
-/// Returns `x` minus `quarters` times π/2, fewer than 2¹⁶ of them, as the sum of two numbers. Both may be as
-/// small as the second: then the sine is their sum, and the cosine one.
+/// Returns the reduced angle `x − quarters · π/2`, for fewer than 2¹⁶ quarters, as an unevaluated sum of two
+/// numbers. If both are tiny, the sine of the angle is their sum, and the cosine is one.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
@@ -178,8 +178,8 @@ fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
     (r, A::neg_mul_add(quarters, rest, (first - r) - second))
 }
 
-/// Rotates sine and cosine by the quadrant: an odd quadrant exchanges them, and bits of the quadrant are
-/// their signs.
+/// Converts sine and cosine of the reduced angle to those of the angle by its quadrant. An odd quadrant
+/// exchanges them, and bits of the quadrant determine their signs.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn rotate_quadrant(s: f64, c: f64, shifted: f64) -> (f64, f64) {
@@ -192,7 +192,7 @@ pub(crate) fn rotate_quadrant(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     (f64::from_bits(s ^ s_sign), f64::from_bits(c ^ c_sign))
 }
 
-/// Returns `a + b z`.
+/// Returns the linear polynomial `a + b z`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn linear<A: Registers, X: Number<A>>(z: X, a: f64, b: f64) -> X {

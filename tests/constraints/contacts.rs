@@ -25,7 +25,8 @@ struct Cones {
     contact: Rolling,
 }
 
-/// Rolling cones with one inside the other, and with the two surfaces of the pair exchanged.
+/// Bevel gears: a cone that rolls inside a funnel, each on an axle of its own. The surface of the driven
+/// wheel is named first.
 #[mechanism]
 struct ConeInFunnel {
     small: f64,
@@ -105,7 +106,7 @@ fn a_cone_turns_about_the_line_of_contact() {
     assert!((held - a.fixed_rows::<3>(3)).amax() < 1e-11 * held.amax());
 }
 
-/// Ball on a cone that stands on its base.
+/// Ball that rolls on a cone, which stands on its base.
 #[mechanism(gravity = -9.81 * z)]
 struct BallOnCone {
     #[body(mass = 0.3, inertia = sphere(0.3, 0.05))]
@@ -204,13 +205,14 @@ fn derivatives_on_a_surface() {
     let accelerations =
         |q: &SVector<f64, 9>, v: &SVector<f64, 8>| OnPoints {}.forward_dynamics(q, v, &SVector::zeros());
     for k in 0..8 {
-        let unit = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
-        let slope = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
+        let unit_step = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
+        let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
             ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
         };
-        let found = slope(&|h| accelerations(&OnPoints {}.integrate(&q, &unit(h)), &v), 1e-3);
+        let found =
+            five_point_derivative(&|h| accelerations(&OnPoints {}.integrate(&q, &unit_step(h)), &v), 1e-3);
         assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
-        let found = slope(&|h| accelerations(&q, &(v + unit(h))), 1e-3);
+        let found = five_point_derivative(&|h| accelerations(&q, &(v + unit_step(h))), 1e-3);
         assert!((found - by_v.column(k)).amax() < 1e-6 * by_v.amax(), "{found} {}", by_v.column(k));
     }
 }
@@ -275,7 +277,7 @@ fn a_bowl_is_a_surface() {
     assert!((lambda[0] - forces[0]).abs() < 1e-11 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
 }
 
-/// Particle in a paraboloid, as a constraint on its coordinates.
+/// Particle in a paraboloid, which is declared as a constraint on the coordinates.
 #[mechanism(gravity = -9.81 * z)]
 struct BeadInDish {
     #[particle(mass = 0.1)]

@@ -1,4 +1,4 @@
-//! Numbers of operations of constrained dynamics.
+//! Checks of the numbers of operations in generated code for constrained dynamics.
 
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
@@ -11,9 +11,9 @@ use syn::{Item, Meta};
 
 /// Returns the number of multiplications, additions and divisions of the constrained dynamics.
 fn operations(arguments: &str, item: &str) -> usize {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let output = source.and_then(|source| compile(&source, &graph, &mut cx));
     let (_, output) = output.unwrap_or_else(|| panic!("{}\n{item}", cx.messages().join("\n")));
@@ -55,7 +55,7 @@ fn a_chain_of_loops_costs_in_proportion_to_its_length() {
     assert!(counts[0] <= 300, "{counts:?}");
 }
 
-/// Returns the mechanism of a file of the models, with the arguments of its attribute.
+/// Returns the mechanism in the file `name` of the models: the arguments of its attribute, and its struct.
 fn model(name: &str) -> (String, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/src/{name}.rs"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

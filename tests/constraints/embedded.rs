@@ -152,16 +152,17 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
         // Reactions: one linkage has them from the multipliers of the elimination, the other from the joints
         // of the closed-form solution.
         let (u, here) = (SVector::from([2.0]), SVector::from([full[0], full[1]]));
-        let close = |x: linkwork::nalgebra::Vector3<f64>, y: linkwork::nalgebra::Vector3<f64>| {
+        let assert_close_vectors = |x: linkwork::nalgebra::Vector3<f64>,
+                                    y: linkwork::nalgebra::Vector3<f64>| {
             assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");
         };
-        close(solved.on_crank(&q, &here, &u), bar.on_crank(&all, &v_all, &u));
-        close(solved.turning_crank(&q, &here, &u), bar.turning_crank(&all, &v_all, &u));
-        close(solved.on_coupler(&q, &here, &u), bar.on_coupler(&all, &v_all, &u));
-        close(solved.on_rocker(&q, &here, &u), bar.on_rocker(&all, &v_all, &u));
-        close(solved.at_closing(&q, &here, &u), bar.at_closing(&all, &v_all, &u));
-        close(solved.on_cart(&q, &here, &u), bar.on_cart(&all, &v_all, &u));
-        close(solved.turning_cart(&q, &here, &u), bar.turning_cart(&all, &v_all, &u));
+        assert_close_vectors(solved.on_crank(&q, &here, &u), bar.on_crank(&all, &v_all, &u));
+        assert_close_vectors(solved.turning_crank(&q, &here, &u), bar.turning_crank(&all, &v_all, &u));
+        assert_close_vectors(solved.on_coupler(&q, &here, &u), bar.on_coupler(&all, &v_all, &u));
+        assert_close_vectors(solved.on_rocker(&q, &here, &u), bar.on_rocker(&all, &v_all, &u));
+        assert_close_vectors(solved.at_closing(&q, &here, &u), bar.at_closing(&all, &v_all, &u));
+        assert_close_vectors(solved.on_cart(&q, &here, &u), bar.on_cart(&all, &v_all, &u));
+        assert_close_vectors(solved.turning_cart(&q, &here, &u), bar.turning_cart(&all, &v_all, &u));
         assert!(solved.at_closing(&q, &here, &u).norm() > 1.0);
         let energy = solved.kinetic_energy(&q, &v) + solved.potential_energy(&q);
         assert!(energy.is_finite());
@@ -216,13 +217,13 @@ fn a_solved_six_bar_transmits_what_it_does_with_multipliers() {
         });
         let mut all = SVector::from([angle, coupler.0 - angle, rocker.0, 0.0, 0.0]);
         let order = SixBar::VELOCITIES;
-        let index = |name: &str| order.iter().position(|v| *v == name).expect("a joint of the tree");
-        all[index("guide")] = slide.1;
-        all[index("third")] = rod.0 - rocker.0;
+        let joint_index = |name: &str| order.iter().position(|v| *v == name).expect("a joint of the tree");
+        all[joint_index("guide")] = slide.1;
+        all[joint_index("third")] = rod.0 - rocker.0;
         assert!(bar.constraint_residuals(&all).amax() < 1e-13, "{}", bar.constraint_residuals(&all));
         let v = bar.project_velocity(&all, &SVector::from([3.0, 0.0, 0.0, 0.0, 0.0])).expect("regular");
         let here = SVector::from([v[0]]);
-        assert!((solved.sliding(&q, &here).x - v[index("guide")]).abs() < 1e-12);
+        assert!((solved.sliding(&q, &here).x - v[joint_index("guide")]).abs() < 1e-12);
         let a = solved.forward_dynamics(&q, &here, &SVector::zeros());
         let b = bar.forward_dynamics(&all, &v, &SVector::zeros());
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b[0].abs()), "{a} and {b} at {angle}");

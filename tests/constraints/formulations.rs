@@ -28,7 +28,7 @@ struct Chain {
     masses: (f64, [f64; 6]),
 }
 
-/// Joints that close a loop, with their arguments.
+/// Types of joints that can close a loop, with their arguments.
 const CLOSING: [(&str, &str); 7] = [
     ("Pin", ", about = z"),
     ("Ball", ""),
@@ -41,14 +41,14 @@ const CLOSING: [(&str, &str); 7] = [
 
 impl Chain {
     fn source(&self, arguments: &str) -> (String, String) {
-        let vector = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
+        let vector_text = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
         let mut item = String::from("struct Chain {\n");
         let mut parent = "ground".to_string();
         for (k, ((axis, offset, slide), share)) in self.joints.iter().zip(self.masses.1).enumerate() {
             let mass = 1.5 * 10_f64.powf(self.masses.0 * (share - 0.5));
             let axis = match self.planar {
                 true => if *slide { "x" } else { "z" }.to_string(),
-                false => format!("unit({})", vector(axis)),
+                false => format!("unit({})", vector_text(axis)),
             };
             let offset = if self.planar { [offset[0], offset[1], 0.0] } else { *offset };
             let (kind, key) = if *slide { ("Sleeve", "along") } else { ("Pin", "about") };
@@ -57,8 +57,8 @@ impl Chain {
                 "#[body(mass = {mass:?}, com = {}, inertia = diagonal({mass:?} / 5, {mass:?} / 4, {mass:?} / \
                  3))] b{k}: Body,
                 #[joint({parent}.at({}) -> b{k}, {key} = {axis})] j{k}: {kind},",
-                vector(&offset.map(|x| x / 2.0)),
-                vector(&offset)
+                vector_text(&offset.map(|x| x / 2.0)),
+                vector_text(&offset)
             );
             parent = format!("b{k}");
         }
@@ -67,15 +67,15 @@ impl Chain {
         let _ = writeln!(
             item,
             "#[joint({parent}.at(0.4 * x) -> ground.at({}){key})] closing: {kind},\n}}",
-            vector(&anchor)
+            vector_text(&anchor)
         );
         (format!("gravity = -9.81 * y{arguments}"), item)
     }
 }
 
 fn chains() -> impl Strategy<Value = Chain> {
-    let direction = || prop::array::uniform3(-1.0..1.0_f64);
-    let joint = (direction(), direction(), prop::bool::weighted(0.2))
+    let random_direction = || prop::array::uniform3(-1.0..1.0_f64);
+    let joint = (random_direction(), random_direction(), prop::bool::weighted(0.2))
         .prop_filter("a direction needs a length", |(axis, ..)| {
             axis.iter().map(|x| x * x).sum::<f64>() > 0.1
         });
@@ -101,9 +101,9 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
 /// their values before the elimination.
 fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
     fn has_solution<const NC: usize>(found: &[f64]) -> bool {
-        let part = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
-        let (pivots, before) = (part(1), part(2));
-        let all = Elimination { accelerations: [], multipliers: part(0), pivots, before };
+        let part_of_solution = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
+        let (pivots, before) = (part_of_solution(1), part_of_solution(2));
+        let all = Elimination { accelerations: [], multipliers: part_of_solution(0), pivots, before };
         independent_solution::<f64, 0, NC>(&all).is_some()
     }
     let found = &found[nv..];
@@ -155,17 +155,20 @@ fn both_formulations_fulfil_the_equations() {
                 }
                 let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
                 // The residual of an equation, and its largest term, which bounds the rounding error.
-                let sum = |terms: &[f64]| {
+                let sum_and_largest_term = |terms: &[f64]| {
                     (terms.iter().sum::<f64>().abs(), terms.iter().fold(0.0_f64, |s, x| s.max(x.abs())))
                 };
-                let motion = |i: usize| -> Vec<f64> {
+                let terms_of_motion_equation = |i: usize| -> Vec<f64> {
                     let held = (0..nc).map(|c| -j[c * nv + i] * lambda[c]);
                     (0..nv).map(|k| m[i * nv + k] * a[k]).chain(held).chain([-f[i]]).collect()
                 };
                 let rate =
                     |c: usize| -> Vec<f64> { (0..nv).map(|k| j[c * nv + k] * a[k]).chain([b[c]]).collect() };
-                for equations in [(0..nv).map(motion).collect::<Vec<_>>(), (0..nc).map(rate).collect()] {
-                    let sums: Vec<(f64, f64)> = equations.iter().map(|terms| sum(terms)).collect();
+                for equations in
+                    [(0..nv).map(terms_of_motion_equation).collect::<Vec<_>>(), (0..nc).map(rate).collect()]
+                {
+                    let sums: Vec<(f64, f64)> =
+                        equations.iter().map(|terms| sum_and_largest_term(terms)).collect();
                     let (left, largest) =
                         sums.iter().fold((0.0_f64, 1.0_f64), |s, x| (s.0.max(x.0), s.1.max(x.1)));
                     assert!(left < 1e-8 * largest, "{what}: {sums:?} of {chain:?} at {seed}");
@@ -188,21 +191,24 @@ proptest! {
     fn rates_and_biases_are_derivatives(chain in chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
-            let speed = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
+            let velocity_sample = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
             let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::from_symbol(s) {
-                Quantity::Configuration(k) => q[k] + step * speed(k),
-                Quantity::Velocity(k) => speed(k),
+                Quantity::Configuration(k) => q[k] + step * velocity_sample(k),
+                Quantity::Velocity(k) => velocity_sample(k),
                 _ => 0.0,
             });
-            let slope = |e: &[Expr<'_>]| -> Vec<f64> {
+            let difference_quotients = |e: &[Expr<'_>]| -> Vec<f64> {
                 let h = 1e-5;
                 values_after(e, h).iter().zip(values_after(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
             };
             let (residuals, rates) = (constraints::residuals(model), constraints::rates(model));
-            let scale = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            for (derivative, of) in [(values_after(&rates, 0.0), slope(&residuals)), (values_after(&constraints::biases(model), 0.0), slope(&rates))] {
+            let largest_magnitude = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+            for (derivative, of) in [
+                (values_after(&rates, 0.0), difference_quotients(&residuals)),
+                (values_after(&constraints::biases(model), 0.0), difference_quotients(&rates)),
+            ] {
                 for (d, o) in derivative.iter().zip(&of) {
-                    assert!((d - o).abs() < 1e-6 * scale(&derivative), "{d} and {o} of {chain:?}");
+                    assert!((d - o).abs() < 1e-6 * largest_magnitude(&derivative), "{d} and {o} of {chain:?}");
                 }
             }
         });

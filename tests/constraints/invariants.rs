@@ -95,8 +95,8 @@ where
     m.kinetic_energy(0.0, &q, &v) + m.potential_energy(0.0, &q)
 }
 
-/// Checks by differences that constraint velocities are the rates of the residuals, and biases those of the
-/// constraint velocities.
+/// Checks by finite differences that constraint velocities are the rates of the constraint residuals, and
+/// that biases follow from the rates of the constraint velocities.
 fn rates<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -212,8 +212,8 @@ fn states_off_the_constraints_are_errors() {
 fn linkages_are_assembled_from_afar() {
     let linkage = FourBar { g: 9.81, density: 1.0, a: 0.2, b: 0.6, c: 0.5, d: 0.6 };
     for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
-        let angle = |k: i32| f64::from(k) * std::f64::consts::FRAC_PI_4;
-        let guess = SVector::from([0.6, angle(i), angle(j)]);
+        let multiple_of_eighth_turn = |k: i32| f64::from(k) * std::f64::consts::FRAC_PI_4;
+        let guess = SVector::from([0.6, multiple_of_eighth_turn(i), multiple_of_eighth_turn(j)]);
         let q = linkage.assemble(&guess, &[0]).expect("it closes at this angle of the crank");
         assert!(q[0] == 0.6 && linkage.constraint_residuals(&q).amax() < 1e-12, "{guess:?}: {q:?}");
     }

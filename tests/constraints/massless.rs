@@ -1,4 +1,4 @@
-//! A linkage without inertia is assembled, too.
+//! Checks that a linkage without inertia can be assembled.
 
 use linkwork::prelude::*;
 

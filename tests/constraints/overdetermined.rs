@@ -76,8 +76,8 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
         assert!((jacobian * a + linkage.constraint_bias(&q, &v)).norm() < 1e-9 * (1.0 + a.norm()));
         // The multipliers of minimum norm have no component along forces that do no work in any motion of the
         // tree.
-        let column = |k: usize| Vector3::from(jacobian.column(k));
-        let idle = column(0).cross(&column(1)).normalize();
+        let jacobian_column = |k: usize| Vector3::from(jacobian.column(k));
+        let idle = jacobian_column(0).cross(&jacobian_column(1)).normalize();
         assert!((jacobian.transpose() * idle).norm() < 1e-9);
         assert!(lambda.dot(&idle).abs() < 1e-8 * (1.0 + lambda.norm()), "{lambda}");
     }

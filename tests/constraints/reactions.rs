@@ -60,7 +60,7 @@ fn reactions_balance_every_free_body() {
         let u = SVector::from([3.0]);
         let a = slider.forward_dynamics(&q, &v, &slider.generalized_forces(&q, &u));
         let (on_rod, on_piston) = (slider.on_rod(&q, &v, &u), slider.on_piston(&q, &v, &u));
-        let rod = |along: f64| {
+        let point_on_rod = |along: f64| {
             let turned = q[0] + q[1];
             Vector3::new(
                 0.2 * q[0].cos() + along * turned.cos(),
@@ -68,25 +68,29 @@ fn reactions_balance_every_free_body() {
                 0.0,
             )
         };
-        let stretch = Vector3::new(0.0, 0.5, 0.0) - rod(0.2);
+        let stretch = Vector3::new(0.0, 0.5, 0.0) - point_on_rod(0.2);
         let spring = stretch * (40.0 * (stretch.norm() - 0.3) / stretch.norm());
-        let close = |found: Vector3<f64>, expected: Vector3<f64>| {
+        let assert_close_vectors = |found: Vector3<f64>, expected: Vector3<f64>| {
             assert!((found - expected).norm() < 1e-10 * (1.0 + expected.norm()), "{found} for {expected}");
         };
         // Forces: the joint reactions, the weight and the spring force give each centre of mass its
         // acceleration.
         let moved = slider.rod_acceleration(&q, &v, &a);
-        close(on_rod - on_piston + spring + weight * 0.8, moved * 0.8);
+        assert_close_vectors(on_rod - on_piston + spring + weight * 0.8, moved * 0.8);
         let moved = slider.crank_acceleration(&q, &v, &a);
-        close(slider.on_crank(&q, &v, &u) - on_rod + weight * 1.5, moved * 1.5);
-        close(on_piston + slider.wall(&q, &v, &u) + weight * 0.5, Vector3::new(a[2], 0.0, 0.0) * 0.5);
+        assert_close_vectors(slider.on_crank(&q, &v, &u) - on_rod + weight * 1.5, moved * 1.5);
+        assert_close_vectors(
+            on_piston + slider.wall(&q, &v, &u) + weight * 0.5,
+            Vector3::new(a[2], 0.0, 0.0) * 0.5,
+        );
         // Moments about the centre of the rod, and about the crank's bearing, where the motor acts.
-        let moment = (rod(0.0) - rod(0.3)).cross(&on_rod) - (rod(0.6) - rod(0.3)).cross(&on_piston)
-            + (rod(0.2) - rod(0.3)).cross(&spring);
-        close(moment, Vector3::new(0.0, 0.0, 0.8 * 0.36 / 12.0 * (a[0] + a[1])));
-        let moment = slider.turning_crank(&q, &v, &u) - rod(0.0).cross(&on_rod)
-            + (rod(0.0) * 0.5).cross(&(weight * 1.5));
-        close(moment, Vector3::new(0.0, 0.0, 1.5 * 0.04 / 3.0 * a[0]));
+        let moment = (point_on_rod(0.0) - point_on_rod(0.3)).cross(&on_rod)
+            - (point_on_rod(0.6) - point_on_rod(0.3)).cross(&on_piston)
+            + (point_on_rod(0.2) - point_on_rod(0.3)).cross(&spring);
+        assert_close_vectors(moment, Vector3::new(0.0, 0.0, 0.8 * 0.36 / 12.0 * (a[0] + a[1])));
+        let moment = slider.turning_crank(&q, &v, &u) - point_on_rod(0.0).cross(&on_rod)
+            + (point_on_rod(0.0) * 0.5).cross(&(weight * 1.5));
+        assert_close_vectors(moment, Vector3::new(0.0, 0.0, 1.5 * 0.04 / 3.0 * a[0]));
         // Outputs in other axes, and as scalars.
         let turned = q[0] + q[1];
         let along = slider.along_rod(&q, &v, &u);

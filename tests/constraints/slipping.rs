@@ -1,11 +1,11 @@
-//! Sliding contacts with dry friction.
+//! Checks of sliding contact constraints with dry friction.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// Disk on an incline, free to move in its plane.
+/// Disk on an incline that can slide and roll in a vertical plane.
 #[mechanism(gravity = -9.81 * y)]
 struct Roller {
     slope: f64,
@@ -32,8 +32,9 @@ impl Roller {
     }
 }
 
-/// On steep inclines the accelerations are `g (sin θ − μ cos θ)` and `2 μ g cos θ / R`. On gentle ones the
-/// disk rolls with `⅔ g sin θ`, and creeps at a constant rate.
+/// Checks a disk on inclines. On steep ones it slides with the accelerations `g (sin θ − μ cos θ)` and
+/// `2 μ g cos θ / R`; on gentle ones it rolls with `⅔ g sin θ`, while the smoothed friction lets it creep at
+/// a constant velocity.
 #[test]
 fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
     let (mu, v0) = (0.3_f64, 1e-3_f64);
@@ -42,27 +43,31 @@ fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
         let disk = Roller { slope, mu };
         let (s, c) = slope.sin_cos();
         let share = s / c / (3.0 * mu);
-        let down = |a: &SVector<f64, 3>| a[0] * c - a[1] * s;
+        let acceleration_down_slope = |a: &SVector<f64, 3>| a[0] * c - a[1] * s;
         let (q, v) = match share < 1.0 {
             true => disk.state(1.0, -(1.0 - v0 * share / (1.0 - share * share).sqrt()) / 0.15),
             false => disk.state(20.0, -10.0 / 0.15),
         };
         let (a, normal) = disk.constrained_dynamics(&q, &v, &SVector::zeros());
-        let found = [normal[0], down(&a), a[2]];
+        let found = [normal[0], acceleration_down_slope(&a), a[2]];
         let part = if share < 1.0 { share } else { 10.0 / 10.0_f64.hypot(v0) };
         let expected = [0.8 * 9.81 * c, 9.81 * (s - mu * part * c), -2.0 * mu * part * 9.81 * c / 0.15];
         for (f, e) in found.iter().zip(expected) {
             assert!((f - e).abs() < 1e-11, "at {slope}: {found:?}, not {expected:?}");
         }
         if share < 1.0 {
-            assert!((down(&a) - 2.0 / 3.0 * 9.81 * s).abs() < 1e-11);
+            assert!((acceleration_down_slope(&a) - 2.0 / 3.0 * 9.81 * s).abs() < 1e-11);
         }
         // From rest, the motion approaches the same steady acceleration.
         let (q, v) = disk.state(0.0, 0.0);
         let method = DormandPrince::new().tolerance(1e-9, 1e-9);
         let end = simulate(&disk).from(q, v).method(method).duration(0.5).finish()?;
         let steady = if share < 1.0 { 2.0 / 3.0 * s } else { s - mu * c };
-        assert!((down(&end.v) - 9.81 * steady * 0.5).abs() < 2e-3, "{} at {slope}", down(&end.v));
+        assert!(
+            (acceleration_down_slope(&end.v) - 9.81 * steady * 0.5).abs() < 2e-3,
+            "{} at {slope}",
+            acceleration_down_slope(&end.v)
+        );
     }
     Ok(())
 }
@@ -155,22 +160,27 @@ fn derivatives_are_those_of_the_motion() {
         let (by_q, by_v, by_tau) = COIN.forward_dynamics_derivatives(&q, &v, &tau);
         let scale = by_q.amax().max(by_v.amax());
         for k in 0..6 {
-            let unit = |h: f64| SVector::<f64, 6>::from_fn(|i, _| if i == k { h } else { 0.0 });
-            let slope = |f: &dyn Fn(f64) -> SVector<f64, 6>, h: f64| {
+            let unit_step = |h: f64| SVector::<f64, 6>::from_fn(|i, _| if i == k { h } else { 0.0 });
+            let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 6>, h: f64| {
                 ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
             };
-            let found = slope(&|h| COIN.forward_dynamics(&COIN.integrate(&q, &unit(h)), &v, &tau), 1e-4);
+            let found = five_point_derivative(
+                &|h| COIN.forward_dynamics(&COIN.integrate(&q, &unit_step(h)), &v, &tau),
+                1e-4,
+            );
             assert!((found - by_q.column(k)).amax() < 1e-6 * scale, "∂v̇/∂q {k}: {found} {}", by_q.column(k));
-            let found = slope(&|h| COIN.forward_dynamics(&q, &(v + unit(h)), &tau), 1e-4);
+            let found =
+                five_point_derivative(&|h| COIN.forward_dynamics(&q, &(v + unit_step(h)), &tau), 1e-4);
             assert!((found - by_v.column(k)).amax() < 1e-6 * scale, "∂v̇/∂v {k}: {found} {}", by_v.column(k));
-            let found = slope(&|h| COIN.forward_dynamics(&q, &v, &(tau + unit(h))), 1e-4);
+            let found =
+                five_point_derivative(&|h| COIN.forward_dynamics(&q, &v, &(tau + unit_step(h))), 1e-4);
             assert!((found - by_tau.column(k)).amax() < 1e-8 * by_tau.amax(), "∂v̇/∂τ {k}");
         }
     }
 }
 
-/// Lanes with compressive normal forces, with one tensile and with all tensile ones have the bits of single
-/// states.
+/// Checks that SIMD lanes equal single states bit by bit, for lanes with compressive and with tensile normal
+/// forces.
 #[test]
 fn lanes_are_single_states() {
     let mut random = Random::new(8);
@@ -178,14 +188,14 @@ fn lanes_are_single_states() {
     let q: SVector<f64x4, 7> = SVector::from_fn(|i, _| Lanes::from_fn(|k| states[k].0[i]));
     let v: SVector<f64x4, 6> = SVector::from_fn(|i, _| Lanes::from_fn(|k| states[k].1[i]));
     for lifted in [0..0, 2..3, 0..4] {
-        let one = |k: usize| {
+        let forces_of_state = |k: usize| {
             let lift = if lifted.contains(&k) { 4.0 } else { 0.0 };
             COIN.generalized_forces(&states[k].0, &[lift].into())
         };
-        let tau: SVector<f64x4, 6> = SVector::from_fn(|i, _| Lanes::from_fn(|k| one(k)[i]));
+        let tau: SVector<f64x4, 6> = SVector::from_fn(|i, _| Lanes::from_fn(|k| forces_of_state(k)[i]));
         let a = COIN.forward_dynamics_lanes(&q, &v, &tau);
         for (k, (q, v)) in states.iter().enumerate() {
-            assert_eq!(a.map(|x| x[k]), COIN.forward_dynamics(q, v, &one(k)));
+            assert_eq!(a.map(|x| x[k]), COIN.forward_dynamics(q, v, &forces_of_state(k)));
         }
     }
 }
@@ -218,8 +228,11 @@ fn a_ladder_slides_down() {
     let (a, forces) = Ladder {}.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
     // Slip velocities of the balls at the ends: away from the wall on the floor, downwards at the wall. The
     // rotation of the balls contributes.
-    let part = |s: f64| s / s.hypot(1e-4);
-    let (on_floor, on_wall) = (part(4.0 * s * rate + 0.05 * rate), part(4.0 * c * rate + 0.05 * rate));
+    let regularized_direction = |s: f64| s / s.hypot(1e-4);
+    let (on_floor, on_wall) = (
+        regularized_direction(4.0 * s * rate + 0.05 * rate),
+        regularized_direction(4.0 * c * rate + 0.05 * rate),
+    );
     let (mu, nu, inertia) = (0.2 * on_floor, 0.3 * on_wall, 10.0 * 16.0 / 12.0);
     // m ẍ = −N₂ − μ N₁, m ÿ = N₁ − ν N₂ − m g, and the moments about the centre; ẍ and ÿ are functions of the
     // angle.
@@ -266,7 +279,8 @@ struct DraggingArm {
     acceleration: Vector,
 }
 
-/// Newton's second law for the arm includes the friction of its tip.
+/// Checks that the reaction at an arm's joint satisfies Newton's second law including the friction at its
+/// tip.
 #[test]
 fn reactions_know_friction() {
     let guess = SVector::from([0.3, -0.5]);

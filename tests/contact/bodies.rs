@@ -27,8 +27,8 @@ fn apexes(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
     turns.map(|pair| pair[0].q[2] - 0.05 + pair[0].v[2] * pair[0].v[2] / (2.0 * G)).collect()
 }
 
-/// The n-th apex of a ball that is dropped from a height h is e²ⁿ h. Other engines miss it: for a nominal
-/// value of 0.25 they have 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
+/// Checks that the n-th apex of a ball dropped from a height h is e²ⁿ h. Other engines miss it: with the
+/// nominal restitution 0.25 they bounce with 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
 #[test]
 fn apexes_are_those_of_the_coefficient_of_restitution() {
     for e in [0.3, 0.5, 0.8, 0.95, 1.0] {
@@ -86,8 +86,8 @@ struct OnASlope {
     slope: Contact,
 }
 
-/// A sphere rolls down a slope of 15° with g sin α · 5/7, and a friction force of 2/7 m g sin α; the
-/// parameters are those of Drake's test.
+/// Checks that a sphere rolls down a slope of 15° with the acceleration 5/7 g sin α and the friction force
+/// 2/7 m g sin α. Parameters are those of Drake's test.
 #[test]
 fn a_sphere_rolls_down_a_slope() {
     let tilt = 15.0_f64.to_radians();
@@ -159,7 +159,8 @@ fn a_block_sticks_for_an_hour() {
     assert!((end.q - q).norm() < 1e-9, "{:e}", (end.q - q).norm());
 }
 
-/// Above the angle of friction the block slides with g (sin α − μ cos α), flat on its face.
+/// Checks that a block on a slope above the angle of friction slides with g (sin α − μ cos α) and stays flat
+/// on its face.
 #[test]
 fn a_block_slides_down_a_steep_slope() {
     let (tilt, friction) = (30.0_f64.to_radians(), 0.3);
@@ -203,8 +204,8 @@ struct Logs {
     head: Contact,
 }
 
-/// Distances between capsules, and between a sphere and a box, equal the minimum over many pairs of their
-/// points.
+/// Checks that the computed distances between capsules, and between a sphere and a box, equal the minimum
+/// over many pairs of points.
 #[test]
 fn distances_are_the_least() {
     let m = Logs {};
@@ -226,7 +227,7 @@ fn distances_are_the_least() {
             }
         });
         let q = m.integrate(&m.neutral(), &moved);
-        let place = |body: usize, p: [f64; 3]| {
+        let place_on_body = |body: usize, p: [f64; 3]| {
             let s = &q.as_slice()[7 * body..];
             let rotation = linkwork::nalgebra::UnitQuaternion::from_quaternion(
                 linkwork::nalgebra::Quaternion::new(s[6], s[3], s[4], s[5]),
@@ -235,7 +236,7 @@ fn distances_are_the_least() {
                 + linkwork::nalgebra::Vector3::new(s[0], s[1], s[2])
         };
         // Ternary search: distance is convex along both lines.
-        let least = |f: &dyn Fn(f64) -> f64| {
+        let minimum_on_interval = |f: &dyn Fn(f64) -> f64| {
             let (mut a, mut b) = (-1.0, 1.0);
             for _ in 0..55 {
                 let (c, d) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
@@ -243,19 +244,23 @@ fn distances_are_the_least() {
             }
             f((a + b) / 2.0)
         };
-        let lines =
-            least(&|s| least(&|t| (place(0, [0.5 * s, 0.0, 0.0]) - place(1, [0.0, 0.0, 0.3 * t])).norm()));
+        let lines = minimum_on_interval(&|s| {
+            minimum_on_interval(&|t| {
+                (place_on_body(0, [0.5 * s, 0.0, 0.0]) - place_on_body(1, [0.0, 0.0, 0.3 * t])).norm()
+            })
+        });
         let gaps = m.contact_gaps(&q);
         // The first of five contact points of capsules is the closest one, unless an end is as close.
         let cross = gaps.fixed_rows::<5>(0);
         assert!((gaps[0] - (lines - 0.15)).abs() < 1e-6, "{case}: {} {}", gaps[0], lines - 0.15);
         assert!(cross.min() > gaps[0] - 1e-6, "{case}: {cross}");
-        let center = place(1, [0.0, 0.0, 0.3]);
+        let center = place_on_body(1, [0.0, 0.0, 0.3]);
         // The distance to the box is convex along each of its axes.
         let axis_distance = |axis: usize, half: f64| {
             let mut unit = [0.0; 3];
             unit[axis] = 1.0;
-            let x = (center - place(2, [0.0; 3])).dot(&(place(2, unit) - place(2, [0.0; 3])));
+            let x = (center - place_on_body(2, [0.0; 3]))
+                .dot(&(place_on_body(2, unit) - place_on_body(2, [0.0; 3])));
             (x.abs() - half).max(0.0)
         };
         let cuboid =
@@ -288,8 +293,8 @@ struct Groove {
     right: Contact,
 }
 
-/// A tilted log falls into the groove and comes to rest, parallel to the others, with the centres of three
-/// equal circles at the corners of an equilateral triangle. Logs overlap by less than a thousandth of their
+/// Checks that a tilted log falls into the groove between two others and comes to rest parallel to them, with
+/// three centres at the corners of an equilateral triangle. Logs overlap by less than a thousandth of their
 /// radius.
 #[test]
 fn a_log_lies_in_a_groove() {

@@ -18,14 +18,14 @@ fn follow<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize,
 where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = f64>,
 {
-    let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
-    let mut last = energy(q, v);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
+    let mut last = total_energy(q, v);
     let lowest = m.contact_gaps(0.0, q).min().min(0.0);
     let method = EventDriven::new().tolerance(1e-10, 1e-10).max_steps(20_000);
     let (mut count, mut end) = (0, *q);
     for sample in simulate(m).from(*q, *v).method(method).duration(duration) {
         let sample = sample.unwrap_or_else(|error| panic!("{error} from {q} {v}"));
-        let now = energy(&sample.q, &sample.v);
+        let now = total_energy(&sample.q, &sample.v);
         assert!(now <= last + 1e-6 * (1.0 + last.abs()), "{now} after {last} at {} from {q} {v}", sample.t);
         let gaps = m.contact_gaps(0.0, &sample.q);
         assert!(gaps.min() > lowest - 1e-9, "{gaps} at {} from {q} {v}", sample.t);
@@ -102,10 +102,10 @@ fn time_stepping_leads_to_the_same() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
     let (_, end) = follow(&m, &q, &v, 0.3);
-    let distance = |h: f64| {
+    let distance_from_exact_end = |h: f64| {
         let run = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.3);
         (run.finish().unwrap().q - end).norm()
     };
-    let [coarse, fine, finest] = [1e-3, 1e-4, 1e-5].map(distance);
+    let [coarse, fine, finest] = [1e-3, 1e-4, 1e-5].map(distance_from_exact_end);
     assert!(coarse < 1e-2 && fine < 1e-3 && finest < 1e-4, "{coarse} {fine} {finest}");
 }

@@ -11,7 +11,7 @@ const G: f64 = 9.81;
 const LOW: [f64; 3] = [0.1, 0.1, 0.05];
 const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
 
-/// Box on a box on the floor.
+/// Two boxes, one resting on the other on the floor.
 #[mechanism(gravity = -gravity * z)]
 pub struct Two {
     pub gravity: f64,
@@ -33,7 +33,7 @@ pub struct Two {
     floor: Contact,
 }
 
-/// Box on a box on the floor, with the lower box named first in their contact.
+/// Two boxes, one on the other, with the lower box as the first surface of their contact.
 #[mechanism(gravity = -gravity * z)]
 pub struct Swapped {
     pub gravity: f64,
@@ -55,7 +55,7 @@ pub struct Swapped {
     floor: Contact,
 }
 
-/// Log on a beam.
+/// Log (capsule) across a fixed beam (box).
 #[mechanism(gravity = -9.81 * z)]
 struct Log {
     friction: f64,
@@ -67,7 +67,8 @@ struct Log {
     beam: Contact,
 }
 
-/// Returns the configuration of both boxes, with the upper one's centre at `place` and orientation `turn`.
+/// Returns the configuration of both boxes, in which the upper one has its centre at `place` and the
+/// orientation `turn`.
 pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
     let mut q = m.neutral();
     q[2] = LOW[2];
@@ -80,10 +81,10 @@ pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f6
 /// their lengths; `c` is the offset of their centres. The distance is the minimum over all corners of each
 /// box to the other box, and over all pairs of edges.
 fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
-    let signs = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
-    let corner = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs(k));
+    let signs_of_corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
+    let corner_of_block = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs_of_corner(k));
     // Distance of a point from a box, relative to its centre.
-    let to_box = |block: &Matrix3<f64>, point: Vector3<f64>| {
+    let distance_to_box = |block: &Matrix3<f64>, point: Vector3<f64>| {
         let near = block.column_iter().fold(Vector3::zeros(), |sum, axis| {
             let square = axis.norm_squared();
             sum + if square > 0.0 { axis * (axis.dot(&point) / square).clamp(-1.0, 1.0) } else { axis * 0.0 }
@@ -92,18 +93,20 @@ fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     };
     let mut least = f64::INFINITY;
     for k in 0..8 {
-        least = least.min(to_box(b, c + corner(a, k))).min(to_box(a, corner(b, k) - c));
+        least = least
+            .min(distance_to_box(b, c + corner_of_block(a, k)))
+            .min(distance_to_box(a, corner_of_block(b, k) - c));
     }
     // Half of each edge as a vector, and its midpoint.
-    let edges = |block: &Matrix3<f64>| {
-        let edge = |axis: usize, k: usize| {
+    let edges_of_block = |block: &Matrix3<f64>| {
+        let edge_of_block = |axis: usize, k: usize| {
             let half: Vector3<f64> = block.column(axis).into();
-            (half, corner(block, k) - half * signs(k)[axis])
+            (half, corner_of_block(block, k) - half * signs_of_corner(k)[axis])
         };
-        (0..24).map(|k| edge(k % 3, k / 3)).collect::<Vec<_>>()
+        (0..24).map(|k| edge_of_block(k % 3, k / 3)).collect::<Vec<_>>()
     };
-    for (own, middle) in edges(a) {
-        for (other, foot) in edges(b) {
+    for (own, middle) in edges_of_block(a) {
+        for (other, foot) in edges_of_block(b) {
             let (apart, x, y, z) =
                 (c + middle - foot, own.norm_squared(), other.norm_squared(), own.dot(&other));
             let (by_own, by_other) = (own.dot(&apart), other.dot(&apart));
@@ -151,28 +154,28 @@ fn gaps_are_distances() {
     for _ in 0..60 {
         let (turn, far) = (any_turn(&mut random), Vector3::from(random.vector::<3>(1.0)).normalize() * 2.0);
         let (high, line) = (scaled(&turn, HIGH), scaled(&turn, [0.3, 0.0, 0.0]));
-        let seat = |place: Vector3<f64>| {
+        let least_gap_to_seat = |place: Vector3<f64>| {
             let q = placed(&m, [place[0], place[1], place[2] + LOW[2]], turn);
             m.contact_gaps(&q).rows(0, 13).min()
         };
-        let beam = |place: Vector3<f64>| {
+        let least_gap_to_beam = |place: Vector3<f64>| {
             let c = turn.coords;
             let q = [place[0], place[1], place[2], c[0], c[1], c[2], c[3]].into();
             log.contact_gaps(&q).min()
         };
         for wanted in [0.0, 1e-6] {
-            let place = met(seat, far, wanted);
+            let place = met(least_gap_to_seat, far, wanted);
             let found = distance(&high, &low, place);
             beside += usize::from((found - wanted).abs() > 1e-9);
             assert!(
-                found < 1e-7 + 100.0 * wanted && seat(place * 1.3) > 0.0,
+                found < 1e-7 + 100.0 * wanted && least_gap_to_seat(place * 1.3) > 0.0,
                 "{wanted} {found} {turn} {place}"
             );
-            let place = met(beam, far, wanted);
+            let place = met(least_gap_to_beam, far, wanted);
             let found = distance(&line, &bar, place) - 0.05;
             beside += usize::from((found - wanted).abs() > 1e-9);
             assert!(
-                found < 1e-7 + 100.0 * wanted && beam(place * 1.3) > 0.0,
+                found < 1e-7 + 100.0 * wanted && least_gap_to_beam(place * 1.3) > 0.0,
                 "{wanted} {found} {turn} {place}"
             );
         }
@@ -180,7 +183,7 @@ fn gaps_are_distances() {
     assert!(beside < 4, "{beside}");
 }
 
-/// Boxes lie on each other face on face: flush, rotated, and crossed such that no corner of either is on the
+/// Checks boxes that lie face on face: flush, rotated, and crossed such that no corner of either is on the
 /// other. They stay at rest, and their contact points carry the whole weight.
 #[test]
 fn boxes_lie_on_each_other() {
@@ -199,12 +202,12 @@ fn boxes_lie_on_each_other() {
     }
 }
 
-/// For a collision edge on edge, the impulse is along the common normal `n` of both edges,
+/// Checks a collision edge on edge: the impulse is along the common normal `n` of both edges, with magnitude
 /// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` summed over both boxes.
 #[test]
 fn edges_strike_edges() {
     let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
-    let inertia = |mass: f64, [a, b, c]: [f64; 3]| {
+    let box_inertia = |mass: f64, [a, b, c]: [f64; 3]| {
         Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
     };
     for (d, lean) in [(0.0, 0.2), (0.03, 0.2), (-0.08, 0.3)] {
@@ -225,11 +228,13 @@ fn edges_strike_edges() {
         let mut v = SVector::<f64, 12>::zeros();
         v.fixed_rows_mut::<3>(6).copy_from(&fall);
         let n = lean * Vector3::z();
-        let share = |arm: Vector3<f64>, turn: &UnitQuaternion<f64>, mass: f64, half: [f64; 3]| {
-            let about = turn.inverse() * arm.cross(&n);
-            1.0 / mass + about.dot(&(inertia(mass, half).try_inverse().unwrap() * about))
-        };
-        let all = share(arm, &turn, 2.0, HIGH) + share(met, &UnitQuaternion::identity(), 1.0, LOW);
+        let inverse_mass_at_contact =
+            |arm: Vector3<f64>, turn: &UnitQuaternion<f64>, mass: f64, half: [f64; 3]| {
+                let about = turn.inverse() * arm.cross(&n);
+                1.0 / mass + about.dot(&(box_inertia(mass, half).try_inverse().unwrap() * about))
+            };
+        let all = inverse_mass_at_contact(arm, &turn, 2.0, HIGH)
+            + inverse_mass_at_contact(met, &UnitQuaternion::identity(), 1.0, LOW);
         let wanted = 1.5 * 2.0 * n[2] / all;
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let impulse = found.impulses[Two::CONTACT_ROWS[12].first];
@@ -237,8 +242,8 @@ fn edges_strike_edges() {
     }
 }
 
-/// Impacts in random contact positions satisfy the contact conditions. Two boxes without other contacts
-/// preserve their momentum.
+/// Checks that impacts in random contact positions satisfy the contact conditions, and that two boxes without
+/// other contacts preserve their momentum.
 #[test]
 fn boxes_strike_by_the_laws() {
     let mut random = Random(11);
@@ -251,48 +256,49 @@ fn boxes_strike_by_the_laws() {
         let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
         let far = Vector3::from(random.vector::<3>(1.0)).normalize();
         // Both boxes are above the floor.
-        let configuration = |place: Vector3<f64>| {
+        let configuration_at_place = |place: Vector3<f64>| {
             let mut q = placed(&m, [place[0], place[1], place[2] + 1.0], turn);
             q[2] = 1.0;
             q
         };
-        let place = met(|place| m.contact_gaps(&configuration(place)).rows(0, 13).min(), far, 0.0);
-        let (q, v) = (configuration(place), random.vector(2.0));
+        let place = met(|place| m.contact_gaps(&configuration_at_place(place)).rows(0, 13).min(), far, 0.0);
+        let (q, v) = (configuration_at_place(place), random.vector(2.0));
         check(&m, &q, &v);
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
-        let moment = |v: &SVector<f64, 12>| {
+        let linear_and_angular_momentum = |v: &SVector<f64, 12>| {
             let p = m.mass_matrix(&q) * v;
             let turn =
                 |k: usize| UnitQuaternion::from_quaternion([q[k], q[k + 1], q[k + 2], q[k + 3]].into());
-            let part = |k: usize, turn: UnitQuaternion<f64>| turn * Vector3::new(p[k], p[k + 1], p[k + 2]);
+            let momentum_of_body =
+                |k: usize, turn: UnitQuaternion<f64>| turn * Vector3::new(p[k], p[k + 1], p[k + 2]);
             let (a, b) = (turn(3), turn(10));
-            let (pa, pb) = (part(0, a), part(6, b));
-            let spin = part(3, a) + part(9, b);
-            let arm = |k: usize| Vector3::new(q[k], q[k + 1], q[k + 2]);
-            (pa + pb, spin + arm(0).cross(&pa) + arm(7).cross(&pb))
+            let (pa, pb) = (momentum_of_body(0, a), momentum_of_body(6, b));
+            let spin = momentum_of_body(3, a) + momentum_of_body(9, b);
+            let position_of_body = |k: usize| Vector3::new(q[k], q[k + 1], q[k + 2]);
+            (pa + pb, spin + position_of_body(0).cross(&pa) + position_of_body(7).cross(&pb))
         };
-        let (before, after) = (moment(&v), moment(&found.v));
+        let (before, after) = (linear_and_angular_momentum(&v), linear_and_angular_momentum(&found.v));
         assert!((before.0 - after.0).norm() < 1e-12 && (before.1 - after.1).norm() < 1e-12);
     }
 }
 
-/// A box falls on an edge of another box, tips, and comes to rest or slides off. The energy never grows,
-/// overlaps are at most those of one step, and the order of the two surfaces has no effect.
+/// Checks a box that falls on an edge of another box, tips, and comes to rest or slides off. The energy never
+/// grows, overlaps are at most those of one step, and the order of the two surfaces has no effect.
 #[test]
 fn a_box_falls_on_an_edge() {
     let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
     let other = Swapped { gravity: G, friction: 0.5, restitution: 0.0 };
     let q = placed(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
     let h = 1e-3;
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let mut before = energy(&q, &SVector::zeros());
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let mut before = total_energy(&q, &SVector::zeros());
     let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
     let swapped =
         simulate(&other).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
     let (mut least, mut apart) = (0.0_f64, 0.0_f64);
     for (sample, same) in run.zip(swapped) {
         let (sample, same) = (sample.unwrap(), same.unwrap());
-        let now = energy(&sample.q, &sample.v);
+        let now = total_energy(&sample.q, &sample.v);
         assert!(now < before + 1e-6, "{} {now} {before}", sample.t);
         before = now;
         least = least.min(m.contact_gaps(&sample.q).min());
@@ -304,7 +310,7 @@ fn a_box_falls_on_an_edge() {
     assert!(apart < 1e-12, "{apart}");
 }
 
-/// A log across a beam rests on both edges of the beam's face, which carry its weight.
+/// Checks that a log across a beam rests on both edges of the beam's face, which carry its weight.
 #[test]
 fn a_log_lies_across_a_beam() {
     let m = Log { friction: 0.5 };

@@ -58,11 +58,11 @@ struct Engine {
 /// Returns the derivative of a function at zero by central differences of sixth order.
 fn slope<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let h = 2e-3;
-    let pair = |k: f64| f(k * h) - f(-k * h);
-    (pair(1.0) * 45.0 - pair(2.0) * 9.0 + pair(3.0)) / (60.0 * h)
+    let central_difference = |k: f64| f(k * h) - f(-k * h);
+    (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0)) / (60.0 * h)
 }
 
-/// Checks every column of every derivative against differences.
+/// Checks every column of every contact derivative against finite differences.
 pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     t: f64,
@@ -73,28 +73,28 @@ pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usi
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = f64>,
 {
     let found = contact::forward_dynamics_derivatives(m, t, q, v, tau, touches).unwrap();
-    let motion = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, tau: &SVector<f64, NV>| {
+    let motion_with_contacts = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, tau: &SVector<f64, NV>| {
         contact::forward_dynamics(m, t, q, v, tau, touches).unwrap()
     };
-    let held = motion(q, v, tau);
+    let held = motion_with_contacts(q, v, tau);
     assert!(found.a == held.a && found.forces == held.forces);
     for k in 0..NV {
         let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-        let of_q = |s: f64| motion(&m.integrate(q, &unit_step(s)), v, tau);
-        let of_v = |s: f64| motion(q, &(v + unit_step(s)), tau);
-        let of_tau = |s: f64| motion(q, v, &(tau + unit_step(s)));
+        let motion_at_displacement = |s: f64| motion_with_contacts(&m.integrate(q, &unit_step(s)), v, tau);
+        let motion_at_velocity_step = |s: f64| motion_with_contacts(q, &(v + unit_step(s)), tau);
+        let motion_at_force_step = |s: f64| motion_with_contacts(q, v, &(tau + unit_step(s)));
         for (what, expected, column) in [
-            ("∂v̇/∂q", slope(|s| of_q(s).a), found.by_q.column(k)),
-            ("∂v̇/∂v", slope(|s| of_v(s).a), found.by_v.column(k)),
-            ("∂v̇/∂τ", slope(|s| of_tau(s).a), found.by_tau.column(k)),
+            ("∂v̇/∂q", slope(|s| motion_at_displacement(s).a), found.by_q.column(k)),
+            ("∂v̇/∂v", slope(|s| motion_at_velocity_step(s).a), found.by_v.column(k)),
+            ("∂v̇/∂τ", slope(|s| motion_at_force_step(s).a), found.by_tau.column(k)),
         ] {
             let off = (column - expected).amax();
             assert!(off < 1e-9 * (1.0 + held.a.amax() + expected.amax()), "{what}, {k}: {off:e}");
         }
         for (what, expected, column) in [
-            ("∂f/∂q", slope(|s| of_q(s).forces), found.forces_by_q.column(k)),
-            ("∂f/∂v", slope(|s| of_v(s).forces), found.forces_by_v.column(k)),
-            ("∂f/∂τ", slope(|s| of_tau(s).forces), found.forces_by_tau.column(k)),
+            ("∂f/∂q", slope(|s| motion_at_displacement(s).forces), found.forces_by_q.column(k)),
+            ("∂f/∂v", slope(|s| motion_at_velocity_step(s).forces), found.forces_by_v.column(k)),
+            ("∂f/∂τ", slope(|s| motion_at_force_step(s).forces), found.forces_by_tau.column(k)),
         ] {
             let off = (column - expected).amax();
             assert!(off < 1e-9 * (1.0 + held.forces.amax() + expected.amax()), "{what}, {k}: {off:e}");
@@ -174,19 +174,19 @@ fn inputs_move_what_is_held() {
         tip: Contact,
     }
     let (q, v, u) = ([0.1, 0.4].into(), [0.3, -1.2].into(), [4.0].into());
-    let motion = |u: SVector<f64, 1>| {
+    let acceleration_with_input = |u: SVector<f64, 1>| {
         let tau = Cart {}.generalized_forces(&q, &u);
         contact::forward_dynamics(&Cart {}, 0.0, &q, &v, &tau, &[Touch::Slips]).unwrap().a
     };
     let linear = contact::linear_motion(&Cart {}, 0.0, &q, &v, &u, &[Touch::Slips]).unwrap();
-    assert_eq!(linear.acceleration, motion(u));
-    let expected = slope(|s| motion(u.add_scalar(s)));
+    assert_eq!(linear.acceleration, acceleration_with_input(u));
+    let expected = slope(|s| acceleration_with_input(u.add_scalar(s)));
     assert!((linear.by_u - expected).amax() < 1e-10, "{expected}");
     assert!(linear.by_u.amax() > 0.1, "the motor moves it");
 }
 
-/// Four contact points of one rigid body have twelve forces, of which six would be sufficient. Their effect
-/// on the motion is unique.
+/// Checks a table on four contact points, whose twelve force components exceed the six that determine the
+/// motion. Their effect on the motion is still unique.
 #[test]
 fn a_table_shares_its_weight() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
@@ -215,15 +215,16 @@ fn a_table_shares_its_weight() {
     let tau = SVector::from_fn(|k, _| 0.3 * k as f64 - 1.0);
     let touches = [Touch::Sticks; 4];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
-    let motion = |q, v, tau| contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap().a;
+    let acceleration_on_table =
+        |q, v, tau| contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap().a;
     for k in 0..7 {
         let unit_step = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
         let mut columns = vec![
-            (slope(|s| motion(m.integrate(&q, &unit_step(s)), v, tau)), found.by_q.column(k)),
-            (slope(|s| motion(q, v, tau + unit_step(s))), found.by_tau.column(k)),
+            (slope(|s| acceleration_on_table(m.integrate(&q, &unit_step(s)), v, tau)), found.by_q.column(k)),
+            (slope(|s| acceleration_on_table(q, v, tau + unit_step(s))), found.by_tau.column(k)),
         ];
         if !(3..6).contains(&k) {
-            columns.push((slope(|s| motion(q, v + unit_step(s), tau)), found.by_v.column(k)));
+            columns.push((slope(|s| acceleration_on_table(q, v + unit_step(s), tau)), found.by_v.column(k)));
         }
         for (expected, column) in columns {
             let off = (column - expected).amax();
@@ -241,7 +242,7 @@ pub struct OnPoints {
     hind_right: Contact,
 }
 
-/// Derivatives along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates. Reference: Pinocchio 3.4.0,
+/// Compares derivatives along the direction `wₖ = cos(0.7 k + 0.3)` of all coordinates with Pinocchio 3.4.0:
 /// `computeConstraintDynamicsDerivatives` with two contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without
 /// correctors, in the state of `stance`.
 #[test]
@@ -251,7 +252,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
     let touches = [Touch::Sticks; 2];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
     let w = SVector::<f64, 18>::from_fn(|k, _| (0.7 * k as f64 + 0.3).cos());
-    let close = |what: &str, found: &[f64], expected: &[f64]| {
+    let assert_close_entries = |what: &str, found: &[f64], expected: &[f64]| {
         let most = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
         assert_eq!(found.len(), expected.len());
         for (found, expected) in found.iter().zip(expected) {
@@ -278,7 +279,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
         67.390730087,
         -110.137521312,
     ];
-    close("v̇", found.a.as_slice(), &expected);
+    assert_close_entries("v̇", found.a.as_slice(), &expected);
     let expected = [
         -13.828883153,
         10.026874698,
@@ -299,7 +300,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
         2.53633402,
         -25.8521223,
     ];
-    close("∂v̇/∂q", (found.by_q * w).as_slice(), &expected);
+    assert_close_entries("∂v̇/∂q", (found.by_q * w).as_slice(), &expected);
     let expected = [
         -0.268296624,
         0.109501004,
@@ -320,7 +321,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
         -0.696063872,
         -0.010691094,
     ];
-    close("∂v̇/∂v", (found.by_v * w).as_slice(), &expected);
+    assert_close_entries("∂v̇/∂v", (found.by_v * w).as_slice(), &expected);
     let expected = [
         2.701384752,
         -0.673243399,
@@ -341,15 +342,15 @@ fn a_quadruped_on_points_as_in_pinocchio() {
         -22.350708841,
         34.316775057,
     ];
-    close("∂v̇/∂τ", (found.by_tau * w).as_slice(), &expected);
+    assert_close_entries("∂v̇/∂τ", (found.by_tau * w).as_slice(), &expected);
     let forces = found.forces;
-    close("f", &[forces[0], forces[3]], &[0.843975116, -2.168646151]);
+    assert_close_entries("f", &[forces[0], forces[3]], &[0.843975116, -2.168646151]);
     let forces = found.forces_by_q * w;
-    close("∂f/∂q", &[forces[0], forces[3]], &[2.228905258, 0.487937632]);
+    assert_close_entries("∂f/∂q", &[forces[0], forces[3]], &[2.228905258, 0.487937632]);
     let forces = found.forces_by_v * w;
-    close("∂f/∂v", &[forces[0], forces[3]], &[-0.008074612, 0.002499599]);
+    assert_close_entries("∂f/∂v", &[forces[0], forces[3]], &[-0.008074612, 0.002499599]);
     let forces = found.forces_by_tau * w;
-    close("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
+    assert_close_entries("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
 }
 
 /// Steps with fixed contact modes have Jacobians that agree with differences, for explicit and implicit
@@ -372,7 +373,7 @@ fn steps_of_a_held_quadruped() {
     ) {
         let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
         let next = discrete::transition(m, method, 0.0, q, v, &u).unwrap();
-        let step = |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
+        let state_change_over_step = |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
             let (q, v) = discrete::step(m, method, 0.0, q, v, u).unwrap();
             let moved = OnPoints {}.difference(&next.q, &q);
             SVector::<f64, 36>::from_fn(|k, _| if k < 18 { moved[k] } else { v[k - 18] })
@@ -382,14 +383,20 @@ fn steps_of_a_held_quadruped() {
             let unit_step = |s: f64, first: usize| {
                 SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
             };
-            let expected =
-                slope(|s| step(&OnPoints {}.integrate(q, &unit_step(s, 0)), &(v + unit_step(s, 18)), &u));
+            let expected = slope(|s| {
+                state_change_over_step(
+                    &OnPoints {}.integrate(q, &unit_step(s, 0)),
+                    &(v + unit_step(s, 18)),
+                    &u,
+                )
+            });
             let off = (a.column(k) - expected).amax();
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
         }
         for k in 0..12 {
-            let expected =
-                slope(|s| step(q, v, &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] })));
+            let expected = slope(|s| {
+                state_change_over_step(q, v, &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] }))
+            });
             let off = (b.column(k) - expected).amax();
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
         }
@@ -426,13 +433,15 @@ fn landings_have_derivatives() {
         assert!(M::CONSTRAINED || balance.amax() < 1e-10, "{balance}");
         for k in 0..NV {
             let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-            let of_q = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
-            let of_v = |s: f64| landed(q, &(v + unit_step(s)));
-            let of_velocity =
-                [(slope(|s| of_q(s).v), found.by_q.column(k)), (slope(|s| of_v(s).v), found.by_v.column(k))];
+            let touchdown_at_displacement = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
+            let touchdown_at_velocity_step = |s: f64| landed(q, &(v + unit_step(s)));
+            let of_velocity = [
+                (slope(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
+                (slope(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),
+            ];
             let of_impulses = [
-                (slope(|s| of_q(s).impulses), found.impulses_by_q.column(k)),
-                (slope(|s| of_v(s).impulses), found.impulses_by_v.column(k)),
+                (slope(|s| touchdown_at_displacement(s).impulses), found.impulses_by_q.column(k)),
+                (slope(|s| touchdown_at_velocity_step(s).impulses), found.impulses_by_v.column(k)),
             ];
             for (expected, column) in of_velocity {
                 assert!((column - expected).amax() < 1e-8 * (1.0 + expected.amax()), "{k}: {expected}");

@@ -25,18 +25,18 @@ fn a_ball_bounces_until_it_rests() {
     let (g, e) = (9.81_f64, 0.8_f64);
     let fall = (2.0 / g).sqrt();
     let m = Ball { restitution: e };
-    let run = || simulate(&m).from([1.0], [0.0]).method(exact());
+    let simulate_ball = || simulate(&m).from([1.0], [0.0]).method(exact());
     let mut apex = 0.0;
     for n in 1..12 {
         apex += fall * (e.powi(n - 1) + e.powi(n));
-        let top = run().duration(apex).finish().unwrap();
+        let top = simulate_ball().duration(apex).finish().unwrap();
         assert!((top.q[0] - e.powi(2 * n)).abs() < 1e-12 && top.v[0].abs() < 1e-12, "{n}: {top:?}");
     }
     let rest = fall * (1.0 + e) / (1.0 - e);
     assert!((rest - 4.063712768871578).abs() < 1e-14);
     let mut last = 0.0;
     let mut samples = 0;
-    for sample in run().duration(10.0) {
+    for sample in simulate_ball().duration(10.0) {
         let sample = sample.unwrap();
         samples += 1;
         if sample.v[0].abs() > 1e-15 || sample.q[0].abs() > 1e-15 {
@@ -91,7 +91,8 @@ fn a_sphere_rolls_down() {
     assert!((end.v[4] + a * 2.0 / 0.05).abs() < 1e-10 && (end.q[2] - 0.05).abs() < 1e-14, "{end:?}");
 }
 
-/// A ball that slides without rotation at 5 m/s rolls after 2 v / (7 μ g), with 5/7 of its speed.
+/// Checks that a ball which slides without rotation at 5 m/s begins to roll after 2 v / (7 μ g), with 5/7 of
+/// its speed.
 #[test]
 fn a_bowling_ball_begins_to_roll() {
     let m = Sphere { tilt: 0.0, friction: 0.2 };
@@ -141,10 +142,10 @@ struct Block {
 fn a_block_breaks_loose_and_stops() {
     let m = Block { friction: 0.4 };
     let hold = 0.4 * 9.81;
-    let force = |t: f64| if t < 4.0 { 1.5 * t } else { 0.0 };
+    let applied_force = |t: f64| if t < 4.0 { 1.5 * t } else { 0.0 };
     let loose = hold / 1.5;
     // The force ends at a control instant.
-    let run = simulate(&m).inputs(|t, _, _| [force(t)].into()).method(exact()).duration(4.0);
+    let run = simulate(&m).inputs(|t, _, _| [applied_force(t)].into()).method(exact()).duration(4.0);
     let end = run.finish().unwrap();
     let s = 4.0 - loose;
     assert!((end.v[0] - 0.5 * 1.5 * s * s / 3.0).abs() < 1e-11, "{end:?}");
@@ -181,8 +182,8 @@ struct Crate {
     pushes: Force,
 }
 
-/// A crate pushed at its top edge tips when the moment of the force exceeds that of its weight, before it
-/// slides.
+/// Checks that a crate pushed at its top edge tips, before it slides, when the moment of the push exceeds
+/// that of its weight.
 #[test]
 fn a_crate_tips() {
     let m = Crate { friction: 0.8 };
@@ -229,14 +230,14 @@ fn a_block_rocks_as_housner_says() {
     let (sine, cosine) = tilt.sin_cos();
     let q = [half - (half * cosine - height * sine), half * sine + height * cosine, -tilt];
     let inertia = 4.0 / 3.0 * 3.0 * radius * radius;
-    let potential = |tilt: f64| 3.0 * 9.81 * radius * (alpha - tilt).cos();
+    let potential_energy_at_tilt = |tilt: f64| 3.0 * 9.81 * radius * (alpha - tilt).cos();
     let run = simulate(&m).from(q, [0.0; 3]).method(exact()).duration(2.0);
     let (mut before, mut impacts) = (None::<f64>, 0);
-    let mut rate = (2.0 * (potential(tilt) - potential(0.0)) / inertia).sqrt();
+    let mut rate = (2.0 * (potential_energy_at_tilt(tilt) - potential_energy_at_tilt(0.0)) / inertia).sqrt();
     for sample in run {
         let sample = sample.unwrap();
         let (tilt, speed) = (sample.q[2], sample.v[2]);
-        let energy = inertia / 2.0 * speed * speed + potential(tilt.abs());
+        let energy = inertia / 2.0 * speed * speed + potential_energy_at_tilt(tilt.abs());
         if let Some(before) = before
             && energy < before - 1e-6
         {
@@ -244,7 +245,7 @@ fn a_block_rocks_as_housner_says() {
             rate *= 1.0 - 1.5 * alpha.sin().powi(2);
         }
         before = Some(energy);
-        let expected = inertia / 2.0 * rate * rate + potential(0.0);
+        let expected = inertia / 2.0 * rate * rate + potential_energy_at_tilt(0.0);
         assert!((energy - expected).abs() < 1e-10, "{impacts}: {energy} {expected} {sample:?}");
     }
     assert!(impacts >= 6, "{impacts}");

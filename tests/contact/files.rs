@@ -78,7 +78,7 @@ fn a_drum_stands_on_its_face() {
     assert!(end.q[2] < 0.12, "{end:?}");
 }
 
-/// A drum rolls on its side with two thirds of the acceleration of frictionless sliding.
+/// Checks that a drum rolls on its side with two thirds of the acceleration of frictionless sliding.
 #[test]
 fn a_drum_rolls_on_its_side() {
     let m = Drum { slope: 0.2 };
@@ -100,13 +100,15 @@ struct BallOnDrum {
     top: Contact,
 }
 
-/// The distance to a cylinder with two end faces is the distance to its face, its side or its rim.
+/// Checks that the distance of a ball from a cylinder with end faces is that from the face, the side or the
+/// rim, whichever is nearest.
 #[test]
 fn a_ball_finds_face_side_and_rim() {
-    let gap = |x: f64, y: f64, z: f64| BallOnDrum {}.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
+    let gap_to_drum =
+        |x: f64, y: f64, z: f64| BallOnDrum {}.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
     let rim = (0.1_f64.hypot(0.3) - 0.05, 0.02_f64.hypot(0.01) - 0.05);
-    assert!((gap(0.1, -0.05, 0.3) - 0.05).abs() < 1e-15);
-    assert!((gap(0.3, 0.4, -0.1) - 0.25).abs() < 1e-15);
-    assert!((gap(0.0, -0.3, 0.5) - rim.0).abs() < 1e-15);
-    assert!((gap(0.22, 0.0, -0.21) - rim.1).abs() < 1e-15);
+    assert!((gap_to_drum(0.1, -0.05, 0.3) - 0.05).abs() < 1e-15);
+    assert!((gap_to_drum(0.3, 0.4, -0.1) - 0.25).abs() < 1e-15);
+    assert!((gap_to_drum(0.0, -0.3, 0.5) - rim.0).abs() < 1e-15);
+    assert!((gap_to_drum(0.22, 0.0, -0.21) - rim.1).abs() < 1e-15);
 }

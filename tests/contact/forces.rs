@@ -135,8 +135,8 @@ fn a_motor_presses_a_piston_onto_its_stop() {
     assert!((load + 1.5 / slope).abs() < 1e-5 * load.abs(), "{load} {slope}");
 }
 
-/// With prescribed contact modes the equations of motion are satisfied, through a loop and with slip. At
-/// rest, the forces equal those of the complementarity conditions.
+/// Checks forces for prescribed contact modes: they satisfy the equations of motion, also in a closed loop
+/// and with slip. At rest they equal the forces of the complementarity conditions.
 #[test]
 fn chosen_contacts_stay_closed() {
     let m = Table {};
@@ -181,7 +181,7 @@ fn chosen_contacts_stay_closed() {
     assert!(found.a.amax() < 1e-9 && push.amax() < 1e-6, "{push}");
 }
 
-/// Heavy particle on a light one on the floor.
+/// Heavy particle on a light one, which lies on the floor: contacts with a large mass ratio.
 #[mechanism(gravity = -9.81 * z)]
 struct Anvil {
     mass: f64,

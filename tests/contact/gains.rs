@@ -7,17 +7,18 @@ use linkwork::discrete;
 use linkwork::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 
-/// With gains, a gap of one millimetre decays; without gains it stays constant.
+/// Checks that the gap of an enforced contact decays if it is stabilized by gains, and otherwise stays at one
+/// millimetre.
 #[test]
 fn gaps_of_what_is_held_decay() {
     let (mut q, _, _) = stance();
     let m = OnPoints {};
     q[2] -= m.contact_gaps(&q)[0] - 1e-3;
-    let run = |rate: f64| {
+    let simulate_held_contact = |rate: f64| {
         let held = contact::hold(&m, [Touch::Sticks, Touch::Open]).stabilized(rate);
         simulate(&held).from(q, SVector::zeros()).method(Rk4::step(1e-4)).duration(0.1).finish().unwrap()
     };
-    let (free, steady) = (run(0.0), run(100.0));
+    let (free, steady) = (simulate_held_contact(0.0), simulate_held_contact(100.0));
     assert!((m.contact_gaps(&free.q)[0] - 1e-3).abs() < 1e-8);
     // Critically damped decay: (1 + α t) e^(−α t).
     assert!((m.contact_gaps(&steady.q)[0] - 11.0 * (-10.0_f64).exp() * 1e-3).abs() < 1e-9);

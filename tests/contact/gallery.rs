@@ -27,9 +27,9 @@ struct Billiards {
     touch: Contact,
 }
 
-/// The cue ball throws the object ball off the line of centres. The transverse velocity of the object ball is
-/// `μ (1 + e) v cos φ / 2`, or a seventh of the slip velocity of the surfaces if that is less. With side spin
-/// `r ω = v sin φ` the surfaces do not slip and the ball is not thrown.
+/// Checks that friction between billiard balls throws the object ball off the line of centres. Its transverse
+/// velocity is `μ (1 + e) v cos φ / 2`, or a seventh of the slip velocity if that is less. With side spin
+/// `r ω = v sin φ` the surfaces do not slip, and the ball is not thrown.
 #[test]
 fn a_ball_is_thrown() {
     let (v, radius) = (2.0, 0.0286);
@@ -54,7 +54,7 @@ fn a_ball_is_thrown() {
     }
 }
 
-/// Ball with spin, and a floor.
+/// Spinning ball that bounces on a floor with friction.
 #[mechanism(gravity = -9.81 * z)]
 struct Bouncing {
     friction: f64,
@@ -85,7 +85,7 @@ fn spin_changes_how_a_ball_bounces() {
     }
 }
 
-/// Rod of mass 1 and length 2 with one end sliding on a floor.
+/// Rod of mass 1 and length 2, whose tip slides on a floor with friction (Painlevé's paradox).
 #[mechanism(gravity = -9.81 * y)]
 struct Rod {
     friction: f64,
@@ -127,9 +127,9 @@ fn a_rod_slides_where_no_paradox_is() {
     }
 }
 
-/// With μ = 2 at tan θ = 2, `p = −0.8`: no contact force is consistent with continued sliding. An impact
-/// without a collision stops the tip at once, with the impulses (0.3, 0.4) N·s, and the rod rotates about the
-/// tip afterwards. Both methods of simulating contacts give this motion.
+/// Checks Painlevé's paradox: with μ = 2 at tan θ = 2 no contact force is consistent with continued sliding
+/// (`p = −0.8`). An impact without a collision stops the tip with the impulses (0.3, 0.4) N·s, and the rod
+/// then rotates about it, with both methods of simulating contacts.
 #[test]
 fn a_rod_in_the_paradox_stops() {
     let m = Rod { friction: 2.0 };
@@ -150,8 +150,8 @@ fn a_rod_in_the_paradox_stops() {
     let events = run.method(exact()).duration(0.1).finish().unwrap();
     assert!((steps.q - events.q).amax() < 1e-4, "{} {}", steps.q, events.q);
     assert!(m.contact_rates(&events.q, &events.v).amax() < 1e-9);
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    assert!((energy(&events.q, &events.v) - energy(&q, &stopped.v)).abs() < 1e-4);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    assert!((total_energy(&events.q, &events.v) - total_energy(&q, &stopped.v)).abs() < 1e-4);
 }
 
 /// Ladder on a smooth floor and a smooth wall.
@@ -194,7 +194,7 @@ fn a_ladder_leaves_the_wall() {
     assert!(nearest < 1e-9 && after > 5, "{nearest} {after}");
 }
 
-/// Valve: a preloaded spring presses a disc on its seat.
+/// Valve in which a preloaded spring presses a disc on its seat.
 #[mechanism]
 struct Valve {
     restitution: f64,
@@ -214,19 +214,20 @@ struct Valve {
 fn a_valve_chatters() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
     let m = Valve { restitution };
-    let run = |t: f64| simulate(&m).from([0.0], [1.5]).method(exact()).duration(t).finish().unwrap();
+    let simulate_valve =
+        |t: f64| simulate(&m).from([0.0], [1.5]).method(exact()).duration(t).finish().unwrap();
     let (mut t, mut speed) = (0.0, 1.5_f64);
     for k in 0..60 {
         let flight = 2.0 / omega * (speed / (omega * preload)).atan();
         if k < 12 {
-            let top = run(t + flight / 2.0);
+            let top = simulate_valve(t + flight / 2.0);
             let height = preload.hypot(speed / omega) - preload;
             assert!((top.q[0] - height).abs() < 1e-11 && top.v[0].abs() < 1e-8, "{k}: {top:?} {height}");
         }
         t += flight;
         speed *= restitution;
     }
-    let closed = run(t * 1.001);
+    let closed = simulate_valve(t * 1.001);
     assert!(closed.q[0].abs() < 1e-14 && closed.v[0].abs() < 1e-14, "{closed:?}");
     // The valve stays closed with the force k d.
     let force = contact::acting(&m, 0.0, &closed.q, &closed.v, &SVector::zeros()).unwrap();
@@ -256,12 +257,12 @@ struct Clutch {
     tip: Contact,
 }
 
-/// If tan α is less than the coefficient of friction, the strut locks the slide against any load in one
-/// direction, and stops a motion in that direction at once. In the other direction it drags with
-/// `μ τ / (L (sin α + μ cos α))`. With less friction it slips in both directions.
+/// Checks a clutch with a leaning strut. If tan α is less than the coefficient of friction, it blocks the
+/// slide in one direction against any load, and drags with `μ τ / (L (sin α + μ cos α))` in the other. With
+/// less friction it slips in both.
 #[test]
 fn a_strut_is_a_one_way_clutch() {
-    let run = |m: &Clutch, load: f64, speed: f64, t: f64| {
+    let simulate_clutch = |m: &Clutch, load: f64, speed: f64, t: f64| {
         let steps = simulate(m).from([0.0, -m.lean], [speed, 0.0]).inputs(move |_, _, _| [load].into());
         steps.method(TimeStepping::step(1e-4)).duration(t).finish().unwrap()
     };
@@ -271,19 +272,19 @@ fn a_strut_is_a_one_way_clutch() {
     let contacts = m.contact_gaps(&[0.0, -m.lean].into());
     assert!(contacts[0].abs() < 1e-15, "{contacts}");
     for load in [1.0, 100.0, 1e5] {
-        let end = run(&m, load, 0.0, 0.2);
+        let end = simulate_clutch(&m, load, 0.0, 0.2);
         assert!(end.q[0].abs() < 1e-9 && end.v.amax() < 1e-9, "{load}: {end:?}");
     }
-    let end = run(&m, 0.0, 1.0, 0.01);
+    let end = simulate_clutch(&m, 0.0, 1.0, 0.01);
     assert!(end.q[0].abs() < 2e-4 && end.v.amax() < 1e-9, "{end:?}");
-    let free = run(&m, -5.0, 0.0, 0.2);
+    let free = simulate_clutch(&m, -5.0, 0.0, 0.2);
     let drag = 0.3 * 0.3 / (length * (sin + 0.3 * cos));
     assert!((free.v[0] + (5.0 - drag) / 2.0 * 0.2).abs() < 1e-6, "{free:?} {drag}");
     let slippery = Clutch { friction: 0.2, ..m };
     let drag = 0.2 * 0.3 / (length * (sin - 0.2 * cos));
-    let slips = run(&slippery, drag + 4.0, 0.0, 0.2);
+    let slips = simulate_clutch(&slippery, drag + 4.0, 0.0, 0.2);
     assert!((slips.v[0] - 0.4).abs() < 1e-6, "{slips:?} {drag}");
-    assert!(run(&slippery, drag - 0.1, 0.0, 0.2).v.amax() < 1e-9);
+    assert!(simulate_clutch(&slippery, drag - 0.1, 0.0, 0.2).v.amax() < 1e-9);
 }
 
 /// Belt of three links over a drum, with contacts at its joints and ends.
@@ -337,28 +338,28 @@ fn a_belt_holds_up_to_its_limit() {
         let grip = friction * (turn / 2.0).tan();
         let limit = ((1.0 + grip) / (1.0 - grip)).powi(4);
         assert!(limit > (friction * 4.0 * turn).exp() * 1.002, "{limit}");
-        let run = |part: f64| {
+        let simulate_loaded_belt = |part: f64| {
             let (back, on) = ((way + turn).sin_cos(), (way - 3.0 * turn).sin_cos());
             let taut = slack * limit * part;
             let loads = [-slack * back.1, -slack * back.0, taut * on.1, taut * on.0];
             simulate(&m).from(q, [0.0; 5]).inputs(move |_, _, _| loads.into())
         };
-        let steps = |part: f64, h: f64, t: f64| {
-            let end = run(part).method(TimeStepping::step(h)).duration(t).finish().unwrap();
+        let slip_with_time_stepping = |part: f64, h: f64, t: f64| {
+            let end = simulate_loaded_belt(part).method(TimeStepping::step(h)).duration(t).finish().unwrap();
             (end.q - q).amax()
         };
-        let events = |part: f64| {
-            let end = run(part).method(EventDriven::new()).duration(0.02).finish().unwrap();
+        let slip_with_events = |part: f64| {
+            let end = simulate_loaded_belt(part).method(EventDriven::new()).duration(0.02).finish().unwrap();
             (end.q - q).amax()
         };
         for part in [0.5, 0.9, 0.999, 1.0 - 1e-6] {
-            let (steps, events) = (steps(part, 1e-3, 0.1), events(part));
+            let (steps, events) = (slip_with_time_stepping(part, 1e-3, 0.1), slip_with_events(part));
             assert!(steps < 1e-12 && events < 1e-11, "{turn} {part}: {steps} {events}");
         }
         // Above the limit the belt slips, at first in proportion to the excess load.
-        let (little, more) = (events(1.0 + 1e-6), events(1.0 + 1e-5));
+        let (little, more) = (slip_with_events(1.0 + 1e-6), slip_with_events(1.0 + 1e-5));
         assert!(little > 1e-8 && (more / little - 10.0).abs() < 0.01, "{little} {more}");
-        let slips = steps(1.0 + 1e-5, 1e-4, 0.02);
+        let slips = slip_with_time_stepping(1.0 + 1e-5, 1e-4, 0.02);
         assert!((slips / more - 1.0).abs() < 0.01, "{slips} {more}");
     }
 }

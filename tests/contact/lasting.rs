@@ -73,7 +73,7 @@ pub struct Disk {
     floor: Contact,
 }
 
-/// Pole that stands on its foot.
+/// Pole that stands upright on its foot, a contact point with friction.
 #[mechanism(gravity = -9.81 * y)]
 pub struct Pole {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
@@ -141,10 +141,11 @@ fn tube(method: Stepping) -> f64 {
     let m = Tube {};
     let (q, v) = ([0.0, 0.1, 0.0].into(), [3.0, 0.2, 0.3].into());
     let s = end!(&m, q, v, method, 1.0);
-    let spin = |q: &SVector<f64, 3>, v: &SVector<f64, 3>| 0.3 * v[0] + 0.5 * (q[1] * v[2] - q[2] * v[1]);
+    let angular_momentum =
+        |q: &SVector<f64, 3>, v: &SVector<f64, 3>| 0.3 * v[0] + 0.5 * (q[1] * v[2] - q[2] * v[1]);
     let across = s.q[2] * s.q[0].cos() - s.q[1] * s.q[0].sin();
     (m.kinetic_energy(&s.q, &s.v) - m.kinetic_energy(&q, &v)).abs()
-        + (spin(&s.q, &s.v) - spin(&q, &v)).abs()
+        + (angular_momentum(&s.q, &s.v) - angular_momentum(&q, &v)).abs()
         + across.abs()
 }
 
@@ -231,8 +232,8 @@ fn slides(method: Stepping) -> f64 {
 fn crosses(method: Stepping) -> f64 {
     let m = Slope { slope: 0.3, friction: 0.3_f64.tan() };
     let s = end!(&m, [0.0; 3], [0.1, 1.0, 0.0], method, 0.6);
-    let sum = |v: &SVector<f64, 3>| v.norm() + v[0];
-    (sum(&s.v) - sum(&[0.1, 1.0, 0.0].into())).abs()
+    let conserved_sum = |v: &SVector<f64, 3>| v.norm() + v[0];
+    (conserved_sum(&s.v) - conserved_sum(&[0.1, 1.0, 0.0].into())).abs()
 }
 
 /// Checks that halving the step twice divides the error by 3.4 to 5 each time, for both kinds of steps.
@@ -270,7 +271,8 @@ fn an_unbalanced_ball_keeps_its_energy() {
     }
 }
 
-/// Motions with constant accelerations are exact.
+/// Checks that time stepping is exact for motions with constant accelerations: a sliding block and a rolling
+/// hoop.
 #[test]
 fn straight_slides_and_rolls_are_exact() {
     for method in [TimeStepping::step(1e-2), TimeStepping::step(1e-2).midpoint()] {
@@ -284,18 +286,18 @@ fn contacts_that_stick_do_not_creep() {
     for method in [TimeStepping::step(1e-3), TimeStepping::step(1e-3).midpoint()] {
         assert!(ramp(method) < 1e-14, "{}", ramp(method));
         let m = Slope { slope: 0.1, friction: 0.6 };
-        let load = |t: f64, _: &_, _: &_| {
+        let applied_load = |t: f64, _: &_, _: &_| {
             let jump = if (t * 7.0).fract() < 0.5 { 1.0 } else { -1.0 };
             SVector::from([1.5 * (40.0 * t).sin() - jump, 2.0 * (25.0 * t).cos()])
         };
-        let run = simulate(&m).from([0.0; 3], [0.0; 3]).inputs(load).method(method);
+        let run = simulate(&m).from([0.0; 3], [0.0; 3]).inputs(applied_load).method(method);
         let s = run.duration(2.0).finish().unwrap();
         assert!(s.q.norm() < 1e-13 && s.v.norm() < 1e-13, "{} {}", s.q, s.v);
     }
 }
 
-/// A ball that moves and spins on a smooth level floor has no horizontal force on it and keeps its velocity.
-/// (Steps through the midpoint approximate its rotation with order 2; they lost 0.098 m/s.)
+/// Checks that a ball which moves and spins on a smooth level floor keeps its velocity, because no horizontal
+/// force acts on it. (Midpoint steps approximate its rotation with order 2; they lost 0.098 m/s.)
 #[test]
 fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
     let m = Ball { offset: 0.0, friction: 0.0 };

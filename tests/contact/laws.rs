@@ -3,7 +3,7 @@
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 
-/// Reproducible pseudo-random numbers between −1 and 1.
+/// Generator of reproducible pseudorandom numbers between −1 and 1.
 pub struct Random(pub u64);
 
 impl Random {
@@ -71,7 +71,7 @@ where
     lowered
 }
 
-/// Heavy ball on a light one and another ball, and a floor.
+/// Three balls on a floor, a heavy one on a light one and another.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Pile {
     pub friction: f64,

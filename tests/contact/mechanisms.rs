@@ -23,10 +23,10 @@ struct Elbow {
 #[test]
 fn an_elbow_rests_at_its_stop() {
     let m = Elbow {};
-    let push = |t: f64| if t < 1.0 { 2.0 } else { -2.0 };
+    let applied_push = |t: f64| if t < 1.0 { 2.0 } else { -2.0 };
     let run = simulate(&m)
         .from([0.1, 0.0], [0.3, 0.0])
-        .inputs(|t, _, _| [push(t)].into())
+        .inputs(|t, _, _| [applied_push(t)].into())
         .method(TimeStepping::step(1e-3))
         .duration(1.2);
     let mut reached = None;
@@ -169,7 +169,7 @@ fn weights_on_a_rope_over_a_wheel() {
     assert!((force[0] - 2.4 * 9.81).abs() < 1e-6, "{force}");
 }
 
-/// Wheel that drives another one by gear teeth with backlash.
+/// Two gear wheels, one of which drives the other by teeth with backlash.
 #[mechanism]
 struct Gears {
     play: f64,
@@ -192,14 +192,14 @@ struct Gears {
 #[test]
 fn gears_rattle_in_their_play() {
     let conserved_momentum = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
-    let teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
+    let approach_speed_of_teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
     let start = SVector::from([3.0, 1.0]);
     for (restitution, impacts) in [(1.0, 4), (0.5, 3), (0.0, 1)] {
         let m = Gears { play: 0.004, restitution };
         let method = EventDriven::new().tolerance(1e-12, 1e-12);
         // The first impact follows from the middle of the play; the later ones cross the whole play with
         // decreasing speed.
-        let speed = teeth(&start);
+        let speed = approach_speed_of_teeth(&start);
         let (mut t, mut now) = (0.004 / speed, speed);
         for _ in 1..impacts {
             now *= restitution;
@@ -208,7 +208,11 @@ fn gears_rattle_in_their_play() {
         let run = simulate(&m).from([0.0; 2], start).method(method).duration(t * 1.0001);
         let end = run.finish().unwrap();
         let wanted = speed * restitution.powi(impacts) * if impacts % 2 == 0 { 1.0 } else { -1.0 };
-        assert!((teeth(&end.v) - wanted).abs() < 1e-9, "{} {wanted}", teeth(&end.v));
+        assert!(
+            (approach_speed_of_teeth(&end.v) - wanted).abs() < 1e-9,
+            "{} {wanted}",
+            approach_speed_of_teeth(&end.v)
+        );
         assert!((conserved_momentum(&end.v) - conserved_momentum(&start)).abs() < 1e-12);
         assert!(m.contact_gaps(&end.q).min() > -1e-9);
     }

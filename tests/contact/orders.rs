@@ -42,8 +42,8 @@ heap!(Backwards:
     floor = (block.cuboid(0.3, 0.2, 0.1), ground.plane(z));
 );
 
-/// Returns the maximum difference between the two mechanisms after one step of `h` seconds, m/s and rad/s,
-/// over `steps` states of the first mechanism's motion.
+/// Returns the maximum difference between the motions of two mechanisms in one step of `h` seconds, m/s and
+/// rad/s, over `steps` states along the motion of the first one.
 fn difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
@@ -94,8 +94,8 @@ fn orders_of_declaration_make_no_difference() {
     assert!(most[0].max(most[1]) < 1e-8, "{most:?}");
 }
 
-/// A box that lands flat on another one stays level, whichever box is named first: gaps of corners and of an
-/// edge that contradict each other do not tilt it.
+/// Checks that a box which lands flat on another one stays level, whichever box is named first. Contradictory
+/// gaps of corners and of an edge do not tilt it.
 #[test]
 fn flat_landings_stay_level() {
     let mut random = Random(5);
@@ -115,9 +115,9 @@ fn flat_landings_stay_level() {
     }
 }
 
-/// The order of contacts with strong friction has no effect either. (The choice of a contact's first surface
-/// may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8` in about
-/// 1 of 3000 steps.)
+/// Checks that the order of contacts with strong friction has no effect. (The order of the two surfaces of a
+/// contact may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8`
+/// in about 1 of 3000 steps.)
 #[test]
 fn orders_with_strong_friction_make_no_difference() {
     let mut random = Random(2);
@@ -145,13 +145,13 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let turn = any_turn(&mut random);
     let at: [f64; 3] = random.vector::<3>(0.1).into();
     let q = placed(&m, [at[0], at[1], 0.3], turn);
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let mut before = energy(&q, &SVector::zeros());
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let mut before = total_energy(&q, &SVector::zeros());
     let (mut gain, mut least) = (0.0_f64, 0.0_f64);
     for sample in simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3)
     {
         let sample = sample.unwrap();
-        let now = energy(&sample.q, &sample.v);
+        let now = total_energy(&sample.q, &sample.v);
         gain = gain.max(now - before);
         before = now;
         least = least.min(m.contact_gaps(&sample.q).min());
@@ -159,9 +159,9 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     (gain, least)
 }
 
-/// Impulses and the removal of overlaps add no energy. The remaining gain is the error of a second-order step
-/// for bodies that rotate about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s. Corners
-/// that collide at 4 m/s overlap by at most their approach in one step.
+/// Checks that impulses and the removal of overlaps add no energy to dropped bodies. The remaining gain is
+/// the error of a second-order step for rotation about edges, `½ m g r ω² h²` with about 3 kg, 0.15 m and 3
+/// rad/s. Corners that collide at 4 m/s overlap by at most their approach in one step.
 #[test]
 fn drops_gain_no_energy() {
     let h = 2e-3;

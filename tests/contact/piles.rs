@@ -3,7 +3,7 @@
 use linkwork::prelude::*;
 use std::thread;
 
-/// Four boxes, each on the face of the one below.
+/// Stack of four boxes, each in contact with the face of the one below.
 #[mechanism(gravity = -9.81 * z)]
 struct Stack {
     #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
@@ -16,8 +16,8 @@ struct Stack {
     seat: [Contact; 3],
 }
 
-/// Checks that a stack stays at rest: it has 47 contact points, of which 16 are closed, and their positions
-/// follow from those of the boxes.
+/// Checks that a stack of four boxes stays at rest, although its 47 contact points, of which 16 are closed,
+/// are redundant.
 fn stack() {
     let m = Stack {};
     let mut q = m.neutral();
@@ -35,7 +35,7 @@ fn boxes_stand_on_boxes() {
     thread::Builder::new().stack_size(32 << 20).spawn(stack).unwrap().join().unwrap();
 }
 
-/// Two cards that lean on each other: the edge of the left one touches the face of the right one.
+/// House of two cards that lean on each other: the edge of the left card touches the face of the right one.
 #[mechanism(gravity = -9.81 * y)]
 struct Cards {
     floor: f64,
@@ -71,15 +71,15 @@ fn cards_lean_on_each_other() {
         lean,
     ]);
     let needed = [lean.tan() / 2.0, lean.tan()];
-    let displacement = |floor: f64, faces: f64| {
+    let largest_displacement = |floor: f64, faces: f64| {
         let m = Cards { floor: needed[0] * floor, faces: needed[1] * faces };
         assert!(m.contact_gaps(&q).amax() < 1e-16);
         let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(0.2);
         (run.finish().unwrap().q - q).amax()
     };
-    assert!(displacement(1.02, 1.02) < 1e-9, "{:e}", displacement(1.02, 1.02));
-    assert!(displacement(0.98, 1.02) > 1e-3, "{:e}", displacement(0.98, 1.02));
-    assert!(displacement(1.02, 0.98) > 1e-3, "{:e}", displacement(1.02, 0.98));
+    assert!(largest_displacement(1.02, 1.02) < 1e-9, "{:e}", largest_displacement(1.02, 1.02));
+    assert!(largest_displacement(0.98, 1.02) > 1e-3, "{:e}", largest_displacement(0.98, 1.02));
+    assert!(largest_displacement(1.02, 0.98) > 1e-3, "{:e}", largest_displacement(1.02, 0.98));
 }
 
 /// House of seven cards: two pairs that lean on each other support a roof, on which a third pair stands.
@@ -124,20 +124,20 @@ fn a_house_of_cards_stands() {
         q.fixed_rows_mut::<3>(9 + 3 * k).copy_from_slice(&[x + 0.05 * sine, y + 0.05 * cosine, lean]);
     }
     q[19] = 0.1 * cosine;
-    let displacement = |friction: f64| {
+    let largest_displacement = |friction: f64| {
         let m = House { friction };
         assert!(m.contact_gaps(&q).amax() < 1e-15, "{}", m.contact_gaps(&q));
         let run = simulate(&m).from(q, [0.0; 21]).method(TimeStepping::step(1e-3)).duration(1.0);
         (run.finish().unwrap().q - q).amax()
     };
-    assert!(displacement(1.0) < 1e-9, "{:e}", displacement(1.0));
-    assert!(displacement(0.1) > 1e-2, "{:e}", displacement(0.1));
+    assert!(largest_displacement(1.0) < 1e-9, "{:e}", largest_displacement(1.0));
+    assert!(largest_displacement(0.1) > 1e-2, "{:e}", largest_displacement(0.1));
 }
 
 /// Newton's cradle: balls on threads of equal length.
 #[mechanism(gravity = -9.81 * y)]
 struct Cradle {
-    /// Distance between balls at rest, m.
+    /// Gap between neighbouring balls of the cradle at rest, m.
     gap: f64,
     #[particle(mass = 0.1)]
     ball: [Particle; 5],
@@ -147,14 +147,14 @@ struct Cradle {
     touch: [Contact; 4],
 }
 
-/// Successive impacts transfer the velocity from ball to ball. The last ball rises to the initial height of
-/// the first one; the others stay at rest.
+/// Checks that successive impacts transfer the velocity from ball to ball in Newton's cradle. The last ball
+/// rises to the initial height of the first one; the others stay at rest.
 #[test]
 fn a_cradle_hands_the_velocity_on() {
     let m = Cradle { gap: 1e-6 };
     let start = [-0.3, 0.0, 0.0, 0.0, 0.0];
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let before = energy(&start.into(), &SVector::zeros());
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let before = total_energy(&start.into(), &SVector::zeros());
     let run = simulate(&m)
         .from(start, [0.0; 5])
         .method(EventDriven::new().tolerance(1e-11, 1e-11))
@@ -163,7 +163,7 @@ fn a_cradle_hands_the_velocity_on() {
     let (mut highest, mut moved) = (0.0_f64, 0.0_f64);
     for sample in run {
         let sample = sample.unwrap();
-        let now = energy(&sample.q, &sample.v);
+        let now = total_energy(&sample.q, &sample.v);
         assert!((now - before).abs() < 1e-9, "{now} {before}");
         highest = highest.max(sample.q[4]);
         moved = moved.max(sample.q.fixed_rows::<3>(1).amax());
@@ -203,7 +203,7 @@ fn the_order_of_declaration_does_not_matter() {
     assert!(one.v.amax() < 1e-10 && (one.q[1] - 0.1).abs() < 1e-9, "{} {}", one.q, one.v);
 }
 
-/// Box on a slope, in single precision.
+/// Box on a slope with friction, in single precision.
 #[mechanism(gravity = -9.81 * z, scalar = f32)]
 struct Small {
     tilt: f32,

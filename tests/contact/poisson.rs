@@ -5,7 +5,7 @@ use super::laws::Random;
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 
-/// Declares a rod that collides with the floor at one end.
+/// Declares a planar rod that collides with the floor at one end, with the given restitution.
 macro_rules! rod {
     ($name:ident, $e:expr) => {
         #[mechanism(gravity = -gravity * y)]
@@ -128,8 +128,9 @@ fn steps_strike_as_impacts_do() {
     }
 }
 
-/// A ball with Poisson's restitution comes to rest at the same time as one with Newton's, with both methods
-/// of simulating contacts. It stays at rest, since without compression no impulse of restitution lifts it.
+/// Ball that bounces with Poisson's restitution. It comes to rest at the same time as with Newton's
+/// restitution, with both methods of simulating contacts, and stays at rest, since without compression no
+/// impulse lifts it.
 #[mechanism(gravity = -9.81 * z)]
 struct Ball {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
@@ -163,7 +164,7 @@ fn a_ball_bounces_and_rests() {
     assert!(highest < 1e-9, "{highest}");
 }
 
-/// Block in a corner with Poisson's restitution.
+/// Block that collides with a floor and a wall with Poisson's restitution.
 #[mechanism(gravity = -9.81 * z)]
 struct Block {
     friction: f64,
@@ -273,8 +274,8 @@ struct Crank {
     stop: Limit,
 }
 
-/// In a closed loop the slide leaves with the fraction `e` of its speed, the energy decreases by the fraction
-/// `1 − e²`, and velocities satisfy the constraints.
+/// Checks an impact in a closed loop with Poisson's restitution: the slide leaves with the fraction `e` of
+/// its speed, the energy decreases by the fraction `1 − e²`, and velocities satisfy the constraints.
 #[test]
 fn loops_stay_closed() {
     let m = Crank { e: 0.7 };

@@ -1,9 +1,9 @@
-//! Ratchet with teeth: a pawl rests on a rack by its weight.
+//! Checks of a ratchet, in which the weight of a pawl holds it in the teeth of a rack.
 
 use linkwork::contact;
 use linkwork::prelude::*;
 
-/// Teeth of 0.1 m with a gentle flank of slope 1/2 and a steep one of slope 2.
+/// Ratchet with teeth 0.1 m long: a gentle flank of slope 1/2 and a steep flank of slope 2.
 #[mechanism(gravity = -9.81 * z)]
 struct Ratchet {
     friction: f64,
@@ -42,17 +42,17 @@ fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
 /// with `μ = tan φ`. For `s μ > 1` no load moves the rack. A locked rack does not creep.
 #[test]
 fn a_pawl_holds_one_way() {
-    let climbs = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);
+    let climbing_force = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);
     let (gentle, steep) = ([0.03, 0.015], [0.19, 0.02]);
     for friction in [0.3, 0.6] {
-        let load = -climbs(0.5, friction);
+        let load = -climbing_force(0.5, friction);
         assert!(moves(friction, load * 1.001, gentle) < -1e-7, "{friction}");
         if friction > 0.5 {
             // The flank supports the pawl without a load, and with a load up to the limit.
             assert!(moves(friction, load * 0.999, gentle).abs() < 1e-12);
         }
     }
-    let load = climbs(2.0, 0.3);
+    let load = climbing_force(2.0, 0.3);
     assert!(moves(0.3, load * 1.001, steep) > 1e-7);
     assert!(moves(0.3, load * 0.999, steep).abs() < 1e-12);
     for times in [2.0, 1e3] {
@@ -61,8 +61,8 @@ fn a_pawl_holds_one_way() {
     }
 }
 
-/// Pulled in the other direction, the rack moves under the pawl, which falls into one tooth gap after
-/// another.
+/// Checks that the rack, pulled in its free direction, moves under the pawl, which falls into one tooth gap
+/// after another.
 #[test]
 fn a_rack_runs_one_way() {
     // The load is slightly above the limit of the gentle flanks.

@@ -33,7 +33,7 @@ struct Bricks {
 }
 
 impl Bricks {
-    /// Poses of both bricks: places of their centres, and rotations.
+    /// Returns the configuration of both bricks from the positions of their centres and their orientations.
     fn posed(&self, poses: [([f64; 3], UnitQuaternion<f64>); 2]) -> SVector<f64, 14> {
         let mut q = self.neutral();
         for (k, (place, turn)) in poses.into_iter().enumerate() {
@@ -51,12 +51,12 @@ impl Bricks {
         method: TimeStepping<f64>,
         (h, steps, gain): (f64, u32, f64),
     ) -> (SVector<f64, 14>, f64) {
-        let energy = |q: &_, v: &_| self.kinetic_energy(q, v) + self.potential_energy(q);
+        let total_energy = |q: &_, v: &_| self.kinetic_energy(q, v) + self.potential_energy(q);
         let run = simulate(self).from(start.0, start.1).overlaps(Overlaps::Part).method(method);
         let (mut before, mut end, mut worst) = (f64::INFINITY, start.0, 0.0_f64);
         for sample in run.duration(h * f64::from(steps)) {
             let sample = sample.expect("a step exists");
-            let now = energy(&sample.q, &sample.v);
+            let now = total_energy(&sample.q, &sample.v);
             assert!(now <= before + gain, "{} at {} s in steps of {h}", now - before, sample.t);
             (before, end, worst) = (now, sample.q, worst.max(sample.violation));
         }
@@ -65,7 +65,8 @@ impl Bricks {
     }
 }
 
-/// Bricks in the air, stacked, or one that falls against the other. `LINKWORK_SCENES` is how many there are.
+/// Checks random scenes of two bricks: in the air, stacked, or one falling against the other. The environment
+/// variable `LINKWORK_SCENES` is the number of scenes.
 #[test]
 fn random_scenes_of_two_bricks_go_on() {
     let count = std::env::var("LINKWORK_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(12);
@@ -113,7 +114,7 @@ fn random_scenes_of_two_bricks_go_on() {
     }
 }
 
-/// A thin brick falls against another one, which falls as well.
+/// Checks that a thin brick which falls against another one knocks it over.
 #[test]
 fn a_brick_knocks_another_over() {
     let m = Bricks { mass: 0.02, ratio: 1.0, a: 0.008, b: 0.025, c: 0.05, friction: 0.3, restitution: 0.0 };

@@ -1,4 +1,4 @@
-//! Compliant contacts.
+//! Checks of compliant contacts, in which surfaces indent.
 
 use linkwork::prelude::*;
 
@@ -48,7 +48,7 @@ fn bodies_stand_as_deep_as_they_are_heavy() {
 }
 
 /// Returns the time at which a body leaves the ground after an impact at one metre per second, and its
-/// velocity.
+/// velocity then. `at` returns the state at a time.
 fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64) {
     let (mut early, mut late) = (longest * 0.3, longest);
     for _ in 0..50 {
@@ -62,14 +62,16 @@ fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64)
 /// (Johnson, *Contact Mechanics*, 1985, § 11.4). Without dissipation it is elastic.
 #[test]
 fn impacts_last_as_long_as_closed_forms_say() {
-    let method = || DormandPrince::new().tolerance(1e-12, 1e-14);
+    let precise_method = || DormandPrince::new().tolerance(1e-12, 1e-14);
     let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation: 0.0 };
-    let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let state_at =
+        |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
     let (time, speed) = rebound(state_at, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
     let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
-    let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).method(method()).duration(t).finish().unwrap();
+    let state_at =
+        |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
     let (time, speed) = rebound(state_at, 4.0 * depth);
     assert!(
@@ -84,7 +86,7 @@ fn impacts_last_as_long_as_closed_forms_say() {
 #[test]
 fn restitution_falls_with_the_speed() {
     for dissipation in [0.003, 0.03] {
-        let restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
+        let expected_restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
         let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
         let (_, linear) = rebound(state_at, 0.05);
@@ -92,7 +94,10 @@ fn restitution_falls_with_the_speed() {
         let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
         let (_, round) = rebound(state_at, 0.05);
         for found in [linear, round] {
-            assert!((found - restitution(1.0)).abs() < dissipation * dissipation, "{dissipation}: {found}");
+            assert!(
+                (found - expected_restitution(1.0)).abs() < dissipation * dissipation,
+                "{dissipation}: {found}"
+            );
         }
     }
 }
@@ -111,7 +116,7 @@ struct Bowling {
     lane: Contact,
 }
 
-/// A sliding ball begins to roll, with 5/7 of its speed.
+/// Checks that a ball which slides on a compliant contact begins to roll, with 5/7 of its speed.
 #[test]
 fn a_ball_begins_to_roll() {
     let m = Bowling { friction: 0.2 };
@@ -142,11 +147,22 @@ fn derivatives_see_what_yields() {
         for k in 0..6 {
             let mut step = SVector::<f64, 6>::zeros();
             step[k] = h;
-            let of_q = |s: f64| m.forward_dynamics(&m.integrate(&q, &(step * s)), &v, &tau);
-            let of_v = |s: f64| m.forward_dynamics(&q, &(v + step * s), &tau);
+            let acceleration_at_displacement =
+                |s: f64| m.forward_dynamics(&m.integrate(&q, &(step * s)), &v, &tau);
+            let acceleration_at_velocity_step = |s: f64| m.forward_dynamics(&q, &(v + step * s), &tau);
             let size = by_q.amax().max(by_v.amax()).max(1.0);
-            assert!(((of_q(1.0) - of_q(-1.0)) / (2.0 * h) - by_q.column(k)).amax() < 1e-6 * size);
-            assert!(((of_v(1.0) - of_v(-1.0)) / (2.0 * h) - by_v.column(k)).amax() < 1e-6 * size);
+            assert!(
+                ((acceleration_at_displacement(1.0) - acceleration_at_displacement(-1.0)) / (2.0 * h)
+                    - by_q.column(k))
+                .amax()
+                    < 1e-6 * size
+            );
+            assert!(
+                ((acceleration_at_velocity_step(1.0) - acceleration_at_velocity_step(-1.0)) / (2.0 * h)
+                    - by_v.column(k))
+                .amax()
+                    < 1e-6 * size
+            );
         }
     }
 }

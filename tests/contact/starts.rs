@@ -59,9 +59,9 @@ fn what_has_no_room_is_refused() {
     assert!(text.starts_with("the surfaces of the contact `high` overlap by 0.013"), "{text}");
 }
 
-/// Simulations of both kinds, and in lanes, reject overlapping balls and report the contact. With the option
-/// to project, they start from the result of [`contact::project`]; with the option to keep overlaps, they
-/// start unchanged.
+/// Checks that simulations with both contact methods, and in lanes, reject overlapping balls and report the
+/// contact. With the option to project they start from the result of [`contact::project`]; with the option to
+/// keep overlaps they start unchanged.
 #[test]
 fn simulations_look_at_their_start() {
     let m = Channel { gap: 1.0 };
@@ -82,9 +82,10 @@ fn simulations_look_at_their_start() {
     // One of four lanes has an overlap.
     let lanes = SVector::from_fn(|i, _| Lanes([apart[i], apart[i], q[i], apart[i]]));
     let four = m.lanes::<4>();
-    let start = |parts| linkwork::integrate::Hooks::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
-    assert_eq!(start(false).unwrap_err(), overlap);
-    assert_eq!(start(true).unwrap(), SVector::<_, 14>::from_fn(|i, _| Lanes([apart[i]; 4])));
+    let start_with_contacts =
+        |parts| linkwork::integrate::Hooks::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
+    assert_eq!(start_with_contacts(false).unwrap_err(), overlap);
+    assert_eq!(start_with_contacts(true).unwrap(), SVector::<_, 14>::from_fn(|i, _| Lanes([apart[i]; 4])));
 }
 
 /// Slider-crank whose slide is limited by a stop.
@@ -113,12 +114,12 @@ struct Crank {
 #[test]
 fn loops_stay_closed() {
     let m = Crank {};
-    let configuration = |angle: f64| {
+    let crank_configuration = |angle: f64| {
         let rod = -(angle.sin() / 3.0).asin();
         SVector::from([angle, rod - angle, 0.1 * angle.cos() + 0.3 * rod.cos()])
     };
-    let q = contact::project(&m, 0.0, &configuration(0.3)).unwrap();
-    assert!(contact::check(&m, 0.0, &configuration(0.3)).is_err());
+    let q = contact::project(&m, 0.0, &crank_configuration(0.3)).unwrap();
+    assert!(contact::check(&m, 0.0, &crank_configuration(0.3)).is_err());
     assert!(m.constraint_residuals(&q).amax() < 1e-12, "{}", m.constraint_residuals(&q));
     assert!((q[2] - 0.37).abs() < 1e-10, "{q}");
     let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);

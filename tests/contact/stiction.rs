@@ -42,16 +42,16 @@ fn pulled(ramp: f64, t: f64) -> [f64; 2] {
 fn a_pulled_block_breaks_away_at_the_static_force() {
     let ramp = 20.0;
     for direction in [[1.0, 0.0], [0.6, -0.8]] {
-        let run = |duration: f64| {
+        let simulate_pulled_block = |duration: f64| {
             simulate(&LEVEL)
                 .from([0.0; 3], [0.0; 3])
                 .inputs(move |t, _, _| SVector::<f64, 2>::from(direction) * (ramp * t))
                 .duration(duration)
         };
-        let before = run(0.58).method(exact()).finish().unwrap();
+        let before = simulate_pulled_block(0.58).method(exact()).finish().unwrap();
         assert!(before.v.amax() < 1e-14 && before.q.amax() < 1e-14, "{before:?}");
-        let end = run(1.5).method(exact()).finish().unwrap();
-        let steps = run(1.5).method(TimeStepping::step(1e-3)).finish().unwrap();
+        let end = simulate_pulled_block(1.5).method(exact()).finish().unwrap();
+        let steps = simulate_pulled_block(1.5).method(TimeStepping::step(1e-3)).finish().unwrap();
         let [distance, speed] = pulled(ramp, 1.5);
         for (i, along) in direction.into_iter().enumerate() {
             assert!((end.q[i] - distance * along).abs() < 1e-10, "{end:?} {distance}");
@@ -62,21 +62,21 @@ fn a_pulled_block_breaks_away_at_the_static_force() {
     }
 }
 
-/// On a slope between both angles of friction a block rests, slides on once it slides downwards, and rests
-/// again where it has slid upwards.
+/// Checks a block on a slope between the angles of kinetic and static friction: it stays at rest, continues
+/// to slide downwards once it does, and comes to rest after sliding upwards.
 #[test]
 fn a_block_on_a_slope_rests_or_slides() {
     let tilt = 0.5_f64.atan();
     let slope = Block { tilt, ..LEVEL };
-    let run = |v: f64| simulate(&slope).from([0.0; 3], [v, 0.0, 0.0]).duration(1.0);
+    let simulate_on_slope = |v: f64| simulate(&slope).from([0.0; 3], [v, 0.0, 0.0]).duration(1.0);
     let (sin, cos) = tilt.sin_cos();
     let (down, up) = (G * (sin - 0.4 * cos), G * (sin + 0.4 * cos));
     for (v, distance, speed) in
         [(0.0, 0.0, 0.0), (0.1, 0.1 + down / 2.0, 0.1 + down), (-1.0, -1.0 / (2.0 * up), 0.0)]
     {
-        let end = run(v).method(exact()).finish().unwrap();
+        let end = simulate_on_slope(v).method(exact()).finish().unwrap();
         assert!((end.q[0] - distance).abs() < 1e-11 && (end.v[0] - speed).abs() < 1e-11, "{v} {end:?}");
-        let steps = run(v).method(TimeStepping::step(1e-3)).finish().unwrap();
+        let steps = simulate_on_slope(v).method(TimeStepping::step(1e-3)).finish().unwrap();
         assert!((steps.q[0] - distance).abs() < 1e-3 && (steps.v[0] - speed).abs() < 1e-9, "{v} {steps:?}");
     }
 }
@@ -86,7 +86,7 @@ fn a_block_on_a_slope_rests_or_slides() {
 #[test]
 fn a_block_on_a_spring_sticks_and_slips() {
     let (k, speed, mass): (f64, f64, f64) = (50.0, 0.1, 2.0);
-    let pull = move |t: f64, q: &SVector<f64, 3>| [k * (speed * t - q[0]), 0.0].into();
+    let spring_pull = move |t: f64, q: &SVector<f64, 3>| [k * (speed * t - q[0]), 0.0].into();
     let omega = (k / mass).sqrt();
     let excess = 0.2 * mass * G / k;
     let phi = (speed / (omega * excess)).atan();
@@ -96,8 +96,9 @@ fn a_block_on_a_spring_sticks_and_slips() {
         let n = f64::from(periods);
         // In the middle of the time in which it sticks.
         let t = first + n * period - excess / speed;
-        let run = || simulate(&LEVEL).from([0.0; 3], [0.0; 3]).inputs(move |t, q: &_, _: &_| pull(t, q));
-        let end = run().method(exact()).duration(t).finish().unwrap();
+        let simulate_on_spring =
+            || simulate(&LEVEL).from([0.0; 3], [0.0; 3]).inputs(move |t, q: &_, _: &_| spring_pull(t, q));
+        let end = simulate_on_spring().method(exact()).duration(t).finish().unwrap();
         assert!((end.q[0] - n * speed * period).abs() < 1e-9, "{end:?} {}", n * speed * period);
         assert!(end.v.amax() < 1e-14, "{end:?}");
     }
@@ -106,7 +107,7 @@ fn a_block_on_a_spring_sticks_and_slips() {
 #[test]
 fn contact_forces_know_both_coefficients() {
     let weight = 2.0 * G;
-    let force = |v: f64, push: f64| {
+    let contact_force_of_block = |v: f64, push: f64| {
         let (q, v) = (SVector::zeros(), [v, 0.0, 0.0].into());
         contact::acting(&LEVEL, 0.0, &q, &v, &[push, 0.0].into()).unwrap()
     };
@@ -116,7 +117,7 @@ fn contact_forces_know_both_coefficients() {
         (1.0, 0.5 * weight, -0.4 * weight),
         (-1.0, 0.0, 0.4 * weight),
     ] {
-        let f = force(v, push);
+        let f = contact_force_of_block(v, push);
         assert!((f[0] - weight).abs() < 1e-7, "{f}");
         assert!((f[1] - friction).abs() < 1e-7 && f[2].abs() < 1e-7, "{v} {push}: {f}");
     }
@@ -141,8 +142,9 @@ fn corners_slide_together() {
     let height = Crate::CONFIGURATION.iter().position(|name| *name == "pose.z").unwrap();
     q[height] = 0.05;
     for (push, speed) in [(0.55 * 2.0 * G, 0.0), (0.65 * 2.0 * G, 0.25 * G * 0.5)] {
-        let run = || simulate(&Crate {}).from(q, SVector::zeros()).inputs(move |_, _, _| [push].into());
-        let end = run().duration(0.5).method(TimeStepping::step(1e-3)).finish().unwrap();
+        let simulate_crate =
+            || simulate(&Crate {}).from(q, SVector::zeros()).inputs(move |_, _, _| [push].into());
+        let end = simulate_crate().duration(0.5).method(TimeStepping::step(1e-3)).finish().unwrap();
         let i = Crate::VELOCITIES.iter().position(|name| *name == "pose.vx").unwrap();
         assert!((end.v[i] - speed).abs() < 1e-9, "{push}: {}", end.v);
     }

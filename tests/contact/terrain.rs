@@ -20,7 +20,7 @@ struct BallOnHills {
 
 /// Returns the minimum distance of a point from the hills by a numerical search.
 fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
-    let square = |u: f64, w: f64| {
+    let squared_distance_to_hill = |u: f64, w: f64| {
         let height = m.height * (u / m.length).cos() * (w / m.length).sin();
         (u - x).powi(2) + (w - y).powi(2) + (height - z).powi(2)
     };
@@ -29,11 +29,13 @@ fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
         let grid_point = |k: i32| {
             [best[0] + size * f64::from(k % 9 - 4) / 4.0, best[1] + size * f64::from(k / 9 - 4) / 4.0]
         };
-        let least = (0..81).map(grid_point).min_by(|a, b| square(a[0], a[1]).total_cmp(&square(b[0], b[1])));
+        let least = (0..81).map(grid_point).min_by(|a, b| {
+            squared_distance_to_hill(a[0], a[1]).total_cmp(&squared_distance_to_hill(b[0], b[1]))
+        });
         best = least.unwrap();
         size *= 0.6;
     }
-    square(best[0], best[1]).sqrt()
+    squared_distance_to_hill(best[0], best[1]).sqrt()
 }
 
 /// Near the ground the distance of a ball is the global minimum; far above the ground it is at least a
@@ -44,17 +46,17 @@ fn distances_from_hills_are_the_least() {
     for k in 0..200 {
         let (x, y) = ((f64::from(k) * 0.37).sin(), (f64::from(k) * 0.73).cos());
         let ground = m.height * (x / m.length).cos() * (y / m.length).sin();
-        let gap = |z: f64| m.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
+        let gap_at_height = |z: f64| m.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
         for above in [0.095, 0.1, 0.11] {
             let found = looked(&m, [x, y, ground + above]) - m.radius;
             assert!(
-                (gap(ground + above) - found).abs() < 1e-7,
+                (gap_at_height(ground + above) - found).abs() < 1e-7,
                 "{x} {y} {above}: {} {found}",
-                gap(ground + above)
+                gap_at_height(ground + above)
             );
         }
         for above in [0.3, 1.0, 10.0] {
-            assert!(gap(ground + above) > above / 3.0 - m.radius, "{x} {y} {above}");
+            assert!(gap_at_height(ground + above) > above / 3.0 - m.radius, "{x} {y} {above}");
         }
     }
 }
@@ -75,8 +77,8 @@ struct BallInHollow {
     hollow: Contact,
 }
 
-/// At the bottom of a hollow a ball swings as a pendulum whose length is the difference of the radii, times
-/// 7/5 if it rolls.
+/// Checks that a ball at the bottom of a hollow swings as a pendulum. Its length is the difference of the
+/// radii, times 7/5 if the ball rolls.
 #[test]
 fn a_ball_swings_in_a_hollow() {
     for (friction, share) in [(0.0, 1.0), (0.5, 1.4)] {

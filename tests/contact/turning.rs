@@ -56,18 +56,18 @@ fn a_spinning_ball_stops() {
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
     let stops = 20.0 * inertia / (0.002 * MASS * G);
-    let angle = |q: &SVector<f64, 7>| 2.0 * q[5].atan2(q[6]).rem_euclid(core::f64::consts::PI);
+    let rotation_angle = |q: &SVector<f64, 7>| 2.0 * q[5].atan2(q[6]).rem_euclid(core::f64::consts::PI);
     let turned = (10.0 * stops).rem_euclid(2.0 * core::f64::consts::PI);
-    let run = || simulate(&m).from(q, v).method(exact());
-    let half = run().duration(stops / 2.0).finish().unwrap();
+    let simulate_spinning_ball = || simulate(&m).from(q, v).method(exact());
+    let half = simulate_spinning_ball().duration(stops / 2.0).finish().unwrap();
     assert!((half.v[5] - 10.0).abs() < 1e-10, "{half:?}");
-    let end = run().duration(100.0).finish().unwrap();
-    assert!(end.v.amax() < 1e-13 && (angle(&end.q) - turned).abs() < 1e-9, "{end:?} {turned}");
+    let end = simulate_spinning_ball().duration(100.0).finish().unwrap();
+    assert!(end.v.amax() < 1e-13 && (rotation_angle(&end.q) - turned).abs() < 1e-9, "{end:?} {turned}");
     let steps = simulate(&m).from(q, v).method(TimeStepping::step(1e-3));
     let half = steps.clone().duration(stops / 2.0).finish().unwrap();
     assert!((half.v[5] - 10.0).abs() < 1e-9, "{half:?}");
     let end = steps.duration(3.0).finish().unwrap();
-    assert!(end.v.amax() < 1e-13 && (angle(&end.q) - turned).abs() < 1e-4, "{end:?} {turned}");
+    assert!(end.v.amax() < 1e-13 && (rotation_angle(&end.q) - turned).abs() < 1e-4, "{end:?} {turned}");
 }
 
 /// A rolling ball is decelerated by 5/7 ρ g / r, stops after half of v² over this deceleration, and stays at
@@ -78,10 +78,10 @@ fn a_rolling_ball_stops() {
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
     let way = 0.5 / brakes;
-    let run = || simulate(&m).from(q, v).method(exact());
-    let two = run().duration(2.0).finish().unwrap();
+    let simulate_rolling_ball = || simulate(&m).from(q, v).method(exact());
+    let two = simulate_rolling_ball().duration(2.0).finish().unwrap();
     assert!((two.q[0] - (2.0 - 2.0 * brakes)).abs() < 1e-9, "{two:?}");
-    let end = run().duration(20.0).finish().unwrap();
+    let end = simulate_rolling_ball().duration(20.0).finish().unwrap();
     assert!(end.v.amax() < 1e-12 && (end.q[0] - way).abs() < 1e-9, "{end:?} {way}");
     let steps = simulate(&m).from(q, v).method(TimeStepping::step(2e-3)).duration(8.0).finish().unwrap();
     assert!(steps.v.amax() < 1e-12 && (steps.q[0] - way).abs() < 1e-4, "{steps:?} {way}");
@@ -90,8 +90,8 @@ fn a_rolling_ball_stops() {
     assert!((rests.q - steps.q).amax() < 1e-9, "{:e}", (rests.q - steps.q).amax());
 }
 
-/// On a slope a ball stays at rest if tan α is less than ρ / r. On steeper slopes it rolls down with 5/7 g
-/// (sin α − ρ / r cos α).
+/// Checks that a ball with rolling friction ρ stays at rest on a slope if tan α is less than ρ / r. On
+/// steeper slopes it rolls down with 5/7 g (sin α − ρ / r cos α).
 #[test]
 fn a_ball_stays_on_a_gentle_slope() {
     let rolling = 0.1 * RADIUS;
@@ -200,14 +200,14 @@ fn surfaces_that_yield_brake_what_turns() {
     let m = OnFelt {};
     let mut q = m.neutral();
     q[2] = RADIUS - MASS * G / 1e6;
-    let run = |v: [f64; 6], t: f64| {
+    let simulate_ball_from = |v: [f64; 6], t: f64| {
         let method = Rodas::new().tolerance(1e-8, 1e-10);
         simulate(&m).from(q, v).method(method).duration(t).finish().unwrap()
     };
-    let spins = run([0.0, 0.0, 0.0, 0.0, 0.0, 20.0], 0.5);
+    let spins = simulate_ball_from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0], 0.5);
     let slower = 0.5 * 0.002 * G / (0.4 * RADIUS * RADIUS);
     assert!((spins.v[5] - 20.0 + slower).abs() < 1e-3 * slower, "{spins:?}");
-    let rolls = run([1.0, 0.0, 0.0, 0.0, 20.0, 0.0], 0.5);
+    let rolls = simulate_ball_from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0], 0.5);
     let way = 0.5 - 0.125 * 5.0 / 7.0 * 0.001 * G / RADIUS;
     assert!((rolls.q[0] - way).abs() < 1e-4, "{rolls:?} {way}");
 }

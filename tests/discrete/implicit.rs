@@ -80,8 +80,8 @@ fn implicit_steps_change_as_their_jacobians_say() {
     }
 }
 
-/// Checks the Jacobians of all methods on a mechanism with constraints, at a state that satisfies them. The
-/// directions of the derivatives include inadmissible ones.
+/// Checks the Jacobians of steps of all methods on a mechanism with constraints, at a state that satisfies
+/// them. The directions of the derivatives include inadmissible ones.
 pub(super) fn check_constrained<
     M,
     const NQ: usize,

@@ -1,5 +1,5 @@
-//! Single steps and their Jacobians against differences of steps and against the linear system, and examples
-//! of their use.
+//! Checks of single integration steps: their Jacobians against differences of steps and against the linear
+//! system, and examples of their use.
 
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::prelude::*;
@@ -42,7 +42,7 @@ struct Driven {
     motor: Torque,
 }
 
-/// Arm whose coordinates are all joint angles.
+/// Panda arm without its fingers, so that all coordinates are joint angles.
 #[mechanism(
     urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives
 )]
@@ -84,11 +84,11 @@ fn slopes<const NV: usize, const NU: usize, const R: usize>(
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let value_along =
         |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
-    let slope = |k| {
-        let change = |x: f64| value_along(k, x) - value_along(k, -x);
-        weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| change(x) * (w / h)).sum()
+    let derivative_along = |k| {
+        let central_difference = |x: f64| value_along(k, x) - value_along(k, -x);
+        weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| central_difference(x) * (w / h)).sum()
     };
-    (0..2 * NV + NU).map(slope).collect()
+    (0..2 * NV + NU).map(derivative_along).collect()
 }
 
 fn assert_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
@@ -118,7 +118,7 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     }
 }
 
-/// Compares the Jacobians of one step with differences of steps.
+/// Compares the Jacobians of one integration step with finite differences of steps.
 fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -130,15 +130,15 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     S: DifferentiableStep<f64>,
 {
     let mut random = Random::new(5);
-    let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
+    let step_state = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
     let found = discrete::transition(m, method, t, q, v, u).expect("it is regular");
-    let (next_q, next_v) = step(q, v, u);
+    let (next_q, next_v) = step_state(q, v, u);
     // The accelerations with derivatives come from other expressions, whose rounding errors differ.
     let off = (m.difference(&next_q, &found.q).amax(), (next_v - found.v).amax());
     let change = (found.v - v).amax().max(1.0);
     assert!(off.0 < 1e-14 && off.1 < 2e-14 * change, "{name}: {off:?}, {change}");
     let displaced_step = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
-        step(&m.integrate(q, dq), &(v + dv), &(u + du))
+        step_state(&m.integrate(q, dq), &(v + dv), &(u + du))
     };
     let by_q: Vec<f64> = slopes(|dq, dv, du| m.difference(&next_q, &displaced_step(dq, dv, du).0))
         .iter()
@@ -149,9 +149,9 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         slopes(|dq, dv, du| displaced_step(dq, dv, du).1).iter().flatten().copied().collect();
     let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
     let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
-    let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
-    assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, scale(&q_blocks));
-    assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, scale(&v_blocks));
+    let largest_magnitude = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+    assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, largest_magnitude(&q_blocks));
+    assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, largest_magnitude(&v_blocks));
     // Adjoint products equal products with the transposed blocks.
     let (a, b) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
     let (back_q, back_v, back_u) = found.adjoint(&a, &b);
@@ -161,7 +161,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let forth = a.dot(&(found.q_by_q * dq + found.q_by_v * dv + found.q_by_u * du))
         + b.dot(&(found.v_by_q * dq + found.v_by_v * dv + found.v_by_u * du));
     let back = back_q.dot(&dq) + back_v.dot(&dv) + back_u.dot(&du);
-    assert!((forth - back).abs() < 1e-11 * scale(&v_blocks), "{name}: {forth} {back}");
+    assert!((forth - back).abs() < 1e-11 * largest_magnitude(&v_blocks), "{name}: {forth} {back}");
 }
 
 #[test]
@@ -186,12 +186,13 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
 ) where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
-    let acceleration = |q: &_, v: &_, u: &_| {
+    let acceleration_at = |q: &_, v: &_, u: &_| {
         Mechanism::forward_dynamics(m, 0.0, q, v, &Mechanism::generalized_forces(m, 0.0, q, v, u))
     };
     let found = m.linear_motion(q, v, u);
-    assert!((found.acceleration - acceleration(q, v, u)).amax() < 1e-12);
-    let expected = slopes(|dq, dv, du| acceleration(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du)));
+    assert!((found.acceleration - acceleration_at(q, v, u)).amax() < 1e-12);
+    let expected =
+        slopes(|dq, dv, du| acceleration_at(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du)));
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
     let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     let blocks = [found.by_q.as_slice(), found.by_v.as_slice(), found.by_u.as_slice()];
@@ -264,7 +265,7 @@ fn bad_periods_are_errors() {
     assert!(matches!(found, Err(Error::NotFinite { .. })), "{found:?}");
 }
 
-/// Frames found by index have the placements of those found by name.
+/// Checks that the placement of a frame found by index equals that of the frame found by name.
 #[test]
 fn frames_are_found_by_number() {
     let mut random = Random::new(3);

@@ -101,8 +101,8 @@ struct Arms {
     swing: Speed,
 }
 
-/// Spatial loop of four pins. The generalized speeds are the angular velocities of its bars, and the velocity
-/// of one end along its bar.
+/// Spatial loop of four pins. The generalized speeds are the angular velocities of its bars and the velocity
+/// of one of their ends along the bar.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct FourBar {
     base: f64,

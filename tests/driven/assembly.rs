@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Declares a four-bar linkage with additional fields.
+/// Declares a planar four-bar linkage with the given additional fields.
 macro_rules! four_bar {
     ($(#[$about:meta])* $visibility:vis $name:ident, { $($more:tt)* }) => {
         $(#[$about])*
@@ -39,7 +39,7 @@ pub(super) use four_bar;
 four_bar!(pub FourBar, {});
 
 impl FourBar {
-    /// Returns the angles of the joints.
+    /// Returns the joint angles of the linkage for a crank angle and an assembly mode `side`.
     pub fn angles(&self, side: f64, angle: f64) -> SVector<f64, 3> {
         let bars = [self.base, self.first, self.second, self.third];
         let [pin, end] = corners(bars, side, angle);
@@ -54,8 +54,8 @@ pub fn corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) ->
     [pin, jansen::corner(pin, [base, 0.0], second, third, side)]
 }
 
-/// Returns the bars, a side and an angle of a random four-bar linkage. The sine of its transmission angle is
-/// at least `least`.
+/// Returns the bar lengths, the assembly mode and the crank angle of a random four-bar linkage. The sine of
+/// the transmission angle is at least `least`.
 pub fn random(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
     loop {
         let bars = [(); 4].map(|()| 0.6 + source.uniform(0.4));
@@ -79,8 +79,8 @@ fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
 }
 
-/// From a guess of the crank's angle alone, with or without additional whole turns, the result is one of the
-/// two intersections of circles, within half a turn of the guess.
+/// Checks that assembly from a guess of the crank angle alone, with or without additional turns, yields one
+/// of the two intersections of circles, within half a turn of the guess.
 #[test]
 fn partial_guesses_stay_within_half_a_turn() {
     let mut source = Random::new(5);
@@ -173,7 +173,8 @@ fn gears_turn_as_far_as_they_must() {
     assert_eq!(gears.assembly_mode(&q, &[]), None);
 }
 
-/// With all bars in line, the two assembly modes of a parallelogram coincide.
+/// Checks that the assembly mode is undefined where all bars of a parallelogram are in line, because the two
+/// modes coincide there.
 #[test]
 fn singular_positions_have_no_mode() {
     let m = FourBar { base: 1.0, first: 0.5, second: 1.0, third: 0.5 };

@@ -25,8 +25,8 @@ struct Cam {
     bearing: Vector,
 }
 
-/// With `s = 0.05 + e sin φ`, the normal force of the follower is `m s̈ + k s + m g`. The torque is this
-/// force times `e cos φ`, and the moment of the cam's weight.
+/// Checks a cam with the lift `s = 0.05 + e sin φ`: the normal force of the follower is `m s̈ + k s + m g`.
+/// The torque of the cam is this force times `e cos φ`, plus the moment of the weight of the cam.
 #[test]
 fn the_cam_carries_spring_weight_and_inertia() {
     let (speed, e, mass) = (40.0, 0.02, 0.4);

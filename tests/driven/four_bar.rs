@@ -22,15 +22,17 @@ four_bar!(
 /// Returns the first and second derivatives at zero, by central differences of order six.
 fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
     let h = 2e-3;
-    let even = |k: f64| f(k * h) + f(-k * h);
-    let second = (2.0 * even(3.0) - 27.0 * even(2.0) + 270.0 * even(1.0) - 490.0 * f(0.0)) / (180.0 * h * h);
+    let even_difference = |k: f64| f(k * h) + f(-k * h);
+    let second = (2.0 * even_difference(3.0) - 27.0 * even_difference(2.0) + 270.0 * even_difference(1.0)
+        - 490.0 * f(0.0))
+        / (180.0 * h * h);
     [derivative(f, 0.0), second]
 }
 
-/// Returns the torque on the crank.
+/// Returns the reference torque on the crank of a four-bar linkage, from formulas independent of the library.
 fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
     let [base, first, second, third] = bars;
-    let body = |k: usize, angle: f64| -> [f64; 3] {
+    let pose_of_bar = |k: usize, angle: f64| -> [f64; 3] {
         let [pin, end] = corners(bars, side, angle);
         let (a, b, com) = match k {
             0 => ([0.0, 0.0], pin, [first / 3.0, 0.0]),
@@ -43,14 +45,14 @@ fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64
     let inertias = [first * first / 12.0, 1.5 * second * second / 12.0, 0.8 * third * third / 12.0];
     let mut sum = 0.0;
     for (k, (mass, inertia)) in [1.0, 1.5, 0.8].into_iter().zip(inertias).enumerate() {
-        let here = body(k, angle)[2];
+        let here = pose_of_bar(k, angle)[2];
         for i in 0..3 {
             let [by, bend] = differences(|more| match i {
                 2 => {
-                    let turned = body(k, angle + more)[2] - here;
+                    let turned = pose_of_bar(k, angle + more)[2] - here;
                     turned.sin().atan2(turned.cos())
                 }
-                _ => body(k, angle + more)[i],
+                _ => pose_of_bar(k, angle + more)[i],
             });
             let acceleration = by * growth + bend * speed * speed;
             sum += by

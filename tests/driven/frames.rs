@@ -1,11 +1,11 @@
-//! Bodies on frames that move as functions of time: without any coordinate, on each other, and several on one
-//! frame.
+//! Checks of bodies on frames whose motion is a function of time: without any coordinate, on each other, and
+//! several on one frame.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
 
-/// Arm that rotates at a given speed, a second arm that rotates relative to the first one, and a weight on
-/// the second.
+/// Arm that rotates with constant angular velocity, a lamp that moves with it, and a second arm that rotates
+/// relative to the first one. No body has a coordinate.
 #[mechanism(gravity = -9.81 * y)]
 struct Robot {
     first_speed: f64,
@@ -41,10 +41,10 @@ fn arms_on_frames_tell_their_torques() {
     assert_eq!((Robot::NQ, Robot::NV), (0, 0));
     let (q, v) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
     let w = w1 + w2;
-    let direction = |angle: f64| [angle.cos(), angle.sin()];
+    let direction_at_angle = |angle: f64| [angle.cos(), angle.sin()];
     for k in 0..12 {
         let t = 0.2 * f64::from(k);
-        let ([c1, s1], [c2, s2]) = (direction(w1 * t), direction(w * t));
+        let ([c1, s1], [c2, s2]) = (direction_at_angle(w1 * t), direction_at_angle(w * t));
         let tip = m.speed(t, &q);
         assert_close(
             "speed",
@@ -53,10 +53,11 @@ fn arms_on_frames_tell_their_torques() {
             1e-12,
         );
         let a = m.acceleration(t, &q);
-        let by_hand = |l: f64| [-0.5 * w1 * w1 * c1 - l * w * w * c2, -0.5 * w1 * w1 * s1 - l * w * w * s2];
-        assert_close("acceleration", &a.data.0[0][..2], &by_hand(0.4), 1e-12);
+        let expected_acceleration =
+            |l: f64| [-0.5 * w1 * w1 * c1 - l * w * w * c2, -0.5 * w1 * w1 * s1 - l * w * w * s2];
+        assert_close("acceleration", &a.data.0[0][..2], &expected_acceleration(0.4), 1e-12);
         // Force that the arm exerts on the forearm at its elbow.
-        let a = by_hand(0.2);
+        let a = expected_acceleration(0.2);
         let force = [a[0], a[1] + 9.81];
         let elbow = 0.2 * (c2 * force[1] - s2 * force[0]);
         let on_forearm = m.on_forearm(t, &q, &v);

@@ -11,7 +11,8 @@ struct Leg {
     turned: Frame,
     #[body(mass = 0.1, com = 0.075 * x, inertia = rod(0.1, 0.15, x), frame = turned)]
     crank: Body,
-    /// The x axis is along the upper bar from the fixed pivot; the left corner follows from its distances.
+    /// Upper triangle of the leg. The x axis is along its upper bar from the fixed pivot; the left corner
+    /// follows from its distances.
     #[body(mass = 0.9, com = 0.2 * x + 0.13 * y, inertia = diagonal(0.02, 0.02, 0.03))]
     upper: Body,
     #[body(mass = 0.4, com = 0.1965 * x, inertia = rod(0.4, 0.393, x))]
@@ -50,7 +51,7 @@ struct Leg {
 
 pub type Point = [f64; 2];
 
-/// Returns the third corner of a triangle over `a` and `b`, at the given distances from them. It is to the
+/// Returns the third corner of a triangle over `a` and `b` from its distances to them. The corner is to the
 /// left of the direction from `a` to `b` if `side` is 1.
 pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
@@ -79,15 +80,15 @@ fn skeleton(angle: f64) -> Skeleton {
     let left = body_point(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
     let bottom = corner(pivot, pin, 0.393, 0.619, -1.0);
     let rear = corner(left, bottom, 0.394, 0.367, -1.0);
-    let rod = |m: f64, l: f64| m * l * l / 12.0;
+    let rod_inertia = |m: f64, l: f64| m * l * l / 12.0;
     Skeleton(vec![
-        (0.1, [0.075, 0.0], rod(0.1, 0.15), [centre, pin]),
+        (0.1, [0.075, 0.0], rod_inertia(0.1, 0.15), [centre, pin]),
         (0.9, [0.2, 0.13], 0.03, [pivot, top]),
-        (0.4, [0.1965, 0.0], rod(0.4, 0.393), [pivot, bottom]),
+        (0.4, [0.1965, 0.0], rod_inertia(0.4, 0.393), [pivot, bottom]),
         (1.1, [0.2, 0.2], 0.05, [bottom, rear]),
-        (0.5, [0.25, 0.0], rod(0.5, 0.5), [pin, top]),
-        (0.6, [0.3095, 0.0], rod(0.6, 0.619), [pin, bottom]),
-        (0.4, [0.197, 0.0], rod(0.4, 0.394), [left, rear]),
+        (0.5, [0.25, 0.0], rod_inertia(0.5, 0.5), [pin, top]),
+        (0.6, [0.3095, 0.0], rod_inertia(0.6, 0.619), [pin, bottom]),
+        (0.4, [0.197, 0.0], rod_inertia(0.4, 0.394), [left, rear]),
     ])
 }
 
@@ -105,14 +106,14 @@ impl Skeleton {
 
 /// Returns the energy, with velocities from differences of the corners.
 fn energy(speed: f64, t: f64) -> f64 {
-    let rate = |f: &dyn Fn(f64) -> f64| super::derivative(|t| f(speed * t), t);
+    let time_derivative = |f: &dyn Fn(f64) -> f64| super::derivative(|t| f(speed * t), t);
     let here = skeleton(speed * t);
     let mut sum = 0.0;
     for (k, (mass, _, inertia, _)) in here.0.iter().enumerate() {
-        let v = [0, 1].map(|i| rate(&|angle| skeleton(angle).centre(k)[i]));
+        let v = [0, 1].map(|i| time_derivative(&|angle| skeleton(angle).centre(k)[i]));
         // The difference starts at the current angle, so that no jump by a whole turn occurs.
         let base = here.angle(k);
-        let w = rate(&|angle| {
+        let w = time_derivative(&|angle| {
             let turned = skeleton(angle).angle(k) - base;
             turned.sin().atan2(turned.cos())
         });
@@ -132,7 +133,7 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
     for k in 0..=24 {
         let t = f64::from(k) * std::f64::consts::TAU / speed / 24.0;
         let s = skeleton(speed * t);
-        let tilt = |k: usize, of: f64| {
+        let relative_angle = |k: usize, of: f64| {
             let angle = s.angle(k) - of;
             angle.sin().atan2(angle.cos())
         };
@@ -141,10 +142,10 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
         let corners = [
             s.angle(1),
             s.angle(2),
-            tilt(3, s.angle(2)),
-            tilt(4, turned),
-            tilt(5, turned),
-            tilt(6, s.angle(1)),
+            relative_angle(3, s.angle(2)),
+            relative_angle(4, turned),
+            relative_angle(5, turned),
+            relative_angle(6, s.angle(1)),
         ];
         let q = m.assemble(t, &last.unwrap_or(corners.into()), &[]).unwrap();
         last = Some(q);
@@ -153,10 +154,10 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
             assert!(off.sin().atan2(off.cos()).abs() < 1e-7, "{k}: {q} {corners:?}");
         }
         let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
-        let total = |t: f64| energy(speed, t);
+        let total_energy = |t: f64| energy(speed, t);
         let found = m.kinetic_energy(t, &q, &v) + m.potential_energy(t, &q);
-        assert_close("energy", &[found], &[total(t)], 1e-6);
+        assert_close("energy", &[found], &[total_energy(t)], 1e-6);
         let place = *m.on_crank(t, &q, &v).get("crank.place").unwrap();
-        assert_close("power", &[place.torque[2] * speed], &[super::derivative(total, t)], 1e-5);
+        assert_close("power", &[place.torque[2] * speed], &[super::derivative(total_energy, t)], 1e-5);
     }
 }

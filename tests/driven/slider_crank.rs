@@ -107,7 +107,7 @@ macro_rules! placed_by_time {
 }
 
 placed_by_time!(
-    /// Slider-crank whose loop is a constraint.
+    /// Slider-crank with a driven crank, whose loop is closed by a constraint.
     Framed,
     (),
     {}
@@ -178,7 +178,7 @@ impl ByHand {
 
 const OMEGA: f64 = 35.0;
 
-/// Returns instants over one revolution.
+/// Returns 24 instants over one revolution of the crank, s.
 fn turn() -> impl Iterator<Item = f64> {
     (0..24).map(|k| f64::from(k) * std::f64::consts::TAU / OMEGA / 24.0)
 }
@@ -238,8 +238,8 @@ fn a_given_rate_drives() {
     }
 }
 
-/// Inverse dynamics of the mechanism with one degree of freedom returns the torque of the crank for its
-/// motion.
+/// Checks that inverse dynamics of a slider-crank with one degree of freedom returns the torque of its crank
+/// for the motion.
 #[test]
 fn inverse_dynamics_find_the_torque_of_a_motion() {
     let m = Motorised {};
@@ -336,8 +336,8 @@ fn linear_systems_are_empty() {
     assert_eq!(linear.a.shape(), (0, 0));
 }
 
-/// Two contradictory drives of one coordinate have a common configuration only at the time zero; neither is
-/// ignored.
+/// Checks two contradictory drives of one coordinate. They have a common configuration only at the time zero;
+/// at other times an error reports them.
 #[test]
 fn drives_that_disagree_are_reported() {
     assert_eq!((Twice::NC, Twice::NS), (4, 0));
@@ -347,8 +347,8 @@ fn drives_that_disagree_are_reported() {
     assert!(matches!(found, Err(ConstraintError::Configuration { .. })), "{found:?}");
 }
 
-/// All options of generated functions work without degrees of freedom: derivatives along a prescribed motion,
-/// and the force of a drive against a gas.
+/// Checks that all options of generated functions work for a mechanism without degrees of freedom:
+/// derivatives along a prescribed motion, and the force of a drive against a gas.
 #[test]
 fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };

@@ -21,8 +21,8 @@ struct ScotchYoke {
     motor: Holonomic,
 }
 
-/// With `x = r cos φ`, the force of the slot is `m ẍ`, and the torque is `m r² ω² sin φ cos φ`, at twice the
-/// frequency of the rotation.
+/// Checks a Scotch yoke with `x = r cos φ`: the force of the slot is `m ẍ`, and the torque is
+/// `m r² ω² sin φ cos φ`, at twice the frequency of the rotation.
 #[test]
 fn the_yoke_follows_a_cosine() {
     assert_eq!((ScotchYoke::NS, ScotchYoke::NP), (0, 0));

@@ -5,7 +5,7 @@
 
 use linkwork::prelude::*;
 
-/// Mechanism without parameters.
+/// Mechanism whose struct has no parameters.
 #[mechanism]
 pub struct Plain {
     #[body(mass = 1)]
@@ -14,29 +14,29 @@ pub struct Plain {
     rail: Sleeve,
 }
 
-/// Mechanism with all attributes and visibilities that Rust allows on a struct and its fields.
+/// Mechanism that has all attributes and visibilities which Rust allows on a struct and its fields.
 #[mechanism(gravity = [0, -9.81, 0],)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 #[non_exhaustive]
 #[must_use]
 pub struct Adorned {
-    /// Mass, kg.
+    /// Mass of the cart, kg.
     #[doc(alias = "weight")]
     pub mass: f64,
-    /// Field for the user's own purposes.
+    /// Parameter that no element uses; the leading underscore marks it as intentional.
     pub(crate) _serial: f64,
     /// Cart with a mass that is a parameter.
     #[doc(hidden)]
     #[allow(dead_code, reason = "only its form counts")]
     #[body(mass = mass, inertia = 0, com = 0,)]
     pub cart: linkwork::elements::Body,
-    /// Rail along a diagonal direction.
+    /// Prismatic joint along a diagonal direction.
     #[joint(ground.at(2.5 * x).rotated(z(pi / 2)) -> cart, along = unit(x + y),)]
     pub rail: linkwork::elements::Sleeve,
 }
 
-/// Mechanism in single precision.
+/// Mechanism whose scalar type is `f32`.
 #[mechanism(scalar = f32)]
 struct Single {
     #[body(mass = 0.1)]
@@ -52,7 +52,7 @@ pub struct Generic<Scalar: Copy>
 where
     Scalar: core::fmt::Debug,
 {
-    /// Gravity, m/s².
+    /// Gravitational acceleration, m/s², as a parameter.
     pub g: Scalar,
     #[body(mass = 2, com = 1e-3 * y, inertia = sphere(2, 1))]
     cart: Body,

@@ -1,5 +1,5 @@
-//! The prelude does not conflict with a program's own items of the same names, with names that are imported
-//! one by one, or with a glob import of nalgebra.
+//! Checks that the prelude does not conflict with a program's own items of the same names, with names
+//! imported one by one, or with a glob import of nalgebra.
 
 mod both {
     use linkwork::nalgebra::*;
@@ -70,7 +70,8 @@ mod own {
         }
     }
 
-    /// Requires the traits of this module, not those of the prelude.
+    /// Requires the argument to implement the local traits of this module, which have the names of traits in
+    /// the prelude.
     fn takes(_: impl Mechanism + Real) {}
 
     pub fn run() -> usize {
@@ -83,7 +84,7 @@ mod own {
     }
 }
 
-/// Crate that re-exports the library.
+/// Stand-in for a crate that re-exports the library under another name.
 pub mod other {
     pub use linkwork as mechanisms;
 }

@@ -5,7 +5,7 @@ use linkwork::mechanism;
 use linkwork::nalgebra::{SMatrix, SVector};
 use support::random::Random;
 
-/// Inerter between the ground and a body.
+/// Free body that an inerter connects to the ground.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Moored {
     inertance: f64,
@@ -59,11 +59,11 @@ struct Pair {
 /// Returns the derivatives of `f` by differences, a column for each direction.
 fn differences<const N: usize>(f: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
     const STEP: f64 = 1e-5;
-    let column = |k: usize| {
+    let difference_column = |k: usize| {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
         (f(&step) - f(&-step)) / (2.0 * STEP)
     };
-    SMatrix::from_columns(&std::array::from_fn::<_, N, _>(column))
+    SMatrix::from_columns(&std::array::from_fn::<_, N, _>(difference_column))
 }
 
 macro_rules! free_body {
@@ -89,13 +89,13 @@ macro_rules! free_body {
                 assert_near("∂v̇/∂q, prepared", &found.0, &by_q);
                 assert_near("∂v̇/∂v, prepared", &found.1, &by_v);
                 let u = random.vector::<{ $type::NU }>(2.0);
-                let accelerations = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
-                let by_q = differences(|e| accelerations(&m.integrate(&q, e), &v));
-                let by_v = differences(|e| accelerations(&q, &(v + e)));
+                let acceleration_at = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
+                let by_q = differences(|e| acceleration_at(&m.integrate(&q, e), &v));
+                let by_v = differences(|e| acceleration_at(&q, &(v + e)));
                 let (a, _) = m.linearize(&q, &v, &u);
-                let block = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
-                assert_near("linearised by q", &block(0), &by_q);
-                assert_near("linearised by v", &block(NV), &by_v);
+                let block_of_state_matrix = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
+                assert_near("linearised by q", &block_of_state_matrix(0), &by_q);
+                assert_near("linearised by v", &block_of_state_matrix(NV), &by_v);
             }
         }
     };

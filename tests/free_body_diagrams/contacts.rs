@@ -61,13 +61,13 @@ fn given_forces_of_contacts_change_momenta() {
         let (v, u): (SVector<f64, 7>, SVector<f64, 1>) = (random.vector(1.0), random.vector(3.0));
         let tau = m.generalized_forces(&q, &u);
         let held = contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap();
-        let seen = |h: f64| (m.integrate(&q, &(v * h + held.a * (0.5 * h * h))), v + held.a * h);
+        let state_after = |h: f64| (m.integrate(&q, &(v * h + held.a * (0.5 * h * h))), v + held.a * h);
         check(&m.on_trunk_under(&q, &v, &u, &held.forces), |h| {
-            let (q, v) = seen(h);
+            let (q, v) = state_after(h);
             [m.p_trunk(&q, &v), m.h_trunk(&q, &v), m.c_trunk(&q)]
         });
         check(&m.on_leg_under(&q, &v, &u, &held.forces), |h| {
-            let (q, v) = seen(h);
+            let (q, v) = state_after(h);
             [m.p_leg(&q, &v), m.h_leg(&q, &v), m.c_leg(&q)]
         });
     }

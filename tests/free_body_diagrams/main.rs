@@ -21,16 +21,22 @@ type Seen = [SVector<f64, 3>; 3];
 fn check<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) {
     let h = 1e-4;
     let (before, now, after) = (seen(-h), seen(0.0), seen(h));
-    let rate = |k: usize| (after[k] - before[k]) / (2.0 * h);
+    let momentum_rate = |k: usize| (after[k] - before[k]) / (2.0 * h);
     let size = 1.0 + diagram.actions.iter().map(|action| action.force.norm()).sum::<f64>();
-    let force = (diagram.force() - rate(0)) / size;
-    assert!(force.norm() < DIFFERENCE, "{}: {:?} is not {:?}", diagram.body, diagram.force(), rate(0));
+    let force = (diagram.force() - momentum_rate(0)) / size;
+    assert!(
+        force.norm() < DIFFERENCE,
+        "{}: {:?} is not {:?}",
+        diagram.body,
+        diagram.force(),
+        momentum_rate(0)
+    );
     let torque = diagram.torque_about(&-now[2]);
     assert!(
-        (torque - rate(1)).norm() / size < DIFFERENCE,
+        (torque - momentum_rate(1)).norm() / size < DIFFERENCE,
         "{}: {torque:?} is not {:?}",
         diagram.body,
-        rate(1)
+        momentum_rate(1)
     );
 }
 
@@ -38,11 +44,11 @@ fn check<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) 
 macro_rules! check {
     ($m:expr, $state:expr, $u:expr, $body:ident, $momentum:ident, $angular:ident, $center:ident) => {{
         let (q, v, a) = $state;
-        let seen = |h: f64| {
+        let momenta_after = |h: f64| {
             let (q, v) = ($m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
             [$m.$momentum(&q, &v), $m.$angular(&q, &v), $m.$center(&q)]
         };
-        check(&$m.$body(&q, &v, $u), seen)
+        check(&$m.$body(&q, &v, $u), momenta_after)
     }};
 }
 
@@ -172,29 +178,35 @@ fn each_action_is_what_its_element_says() {
         "wrist",
     ];
     assert_eq!(names, expected);
-    let action = |name: &str| on_second.get(name).copied().unwrap_or_else(|| panic!("no {name}"));
-    assert!((action("gravity").force - Vector3::new(0.0, 0.0, -2.5 * 9.81)).norm() < 1e-12);
-    assert_eq!((action("gravity").point, action("jet").origin), (Vector3::zeros(), Origin::Input));
+    let action_by_name = |name: &str| on_second.get(name).copied().unwrap_or_else(|| panic!("no {name}"));
+    assert!((action_by_name("gravity").force - Vector3::new(0.0, 0.0, -2.5 * 9.81)).norm() < 1e-12);
+    assert_eq!(
+        (action_by_name("gravity").point, action_by_name("jet").origin),
+        (Vector3::zeros(), Origin::Input)
+    );
     // Forces at points have no torque about them, and torques have no force.
     for name in ["stay", "cylinder", "attraction", "inerter", "jet"] {
-        assert_eq!(action(name).torque, Vector3::zeros(), "{name}");
+        assert_eq!(action_by_name(name).torque, Vector3::zeros(), "{name}");
     }
-    assert!(action("wheel").force.norm() < 1e-14 && (action("wheel").torque.norm() - 4.0).abs() < 1e-12);
+    assert!(
+        action_by_name("wheel").force.norm() < 1e-14
+            && (action_by_name("wheel").torque.norm() - 4.0).abs() < 1e-12
+    );
     // The origin of the second body is at (0.4, 0.3, 0) + R (0, −0.1, 0), with R of half a radian about z.
     let (s, c) = 0.5_f64.sin_cos();
-    let rotated = |x: f64, y: f64, z: f64| Vector3::new(c * x - s * y, s * x + c * y, z);
-    let end = Vector3::new(0.4, 0.3, 0.0) + rotated(0.3, -0.1, 0.0);
+    let rotated_vector = |x: f64, y: f64, z: f64| Vector3::new(c * x - s * y, s * x + c * y, z);
+    let end = Vector3::new(0.4, 0.3, 0.0) + rotated_vector(0.3, -0.1, 0.0);
     let apart = Vector3::new(1.0, 0.0, 0.0) - end;
     let pull = apart * (60.0 * (apart.norm() - 0.4) / apart.norm());
-    assert!((action("stay").force - pull).norm() < 1e-12);
-    assert!((action("stay").point + m.c_second(&q) - end).norm() < 1e-14);
+    assert!((action_by_name("stay").force - pull).norm() < 1e-12);
+    assert!((action_by_name("stay").point + m.c_second(&q) - end).norm() < 1e-14);
     // Forces between two bodies are opposite and have a common line of action.
     let on_free = m.on_free(&q, &v, &u);
     for name in ["cylinder", "attraction", "inerter", "field"] {
         let other = on_free.get(name).unwrap_or_else(|| panic!("no {name}"));
-        assert!((action(name).force + other.force).norm() < 1e-10, "{name}");
+        assert!((action_by_name(name).force + other.force).norm() < 1e-10, "{name}");
         let torque_about = |a: &linkwork::free_body::Action<f64>, c: SVector<f64, 3>| a.torque_about(&-c);
-        let sum = torque_about(&action(name), m.c_second(&q)) + torque_about(other, m.c_free(&q));
+        let sum = torque_about(&action_by_name(name), m.c_second(&q)) + torque_about(other, m.c_free(&q));
         assert!(sum.norm() < 1e-10, "{name}");
     }
     assert!(on_free.get("flight").is_none());
@@ -277,8 +289,8 @@ fn constraints_and_loops_act_on_their_bodies() {
         assert!(plane.force.dot(&below) < 0.0);
         // The closing joint acts on both of its bodies.
         let (rod, piston) = (m.on_rod(&q, &v, &u), m.on_piston(&q, &v, &u));
-        let end = |name| (rod.get(name).expect("it closes"), piston.get(name).expect("it closes"));
-        let (on_rod, on_piston) = end("small_end");
+        let actions_at_end = |name| (rod.get(name).expect("it closes"), piston.get(name).expect("it closes"));
+        let (on_rod, on_piston) = actions_at_end("small_end");
         assert!((on_rod.force + on_piston.force).norm() < 1e-9 && on_rod.origin == Origin::Joint);
         assert!(on_rod.torque.norm() < 1e-9 && on_piston.torque.norm() < 1e-9);
     }

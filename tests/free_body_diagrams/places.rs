@@ -84,12 +84,12 @@ fn places_hold_what_moves_on_them() {
             [m.p_plate(t + h, &q, &v), m.h_plate(t + h, &q, &v), m.c_plate(t + h, &q)]
         });
         let (on_arm, on_bead) = (m.on_arm(t, &q, &v, &u), m.on_bead(t, &q, &v, &u));
-        let names = |actions: &[linkwork::free_body::Action<f64>]| -> Vec<&str> {
+        let names_of_actions = |actions: &[linkwork::free_body::Action<f64>]| -> Vec<&str> {
             actions.iter().map(|action| action.name).collect()
         };
-        assert_eq!(names(&on_arm.actions), ["gravity", "base", "bead.place"]);
-        assert_eq!(names(&on_bead.actions), ["gravity", "cord", "hook", "bead.place"]);
-        assert_eq!(names(&m.on_plate(t, &q, &v, &u).actions), ["gravity", "push", "plate.place"]);
+        assert_eq!(names_of_actions(&on_arm.actions), ["gravity", "base", "bead.place"]);
+        assert_eq!(names_of_actions(&on_bead.actions), ["gravity", "cord", "hook", "bead.place"]);
+        assert_eq!(names_of_actions(&m.on_plate(t, &q, &v, &u).actions), ["gravity", "push", "plate.place"]);
         // The bead's reaction on the arm is opposite to the arm's force on the bead; the placement of a point
         // has no torque.
         let (here, there) =

@@ -71,15 +71,15 @@ fn joints_may_be_declared_in_any_order() {
     check_undamped(&FromTheHand {});
 
     let (usual, turned) = (FromTheGround {}, FromTheHand {});
-    let turn_v = |v: &SVector<f64, 5>| SVector::from([v[2], v[3], v[4], v[1], v[0]]);
+    let reordered_velocity = |v: &SVector<f64, 5>| SVector::from([v[2], v[3], v[4], v[1], v[0]]);
     let mut random = Random::new(15);
     let q = random.configuration(&usual);
     let (v, a) = (random.vector(1.0), random.vector(1.0));
     let turned_q = SVector::from([q[2], q[3], q[4], q[5], q[1], q[0]]);
-    let forces = turn_v(&usual.inverse_dynamics(&q, &v, &a));
-    let turned_forces = turned.inverse_dynamics(&turned_q, &turn_v(&v), &turn_v(&a));
+    let forces = reordered_velocity(&usual.inverse_dynamics(&q, &v, &a));
+    let turned_forces = turned.inverse_dynamics(&turned_q, &reordered_velocity(&v), &reordered_velocity(&a));
     assert_close("forces", turned_forces.as_slice(), forces.as_slice(), IDENTITY);
-    let motor = turn_v(&usual.generalized_forces(&q, &SVector::from([2.0])));
+    let motor = reordered_velocity(&usual.generalized_forces(&q, &SVector::from([2.0])));
     let turned_motor = turned.generalized_forces(&turned_q, &SVector::from([2.0]));
     assert_close("motor", turned_motor.as_slice(), motor.as_slice(), IDENTITY);
 }
@@ -156,8 +156,8 @@ fn screw_is_a_collar_with_a_pitch() {
     check_screw!(OnScrewWithLead {}, 0.3 / std::f64::consts::TAU);
 }
 
-/// Checks a ball or free joint against an equivalent chain, whose frames give the state and acceleration of
-/// the joint.
+/// Checks a ball or free joint against an equivalent chain of simple joints, whose frames give state and
+/// acceleration of the joint.
 macro_rules! check_against_chain {
     ($joint:ident, $chain:ident, $first:literal) => {
         let (joint, chain) = ($joint {}, $chain {});
@@ -170,12 +170,15 @@ macro_rules! check_against_chain {
             let (mut v_only, mut a_only) = (v, a);
             (v_only[0], a_only[0]) = (0.0, 0.0);
             let back = chain.frame_placement(last, &q).rotation.inverse();
-            let part = |x: &SVector<f64, 6>, k: usize| back * Vector3::new(x[k], x[k + 1], x[k + 2]);
+            let rotated_back_part =
+                |x: &SVector<f64, 6>, k: usize| back * Vector3::new(x[k], x[k + 1], x[k + 2]);
             let velocity = chain.frame_velocity(last, &q, &v_only);
-            let (v_linear, v_angular) = (part(&velocity, 0), part(&velocity, 3));
+            let (v_linear, v_angular) = (rotated_back_part(&velocity, 0), rotated_back_part(&velocity, 3));
             let acceleration = chain.frame_acceleration(last, &q, &v_only, &a_only);
-            let (a_linear, a_angular) =
-                (part(&acceleration, 0) - v_angular.cross(&v_linear), part(&acceleration, 3));
+            let (a_linear, a_angular) = (
+                rotated_back_part(&acceleration, 0) - v_angular.cross(&v_linear),
+                rotated_back_part(&acceleration, 3),
+            );
 
             let quaternion = linkwork::nalgebra::UnitQuaternion::from_rotation_matrix(&relative.rotation);
             let position = [q[0]].into_iter().chain(relative.translation.vector.iter().copied());
@@ -183,12 +186,12 @@ macro_rules! check_against_chain {
             let mut positions: Vec<f64> = position.take(first).collect();
             positions.extend(quaternion.coords.iter());
             let jq = SVector::from_column_slice(&positions);
-            let stack = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
+            let joint_vector = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
                 let all: Vec<f64> =
                     [pivot].iter().chain(&linear).take(first).chain(&angular).copied().collect();
                 SVector::from_column_slice(&all)
             };
-            let (jv, ja) = (stack(v[0], v_linear, v_angular), stack(a[0], a_linear, a_angular));
+            let (jv, ja) = (joint_vector(v[0], v_linear, v_angular), joint_vector(a[0], a_linear, a_angular));
 
             let energies = [joint.kinetic_energy(&jq, &jv), joint.potential_energy(&jq)];
             let expected = [chain.kinetic_energy(&q, &v), chain.potential_energy(&q)];
@@ -215,8 +218,8 @@ fn free_is_a_stage_and_three_pins() {
     check_against_chain!(OnFree, ChainedFree, 4);
 }
 
-/// Bodies that are welded together are one rigid body. Here the mass is in three particles at the corners of
-/// a triangle.
+/// Checks that bodies welded together equal one rigid body, with its mass in three particles at the corners
+/// of a triangle.
 #[test]
 fn welded_bodies_are_one() {
     #[mechanism(gravity = -9.81 * y)]

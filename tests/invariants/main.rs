@@ -1,4 +1,4 @@
-//! Properties of every mechanism, independent of its equations.
+//! Checks of properties that hold for every mechanism, independent of its equations.
 
 mod joints;
 
@@ -22,9 +22,9 @@ fn slope(f: impl Fn(f64) -> f64) -> f64 {
     rate(|s| SMatrix::<f64, 1, 1>::new(f(s)))[0]
 }
 
-/// Tolerance against finite differences.
+/// Tolerance of rates against finite differences.
 const RATE: f64 = 1e-8;
-/// Tolerance of identities between generated functions.
+/// Tolerance of identities between generated functions, which hold up to rounding.
 const IDENTITY: f64 = 1e-11;
 
 /// Checks consequences of the trait alone. `dissipation` is the power that dashpots dissipate at velocity
@@ -169,7 +169,7 @@ undamped! {
     spacecraft: Spacecraft {},
 }
 
-/// Dashpots dissipate `c v²`.
+/// Checks that dashpots dissipate the power `c v²`.
 #[test]
 fn dashpots() {
     let m = workshop();
@@ -181,8 +181,8 @@ fn dashpots() {
 // ---- Frames and the mechanism as a
 // whole -----------------------------------------------------------------------------------------------------
 
-/// Checks placement, velocity, acceleration and Jacobian of a frame, and centre of mass and momentum: each is
-/// the rate of the one before it.
+/// Checks the kinematics of a frame, and of centre of mass and momentum, by finite differences: velocity is
+/// the rate of placement, acceleration that of velocity.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -251,7 +251,7 @@ fn motors_do_not_change_the_momentum() {
 // ----
 // Inputs ----------------------------------------------------------------------------------------------------
 
-/// The power of an input is its force times the velocity of the point on which it acts.
+/// Checks that the power of each input is its force times the velocity of the point on which it acts.
 #[test]
 fn inputs_work_where_they_act() {
     let m = workshop();
@@ -297,14 +297,14 @@ fn spacecraft_keeps_momentum_and_energy() {
     let mut random = Random::new(17);
     let q = random.configuration(&m);
     let v = random.vector(1.0);
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let (momentum, start) = (m.momentum(&q, &v), energy(&q, &v));
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let (momentum, start) = (m.momentum(&q, &v), total_energy(&q, &v));
     let method = DormandPrince::new().tolerance(1e-13, 1e-13);
     for sample in simulate(&m).from(q, v).duration(5.0).sample_every(0.5).method(method) {
         let sample = sample.expect("the integrator goes on");
         let now = m.momentum(&sample.q, &sample.v);
         assert_close("momentum", now.as_slice(), momentum.as_slice(), 1e-10);
-        assert_close("energy", &[energy(&sample.q, &sample.v)], &[start], 1e-10);
+        assert_close("energy", &[total_energy(&sample.q, &sample.v)], &[start], 1e-10);
         let expected = m.center_of_mass(&q) + momentum.fixed_rows::<3>(0) / m.total_mass() * sample.t;
         assert_close("centre of mass", m.center_of_mass(&sample.q).as_slice(), expected.as_slice(), 1e-10);
     }
@@ -315,16 +315,16 @@ fn spacecraft_keeps_momentum_and_energy() {
 #[test]
 fn workshop_balances_its_energy() {
     let m = workshop();
-    let input = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
-    let power = |t: f64, q: &_, v: &SVector<f64, 3>| {
-        v.dot(&m.generalized_forces(q, &input(t)))
+    let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
+    let net_power = |t: f64, q: &_, v: &SVector<f64, 3>| {
+        v.dot(&m.generalized_forces(q, &input_at_time(t)))
             - (m.shoulder_damping * v[0] * v[0]
                 + m.slide_damping * v[1] * v[1]
                 + m.turn_damping * v[2] * v[2])
     };
     let run = simulate(&m)
         .from([0.2, 0.1, -0.3], [1.0, 0.0, 2.0])
-        .inputs(|t, _, _| input(t))
+        .inputs(|t, _, _| input_at_time(t))
         .duration(2.0)
         .sample_every(1e-3)
         .method(Rk4::step(1e-3));
@@ -333,9 +333,10 @@ fn workshop_balances_its_energy() {
     let energy =
         |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
     // Integration by Simpson's rule.
-    let weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
+    let simpson_weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
     let work: f64 =
-        samples.iter().enumerate().map(|(k, s)| weight(k) * power(s.t, &s.q, &s.v)).sum::<f64>() / 3e3;
+        samples.iter().enumerate().map(|(k, s)| simpson_weight(k) * net_power(s.t, &s.q, &s.v)).sum::<f64>()
+            / 3e3;
     assert_close("energy", &[energy(2000) - energy(0)], &[work], 1e-9);
 }
 
@@ -380,23 +381,39 @@ fn scalar_types_agree() {
         let q = random.configuration(&double);
         let [v, a] = [random.vector::<4>(2.0), random.vector::<4>(2.0)];
         let (q32, v32, a32) = (q.cast::<f32>(), v.cast::<f32>(), a.cast::<f32>());
-        let same = |what: &str, a: &[f32], b: &[f64]| {
+        let assert_close_in_single = |what: &str, a: &[f32], b: &[f64]| {
             assert_close(what, &a.iter().copied().map(f64::from).collect::<Vec<_>>(), b, 2e-5);
         };
-        same("mass matrix", single.mass_matrix(&q32).as_slice(), double.mass_matrix(&q).as_slice());
+        assert_close_in_single(
+            "mass matrix",
+            single.mass_matrix(&q32).as_slice(),
+            double.mass_matrix(&q).as_slice(),
+        );
         let forces = single.inverse_dynamics(&q32, &v32, &a32);
-        same("inverse dynamics", forces.as_slice(), double.inverse_dynamics(&q, &v, &a).as_slice());
+        assert_close_in_single(
+            "inverse dynamics",
+            forces.as_slice(),
+            double.inverse_dynamics(&q, &v, &a).as_slice(),
+        );
         let acceleration = single.forward_dynamics(&q32, &v32, &a32);
-        same("forward dynamics", acceleration.as_slice(), double.forward_dynamics(&q, &v, &a).as_slice());
+        assert_close_in_single(
+            "forward dynamics",
+            acceleration.as_slice(),
+            double.forward_dynamics(&q, &v, &a).as_slice(),
+        );
         let push = single.generalized_forces(&q32, &SVector::from([2.0]));
-        same("inputs", push.as_slice(), double.generalized_forces(&q, &SVector::from([2.0])).as_slice());
+        assert_close_in_single(
+            "inputs",
+            push.as_slice(),
+            double.generalized_forces(&q, &SVector::from([2.0])).as_slice(),
+        );
         let moved = single.integrate(&q32, &v32);
-        same("integrate", moved.as_slice(), double.integrate(&q, &v).as_slice());
+        assert_close_in_single("integrate", moved.as_slice(), double.integrate(&q, &v).as_slice());
     }
 }
 
-/// Light arm with a heavy load, on parallel pins: two of the three pivots of its mass matrix are small
-/// relative to the first one.
+/// Light planar arm with a heavy load. Two of the three pivots of its mass matrix are small relative to the
+/// first one.
 #[mechanism]
 struct Loaded {
     load: f64,

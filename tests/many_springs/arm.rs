@@ -53,7 +53,7 @@ fn compiled([arguments, item]: [TokenStream; 2]) -> Output {
     output
 }
 
-/// Returns the result of a function at a state and an acceleration, including the functions that it calls.
+/// Evaluates a generated function and the functions that it calls, at a state and an acceleration.
 fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     let f = output.functions.iter().find(|f| f.name == name)?;
     let called = ["__passive_forces", "__passive_derivatives"].map(|other| match other == name {
@@ -72,8 +72,8 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     Some(f.program.run(&symbol_value))
 }
 
-/// Forces of springs add up. With few springs every function contains their forces; with many springs one
-/// shared function does.
+/// Checks that the forces of springs add up. With few springs every function contains their forces; with many
+/// springs all functions call a shared one.
 #[test]
 fn many_springs_are_the_sum_of_few() {
     const EACH: usize = 20;
@@ -85,42 +85,43 @@ fn many_springs_are_the_sum_of_few() {
     for _ in 0..5 {
         let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.vector::<3>(1.5).into());
         for name in ["bias_forces", "inverse_dynamics", "inverse_dynamics_derivatives", "momentum_rate"] {
-            let outputs = |output: &Output| run(output, name, &state).expect("the function is there");
-            let without = outputs(&none);
+            let values_of_output =
+                |output: &Output| run(output, name, &state).expect("the function is there");
+            let without = values_of_output(&none);
             let mut sum = without.clone();
             for part in &parts {
-                for (k, x) in outputs(part).into_iter().enumerate() {
+                for (k, x) in values_of_output(part).into_iter().enumerate() {
                     sum[k] += x - without[k];
                 }
             }
-            assert_similar(name, &outputs(&whole), &sum, 1e-11);
+            assert_similar(name, &values_of_output(&whole), &sum, 1e-11);
         }
     }
 }
 
-/// The numbers of operations and the length of the code are linear in the number of springs: they occur once
-/// in the forces, once in their derivatives and once in the energy.
+/// Checks that the numbers of operations and the length of generated code are linear in the number of
+/// springs, which occur once in the forces, once in their derivatives and once in the energy.
 #[test]
 fn what_is_written_grows_as_springs_do() {
-    let sizes = |springs: usize| {
+    let size_of_generated_code = |springs: usize| {
         let output = compiled(arm(0..springs));
-        let operations = |name: &str| {
+        let operation_count = |name: &str| {
             let f = output.functions.iter().find(|f| f.name == name).expect("the function is there");
             f.program.counts.total()
         };
         for name in
             ["bias_forces", "inverse_dynamics", "forward_dynamics", "momentum_rate", "coriolis_matrix"]
         {
-            assert!(operations(name) < 200, "{name}: {}", operations(name));
+            assert!(operation_count(name) < 200, "{name}: {}", operation_count(name));
         }
         for name in ["inverse_dynamics_derivatives", "forward_dynamics_derivatives", "linearize"] {
-            assert!(operations(name) < 600, "{name}: {}", operations(name));
+            assert!(operation_count(name) < 600, "{name}: {}", operation_count(name));
         }
         let all: usize = output.functions.iter().map(|f| f.program.counts.total()).sum();
         let [arguments, item] = arm(0..springs);
         [all, expand(arguments, item, Path::new("")).text.len()]
     };
-    let (some, more) = (sizes(150), sizes(300));
+    let (some, more) = (size_of_generated_code(150), size_of_generated_code(300));
     for (some, more) in some.into_iter().zip(more) {
         assert!(10 * more <= 21 * some, "{more} of twice as many springs instead of {some}");
     }

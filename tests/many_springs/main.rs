@@ -19,7 +19,7 @@ fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
-/// Returns `∂U/∂q`, component by component.
+/// Returns the gradient `∂U/∂q` of the potential energy by finite differences.
 fn gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

@@ -1,4 +1,4 @@
-//! Energies, motion and derivatives of a trampoline.
+//! Checks of energies, motion and derivatives of a trampoline, a deck on many springs.
 
 use super::{gradient, slope, unit};
 use linkwork::nalgebra::SVector;
@@ -350,13 +350,21 @@ fn derivatives_know_what_given_forces_depend_on() {
         let (by_q, by_v) = m.inverse_dynamics_derivatives(&q, &v, &a);
         let (of_a_by_q, of_a_by_v, _) = m.forward_dynamics_derivatives(&q, &v, &tau);
         for i in 0..7 {
-            let displaced = |s: f64| m.integrate(&q, &(unit::<7>(i) * s));
-            let faster = |s: f64| v + unit::<7>(i) * s;
+            let displaced_configuration = |s: f64| m.integrate(&q, &(unit::<7>(i) * s));
+            let perturbed_velocity = |s: f64| v + unit::<7>(i) * s;
             let columns = [
-                ("∂τ/∂q", by_q.column(i), slope(|s| m.inverse_dynamics(&displaced(s), &v, &a))),
-                ("∂τ/∂v", by_v.column(i), slope(|s| m.inverse_dynamics(&q, &faster(s), &a))),
-                ("∂v̇/∂q", of_a_by_q.column(i), slope(|s| m.forward_dynamics(&displaced(s), &v, &tau))),
-                ("∂v̇/∂v", of_a_by_v.column(i), slope(|s| m.forward_dynamics(&q, &faster(s), &tau))),
+                ("∂τ/∂q", by_q.column(i), slope(|s| m.inverse_dynamics(&displaced_configuration(s), &v, &a))),
+                ("∂τ/∂v", by_v.column(i), slope(|s| m.inverse_dynamics(&q, &perturbed_velocity(s), &a))),
+                (
+                    "∂v̇/∂q",
+                    of_a_by_q.column(i),
+                    slope(|s| m.forward_dynamics(&displaced_configuration(s), &v, &tau)),
+                ),
+                (
+                    "∂v̇/∂v",
+                    of_a_by_v.column(i),
+                    slope(|s| m.forward_dynamics(&q, &perturbed_velocity(s), &tau)),
+                ),
             ];
             for (what, column, expected) in columns {
                 assert_similar(what, column.as_slice(), expected.as_slice(), 1e-8);

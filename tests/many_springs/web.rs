@@ -474,8 +474,9 @@ fn several_states_call_the_function_in_lanes() {
     let mut random = Random::new(34);
     let states: [[SVector<f64, 2>; 3]; 4] =
         std::array::from_fn(|_| std::array::from_fn(|_| random.vector::<2>(2.0)));
-    let lanes = |part: usize| SVector::<_, 2>::from_fn(|i, _| Lanes(states.map(|state| state[part][i])));
-    let [q, v, tau] = [0, 1, 2].map(lanes);
+    let lanes_of_states =
+        |part: usize| SVector::<_, 2>::from_fn(|i, _| Lanes(states.map(|state| state[part][i])));
+    let [q, v, tau] = [0, 1, 2].map(lanes_of_states);
     let (h, a) = (m.bias_forces_lanes(&q, &v), m.forward_dynamics_lanes(&q, &v, &tau));
     let (by_q, _, _) = m.forward_dynamics_derivatives_lanes(&q, &v, &tau);
     for (k, [q, v, tau]) in states.iter().enumerate() {

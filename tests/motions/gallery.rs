@@ -1,4 +1,4 @@
-//! Mechanisms of the gallery over a million steps, and the longest of its examples.
+//! Checks of gallery mechanisms over a million steps, and of the longest gallery example.
 
 #[path = "../../models/src/four_bar.rs"]
 mod four_bar;
@@ -12,8 +12,8 @@ use linkwork::prelude::*;
 use rolling_disk::RollingDisk;
 
 /// Integrates with `Rk4` and checks the constraints after each step to the tolerance of the projection: 16
-/// times the machine precision, relative to entries of the state above one. Returns the largest change of the
-/// energy in the first tenth and in the whole run, J.
+/// times machine precision, relative to state entries above one. Returns the largest energy change in the
+/// first tenth and in the whole run, J.
 pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -46,8 +46,8 @@ where
     Ok(changes)
 }
 
-/// The loop is closed after a million steps as accurately as after the first one. The energy drifts linearly
-/// in time, and decreases with the step as the order of the method predicts.
+/// Checks that the loop of a linkage is closed after a million steps as accurately as after the first. The
+/// energy drifts linearly in time, and less with smaller steps, as the order of the method predicts.
 #[test]
 fn a_linkage() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };

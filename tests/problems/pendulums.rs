@@ -1,4 +1,4 @@
-//! Pendulums, also on a cart.
+//! Checks of pendulums, some of them on a cart.
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector2};
 use linkwork::{frame, mechanism};
@@ -16,7 +16,7 @@ fn elliptic_k(k: f64) -> f64 {
     PI / (a + b)
 }
 
-/// Point mass on a massless rod.
+/// Pendulum: a point mass on a massless rod.
 #[mechanism(gravity = -9.81 * y)]
 struct Pendulum {
     #[body]
@@ -88,7 +88,7 @@ fn double_pendulum_with_small_angles() {
     check_two_pendulums("double_small", [4.7e-14, 2.8e-14, 2.2e-14, 2.2e-13]);
 }
 
-/// Chain of five point masses.
+/// Pendulum chain of five point masses on massless rods.
 #[mechanism(gravity = -9.81 * y)]
 struct FivePendulums {
     #[body]
@@ -123,29 +123,32 @@ struct FivePendulums {
     pin5: Pin,
 }
 
-/// In absolute angles θ, `M_ij = n_ij cos(θi − θj)` and `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`,
-/// where `n_ij` is the number of masses beyond both joints.
+/// Checks a chain of pendulums in absolute angles θ: `M_ij = n_ij cos(θi − θj)` and
+/// `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`, where `n_ij` is the number of masses beyond both
+/// joints.
 #[test]
 fn chain_of_pendulums_by_its_closed_form() {
     let to_absolute = SMatrix::<f64, 5, 5>::from_fn(|i, j| if j <= i { 1.0 } else { 0.0 });
     let q = SVector::from([0.4, -1.1, 2.0, 0.3, -0.7]);
     let v = SVector::from([1.0, 2.0, -1.5, 0.5, 3.0]);
     let (angle, speed) = (to_absolute * q, to_absolute * v);
-    let beyond = |i: usize, j: usize| (5 - i.max(j)) as f64;
-    let mass_matrix = SMatrix::<f64, 5, 5>::from_fn(|i, j| beyond(i, j) * (angle[i] - angle[j]).cos());
+    let mass_count_beyond = |i: usize, j: usize| (5 - i.max(j)) as f64;
+    let mass_matrix =
+        SMatrix::<f64, 5, 5>::from_fn(|i, j| mass_count_beyond(i, j) * (angle[i] - angle[j]).cos());
     let bias = SVector::<f64, 5>::from_fn(|i, _| {
-        let turning = |j: usize| beyond(i, j) * (angle[i] - angle[j]).sin() * speed[j] * speed[j];
-        (0..5).map(turning).sum::<f64>() + beyond(i, i) * 9.81 * angle[i].sin()
+        let centrifugal_term =
+            |j: usize| mass_count_beyond(i, j) * (angle[i] - angle[j]).sin() * speed[j] * speed[j];
+        (0..5).map(centrifugal_term).sum::<f64>() + mass_count_beyond(i, i) * 9.81 * angle[i].sin()
     });
     let expected = to_absolute.transpose() * mass_matrix * to_absolute;
     assert_close("mass matrix", FivePendulums {}.mass_matrix(&q).as_slice(), expected.as_slice(), 1e-13);
     let expected = to_absolute.transpose() * bias;
     assert_close("bias forces", FivePendulums {}.bias_forces(&q, &v).as_slice(), expected.as_slice(), 1e-13);
-    let energy = -(0..5).map(|i| beyond(i, i) * 9.81 * angle[i].cos()).sum::<f64>();
+    let energy = -(0..5).map(|i| mass_count_beyond(i, i) * 9.81 * angle[i].cos()).sum::<f64>();
     assert_close("potential energy", &[FivePendulums {}.potential_energy(&q)], &[energy], 1e-13);
 }
 
-/// Uniform rod on a pin at its end.
+/// Uniform rod that swings on a pin at its end.
 #[mechanism(gravity = -g * y)]
 struct SwingingRod {
     g: f64,

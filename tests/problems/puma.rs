@@ -1,4 +1,4 @@
-//! Dynamics of the PUMA 560 arm.
+//! Checks of the dynamics of the PUMA 560 arm against reference values.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{Matrix6, SVector, Vector6};

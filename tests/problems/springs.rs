@@ -1,4 +1,4 @@
-//! Springs, dashpots, screws and impulses.
+//! Checks of springs, dashpots, screw joints and impulses.
 
 use linkwork::nalgebra::{Matrix2, SVector, Vector2, Vector3};
 use linkwork::{frame, mechanism};
@@ -69,8 +69,8 @@ fn dashpot_alone() {
     assert_close("distances", q.as_slice(), &distances, 1e-13);
 }
 
-/// Wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1. The second mass slides on the first one, so that the second
-/// spring acts on its joint.
+/// Two masses with springs: wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1. The second mass slides on the first one,
+/// so that the second spring acts on its joint.
 #[mechanism]
 struct TwoMasses {
     #[body(mass = 2)]
@@ -90,9 +90,9 @@ struct TwoMasses {
 #[test]
 fn natural_frequencies_of_two_masses() {
     let at_rest = Vector2::new(0.3, 0.2);
-    let force = |q: Vector2<f64>| TwoMasses {}.bias_forces(&(at_rest + q), &Vector2::zeros());
-    assert_close("at rest", force(Vector2::zeros()).as_slice(), &[0.0, 0.0], 1e-14);
-    let stiffness = Matrix2::from_columns(&[force(Vector2::x()), force(Vector2::y())]);
+    let spring_force = |q: Vector2<f64>| TwoMasses {}.bias_forces(&(at_rest + q), &Vector2::zeros());
+    assert_close("at rest", spring_force(Vector2::zeros()).as_slice(), &[0.0, 0.0], 1e-14);
+    let stiffness = Matrix2::from_columns(&[spring_force(Vector2::x()), spring_force(Vector2::y())]);
     let factor = TwoMasses {}.mass_matrix(&at_rest).cholesky().expect("a positive mass matrix");
     let inverse = factor.l().try_inverse().expect("a regular factor");
     let mut squares = (inverse * stiffness * inverse.transpose()).symmetric_eigenvalues();
@@ -102,7 +102,7 @@ fn natural_frequencies_of_two_masses() {
     assert_close("ω²", squares.as_slice(), &[(220.0 - root) / 4.0, (220.0 + root) / 4.0], 1e-13);
 }
 
-/// Rod on a table that an impulse hits at a distance from its centre.
+/// Rod on a table that an impulse hits at a given distance from its centre.
 #[mechanism]
 struct StruckRod {
     m: f64,
@@ -116,7 +116,8 @@ struct StruckRod {
     blow: Force,
 }
 
-/// The rod starts to rotate about a point at `l² / (12 d)` on the other side of its centre.
+/// Checks the centre of percussion: the rod starts to rotate about a point at `l² / (12 d)` on the other side
+/// of its centre.
 #[test]
 fn centre_of_percussion() {
     let rod = StruckRod { m: 1.2, l: 0.9, distance: 0.25 };

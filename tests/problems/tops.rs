@@ -1,4 +1,4 @@
-//! Tops and bodies in free flight.
+//! Checks of tops and of rigid bodies in free flight.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{SVector, Vector3, Vector6};
@@ -6,7 +6,7 @@ use support::compare::assert_close;
 use support::simulate::advance;
 use support::table::Record;
 
-/// Heavy top of Brüls, Cardona and Arnold.
+/// Heavy top of the benchmark by Brüls, Cardona and Arnold.
 #[mechanism(gravity = -9.81 * z)]
 struct HeavyTop {
     #[body(mass = 15, com = y, inertia = diagonal(0.234375, 0.46875, 0.234375))]
@@ -15,8 +15,8 @@ struct HeavyTop {
     tip: Ball,
 }
 
-/// Checks that two unit quaternions are the same rotation. The components of the first are x y z w, those of
-/// the second w x y z.
+/// Checks that two unit quaternions are the same rotation. `actual` has the components x y z w, the expected
+/// one w x y z.
 #[track_caller]
 fn assert_same_rotation(what: &str, actual: &[f64], [w, x, y, z]: [f64; 4], tolerance: f64) {
     let expected = [x, y, z, w];
@@ -115,7 +115,8 @@ struct RigidBody {
     center: Ball,
 }
 
-/// Rotation about the intermediate axis is unstable.
+/// Checks the unstable rotation of a free rigid body about its intermediate axis (Dzhanibekov effect) against
+/// a reference trajectory.
 #[test]
 fn dzhanibekov() {
     let table = Record::load("problems/dzhanibekov.json");

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 /// if a dependency is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
-    let cargo = |network: &[&str]| {
+    let run_cargo = |network: &[&str]| {
         Command::new(env!("CARGO"))
             .args(command)
             .arg("--release")
@@ -20,8 +20,8 @@ pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
             .output()
             .expect("cargo starts")
     };
-    let offline = cargo(&["--offline"]);
+    let offline = run_cargo(&["--offline"]);
     let text = String::from_utf8_lossy(&offline.stderr);
     // A crate that no other package of the workspace needs may not have been downloaded yet.
-    if offline.status.success() || !text.contains("--offline") { offline } else { cargo(&[]) }
+    if offline.status.success() || !text.contains("--offline") { offline } else { run_cargo(&[]) }
 }

@@ -5,13 +5,13 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// Mechanism whose limbs have the same joints, with parameters of their own.
+/// Random mechanism with several limbs on a trunk. All limbs have the same joints; their values may differ.
 #[derive(Clone, Debug)]
 pub struct Creature {
     /// Index into `TRUNKS` of the body that carries the limbs.
     trunk: usize,
     limbs: usize,
-    /// Joints of each limb, by index into `KINDS`, each with its axis.
+    /// Joints of each limb, as indices into `KINDS` and of the axis.
     joints: Vec<(usize, usize)>,
     /// Whether the last two joints of a limb have the same parent.
     forked: bool,
@@ -19,25 +19,26 @@ pub struct Creature {
     mirrored: bool,
     /// Whether masses are parameters: some shared by all limbs, some of each limb.
     symbolic: bool,
-    /// Whether joints have springs and dashpots.
+    /// Whether all joints of the limbs have springs and dashpots.
     sprung: bool,
-    /// Elements between limbs.
+    /// Force elements, inerters and constraints between limbs, or between a limb and the trunk or the ground.
     interactions: Vec<Interaction>,
     numbers: Vec<f64>,
 }
 
-/// Element between two points.
+/// Element that connects points or coordinates of two limbs, or of a limb and the trunk or the ground.
 #[derive(Clone, Debug)]
 struct Interaction {
-    /// Index into `INTERACTIONS`.
+    /// Index of the declaration in `INTERACTIONS`.
     kind: usize,
-    /// Limb and joint of the first end, which also determine its body.
+    /// Limb and joint at the first end of the element; the joint also determines the body.
     first: (usize, usize),
     /// Limb and joint of the second end. A limb index out of range means the ground or the trunk.
     second: (usize, usize),
 }
 
-/// Elements between points `@a` and `@b`, or between coordinates `@p` and `@q` with one velocity each.
+/// Declarations of elements between points `@a` and `@b`, or between coordinates `@p` and `@q` with one
+/// velocity each.
 const INTERACTIONS: [&str; 13] = [
     "#[acts(between = (@a, @b), stiffness = 3, free_length = 0.2)] #: Spring,",
     "#[acts(between = (@a, @b), force = 2 * stretch + pow(stretch, 3), free_length = 0.3)] #: Spring,",
@@ -63,12 +64,9 @@ const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
 /// Returns creatures with two to five limbs of up to `joints` joints.
 pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
     let kinds = vec((0..KINDS.len(), 0..3_usize), 1..=joints);
-    let end = || (0..7_usize, 0..4_usize);
-    let interaction = (0..INTERACTIONS.len(), end(), end()).prop_map(|(kind, first, second)| Interaction {
-        kind,
-        first,
-        second,
-    });
+    let random_end = || (0..7_usize, 0..4_usize);
+    let interaction = (0..INTERACTIONS.len(), random_end(), random_end())
+        .prop_map(|(kind, first, second)| Interaction { kind, first, second });
     let flags = any::<[bool; 4]>();
     let parts = (0..TRUNKS.len(), 2..6_usize, kinds, flags, vec(interaction, 0..=3), vec(-1.0..1.0_f64, 61));
     parts.prop_map(|(trunk, limbs, joints, [forked, mirrored, symbolic, sprung], interactions, numbers)| {
@@ -77,7 +75,7 @@ pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
 }
 
 impl Creature {
-    /// Returns the attribute's arguments and the struct.
+    /// Returns the generated source: the arguments of the attribute and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
         if self.symbolic {
@@ -108,14 +106,14 @@ impl Creature {
 
     fn write_interaction(&self, k: usize, interaction: &Interaction, carrier: &str, out: &mut String) {
         let Interaction { kind, first, second } = *interaction;
-        let body = |(limb, joint): (usize, usize)| {
+        let body_name = |(limb, joint): (usize, usize)| {
             format!("limb{}_{}", limb % self.limbs, joint % self.joints.len())
         };
-        let a = body(first);
+        let a = body_name(first);
         let b = match second.0 {
             5 => "ground".to_string(),
             6 => carrier.to_string(),
-            _ => body(second),
+            _ => body_name(second),
         };
         let [(p, one), (q, other)] = [first, second].map(|end| self.joint(end));
         let plain = one != "Ball" && other != "Ball" && p != q;
@@ -123,9 +121,9 @@ impl Creature {
         if is_refused {
             return;
         }
-        let n = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
-        let a = format!("{a}.at([{:?}, {:?}, 0.3])", n(0), n(1));
-        let b = format!("{b}.at([{:?}, 0.7, {:?}])", n(2), n(3));
+        let indexed_number = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
+        let a = format!("{a}.at([{:?}, {:?}, 0.3])", indexed_number(0), indexed_number(1));
+        let b = format!("{b}.at([{:?}, 0.7, {:?}])", indexed_number(2), indexed_number(3));
         let text = INTERACTIONS[kind].replace("@a", &a).replace("@b", &b).replace("@p", &p).replace("@q", &q);
         let text = if one == "Sleeve" { text.replace("Torque", "Force") } else { text };
         let _ = writeln!(out, "{}", text.replacen("#:", &format!("between{k}:"), 1));
@@ -151,7 +149,7 @@ impl Creature {
         "trunk"
     }
 
-    /// Returns a random number for joint `k`, shared by all limbs if they are mirrored.
+    /// Returns a random number for joint `k` of a limb. Limbs that are mirror images share the number.
     fn number(&self, limb: usize, k: usize, which: usize) -> f64 {
         let own = if self.mirrored { 0 } else { 17 * limb };
         self.numbers[(own + 7 * k + which) % self.numbers.len()]
@@ -159,12 +157,12 @@ impl Creature {
 
     fn write_joint(&self, limb: usize, k: usize, parent: &str, out: &mut String) {
         let (kind, axis) = self.joints[k];
-        let n = |which: usize| self.number(limb, k, which);
+        let indexed_number = |which: usize| self.number(limb, k, which);
         // Signs of mirrored limbs: left and right, front and back.
         let side = if limb.is_multiple_of(2) { 1.0 } else { -1.0 };
         let end = if limb / 2 == 0 { 1.0 } else { -1.0 };
         let mass = match (self.symbolic, k % 2) {
-            (false, _) => format!("{:?}", 1.5 + n(0)),
+            (false, _) => format!("{:?}", 1.5 + indexed_number(0)),
             (true, 0) => "common".to_string(),
             (true, _) => {
                 let _ = writeln!(out, "mass{limb}_{k}: f64,");
@@ -175,22 +173,25 @@ impl Creature {
             out,
             "#[body(mass = {mass}, com = [{:?}, {:?}, {:?}], inertia = cuboid({mass}, 0.3, 0.2, {:?}))] \
              limb{limb}_{k}: Body,",
-            0.2 * n(1) * end,
-            0.2 * n(2) * side,
-            0.3 * n(3),
-            0.5 + 0.2 * n(4)
+            0.2 * indexed_number(1) * end,
+            0.2 * indexed_number(2) * side,
+            0.3 * indexed_number(3),
+            0.5 + 0.2 * indexed_number(4)
         );
-        let turned =
-            if self.mirrored { String::new() } else { format!(".rotated(z({:?}), x({:?}))", n(5), n(6)) };
+        let turned = if self.mirrored {
+            String::new()
+        } else {
+            format!(".rotated(z({:?}), x({:?}))", indexed_number(5), indexed_number(6))
+        };
         let sign = if side < 0.0 && self.mirrored { "-" } else { "" };
         let axis = ["x", "y", "z"][axis];
         let words = match KINDS[kind] {
             "Pin" => format!(", about = {sign}{axis}"),
             "Sleeve" => format!(", along = {sign}{axis}"),
-            "Screw" => format!(", about = {axis}, pitch = {:?}", 0.2 + 0.1 * n(7)),
+            "Screw" => format!(", about = {axis}, pitch = {:?}", 0.2 + 0.1 * indexed_number(7)),
             _ => String::new(),
         };
-        let at = [0.3 * end + 0.1 * n(8), (0.2 + 0.1 * n(9)) * side, -0.3];
+        let at = [0.3 * end + 0.1 * indexed_number(8), (0.2 + 0.1 * indexed_number(9)) * side, -0.3];
         let _ = writeln!(
             out,
             "#[joint({parent}.at({at:?}){turned} -> limb{limb}_{k}{words})] joint{limb}_{k}: {},",
@@ -201,8 +202,8 @@ impl Creature {
                 out,
                 "#[acts(on = joint{limb}_{k}, stiffness = {:?})] spring{limb}_{k}: Spring,
                  #[acts(on = joint{limb}_{k}, damping = {:?})] dashpot{limb}_{k}: Dashpot,",
-                5.0 + n(10),
-                0.5 + 0.2 * n(11)
+                5.0 + indexed_number(10),
+                0.5 + 0.2 * indexed_number(11)
             );
         }
     }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
-/// Tree of pins and sleeves.
+/// Random robot: a tree of bodies on pins and sleeves.
 #[derive(Clone, Debug)]
 pub struct Robot {
     links: Vec<Link>,
@@ -23,14 +23,14 @@ struct Link {
     turns: [usize; 3],
     /// Components of the position and of the centre of mass that are not zero.
     present: [bool; 6],
-    /// Magnitude of lengths, m.
+    /// Magnitude of the lengths of the link, m.
     size: f64,
     numbers: Vec<f64>,
 }
 
 /// Returns robots with up to `joints` joints. The noise in angles, axes and lengths is 0, or 1e-16 to 1e-3.
 pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
-    let noise = || prop_oneof![1 => Just(0.0), 4 => (-16.0..-3.0_f64).prop_map(|e| 10.0_f64.powf(e))];
+    let random_noise = || prop_oneof![1 => Just(0.0), 4 => (-16.0..-3.0_f64).prop_map(|e| 10.0_f64.powf(e))];
     let link =
         (0..3_usize, 0..6_usize, [0..5_usize, 0..5_usize, 0..5_usize], any::<[bool; 6]>(), -2.0..0.0_f64)
             .prop_flat_map(|(parent, kind, turns, present, size)| {
@@ -43,12 +43,12 @@ pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
                     numbers,
                 })
             });
-    (vec(link, 2..=joints), noise(), noise(), noise())
+    (vec(link, 2..=joints), random_noise(), random_noise(), random_noise())
         .prop_map(|(links, angles, axes, lengths)| Robot { links, noise: [angles, axes, lengths] })
 }
 
 impl Robot {
-    /// Returns the attribute's arguments and the struct.
+    /// Returns the generated source: the arguments of the attribute and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
         for (k, link) in self.links.iter().enumerate() {
@@ -61,17 +61,17 @@ impl Robot {
 impl Link {
     /// Returns three lengths, some of which consist only of noise.
     fn vector(&self, first: usize, noise: f64) -> String {
-        let component = |i: usize| {
+        let noisy_component = |i: usize| {
             let there = self.present[first + i];
             let rest = if there { self.size * self.numbers[first + i] } else { 0.0 };
             rest + noise * self.numbers[6 + first + i]
         };
-        format!("[{:?}, {:?}, {:?}]", component(0), component(1), component(2))
+        format!("[{:?}, {:?}, {:?}]", noisy_component(0), noisy_component(1), noisy_component(2))
     }
 
     fn write(&self, k: usize, [angles, axes, lengths]: [f64; 3], out: &mut String) {
-        let n = |which: usize| self.numbers[which];
-        let (mass, s) = ((1.5 + n(12)) * self.size, self.size);
+        let indexed_number = |which: usize| self.numbers[which];
+        let (mass, s) = ((1.5 + indexed_number(12)) * self.size, self.size);
         let _ = writeln!(
             out,
             "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, \
@@ -79,26 +79,26 @@ impl Link {
             self.vector(3, lengths),
             0.7 * s,
             0.4 * s,
-            if self.present[5] { n(13) } else { angles * n(13) },
+            if self.present[5] { indexed_number(13) } else { angles * indexed_number(13) },
         );
-        let angle = |i: usize| match self.turns[i] {
-            4 => n(14 + i),
-            turns => turns as f64 * FRAC_PI_2 + angles * n(14 + i),
+        let angle_with_noise = |i: usize| match self.turns[i] {
+            4 => indexed_number(14 + i),
+            turns => turns as f64 * FRAC_PI_2 + angles * indexed_number(14 + i),
         };
         let parent = match k {
             0 => "ground".to_string(),
             _ => format!("b{}", k - 1 - self.parent.min(k - 1)),
         };
         let (word, kind) = if self.slides { ("along", "Sleeve") } else { ("about", "Pin") };
-        let axis = format!("unit([{:?}, {:?}, 1])", axes * n(17), axes * n(18));
+        let axis = format!("unit([{:?}, {:?}, 1])", axes * indexed_number(17), axes * indexed_number(18));
         let _ = writeln!(
             out,
             "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: \
              {kind},",
             self.vector(0, lengths),
-            angle(2),
-            angle(1),
-            angle(0),
+            angle_with_noise(2),
+            angle_with_noise(1),
+            angle_with_noise(0),
         );
     }
 }

@@ -1,5 +1,5 @@
-//! Random mechanisms with random generalized speeds. All functions equal those in joint velocities,
-//! transformed by Kane's definition `u = Y(q) v`, and derivatives are limits of differences.
+//! Checks of random mechanisms with random generalized speeds. All functions equal those in joint velocities,
+//! transformed by Kane's definition `u = Y(q) v`, and derivatives equal finite differences.
 
 use super::random_tree::{Tree, trees};
 use linkwork_compiler::derive::Output;
@@ -15,11 +15,11 @@ use std::fmt::Write;
 use std::path::Path;
 use support::random::{Random, config};
 
-/// Options whose functions are compared.
+/// Options of the attribute whose generated functions are compared.
 const WORDS: &str = "derivatives, momentum_derivatives, centroidal, hamilton, regressor, sensitivities";
-/// Tolerance relative to the largest entry.
+/// Tolerance of results, relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
-/// Tolerance against differences of order six.
+/// Tolerance of derivatives against finite differences of order six.
 const DIFFERENCES: f64 = 1e-7;
 
 type Vector = Vec<f64>;
@@ -57,9 +57,9 @@ struct Compiled<'g> {
 
 impl<'g> Compiled<'g> {
     fn compile((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
-        let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+        let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
         let mut cx = Diagnostics::new();
-        let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+        let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
         let found = source.and_then(|source| compile(&source, graph, &mut cx));
         match found {
             Some((model, output)) => {
@@ -135,9 +135,9 @@ fn displaced(x: &[f64], e: f64, d: &[f64]) -> Vector {
     x.iter().zip(d).map(|(x, d)| x + e * d).collect()
 }
 
-/// Returns declarations of generalized speeds for some of the velocities: combinations of neighbouring rates
-/// with coefficients that depend on coordinates, and angular velocities of bodies on ball joints in the axes
-/// of their parents.
+/// Returns random declarations of generalized speeds: combinations of neighbouring velocities with
+/// coefficients that depend on coordinates, and angular velocities of bodies on ball joints in the axes of
+/// their parents.
 fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     let names: Vec<&String> = plain
         .charts
@@ -175,8 +175,8 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     text
 }
 
-/// Checks a tree with random generalized speeds. Returns `false` for trees without plain coordinates or ball
-/// joints, and for trees that do not compile.
+/// Checks a random tree with random generalized speeds. Returns `false`, without a check, for trees without
+/// plain coordinates or ball joints, and for trees that do not compile.
 fn check(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.source();
     let arguments = format!("{arguments}, {WORDS}");
@@ -220,16 +220,17 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
         given: times(&to_forces, &ours.given),
         ..ours.clone()
     };
-    let rates = |e: f64| {
+    let rates_after = |e: f64| {
         let moved = displaced(&q, e, &plain.moving(&q, &theirs.v));
         with.run("rates_of_speeds", &State { q: moved, v: displaced(&ours.v, e, &ours.a), ..ours.clone() })
     };
-    assert_close("accelerations of the joints", &theirs.a, &slope(rates), DIFFERENCES);
-    let same = |name: &str| assert_close(name, &with.run(name, &ours), &plain.run(name, &theirs), TOLERANCE);
+    assert_close("accelerations of the joints", &theirs.a, &slope(rates_after), DIFFERENCES);
+    let assert_same_function =
+        |name: &str| assert_close(name, &with.run(name, &ours), &plain.run(name, &theirs), TOLERANCE);
     for name in
         ["kinetic_energy", "potential_energy", "momentum", "dissipated_power", "control_power", "hamiltonian"]
     {
-        same(name);
+        assert_same_function(name);
     }
     for name in ["inverse_dynamics", "generalized_forces", "generalized_momentum"] {
         assert_close(name, &with.run(name, &ours), &times(&to_rates, &plain.run(name, &theirs)), TOLERANCE);
@@ -272,14 +273,15 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
     assert_close("momentum rate", &with.run("momentum_rate", ours), &lacking, DIFFERENCES);
     let matrix_of = |name: &str, state: &State, rows: usize| matrix(&with.run(name, state), rows);
     let still = State { a: vec![0.0; n], ..ours.clone() };
-    let steady = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
-    let bias = slope(|e| times(&matrix_of("centroidal_momentum_matrix", &steady(e), 6), &ours.v));
+    let state_with_fixed_speeds = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
+    let bias =
+        slope(|e| times(&matrix_of("centroidal_momentum_matrix", &state_with_fixed_speeds(e), 6), &ours.v));
     assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
     // `Ṁ − 2 C` is skew-symmetric for the Coriolis matrix `C`.
     let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &state_after(e))), n);
     let coriolis = matrix_of("coriolis_matrix", ours, n);
-    let skew = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
-    let sums: Vector = (0..n * n).map(|k| skew(k / n, k % n) + skew(k % n, k / n)).collect();
+    let skew_entry = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
+    let sums: Vector = (0..n * n).map(|k| skew_entry(k / n, k % n) + skew_entry(k % n, k / n)).collect();
     assert_close("skew", &sums, &vec![0.0; n * n], DIFFERENCES * 10.0);
 }
 
@@ -287,23 +289,23 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
 /// speeds.
 fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z: &[Vector]) {
     let n = plain.model.nv();
-    let column = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
-    let by_q = |name: &str, i: usize| {
-        let way = plain.moving(&ours.q, &column(i));
+    let column_of_rate_matrix = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
+    let derivative_by_coordinate = |name: &str, i: usize| {
+        let way = plain.moving(&ours.q, &column_of_rate_matrix(i));
         slope(|e| with.run(name, &State { q: displaced(&ours.q, e, &way), ..ours.clone() }))
     };
-    let unit = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
-    let by_v = |name: &str, i: usize| {
-        slope(|e| with.run(name, &State { v: displaced(&ours.v, e, &unit(i)), ..ours.clone() }))
+    let unit_vector = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
+    let derivative_by_speed = |name: &str, i: usize| {
+        slope(|e| with.run(name, &State { v: displaced(&ours.v, e, &unit_vector(i)), ..ours.clone() }))
     };
-    let expected = |name: &str| -> Vector {
-        let q = (0..n).flat_map(|i| by_q(name, i));
-        q.chain((0..n).flat_map(|i| by_v(name, i))).collect()
+    let expected_derivatives = |name: &str| -> Vector {
+        let q = (0..n).flat_map(|i| derivative_by_coordinate(name, i));
+        q.chain((0..n).flat_map(|i| derivative_by_speed(name, i))).collect()
     };
     for (function, name) in
         [("inverse_dynamics_derivatives", "inverse_dynamics"), ("momentum_rate_derivatives", "momentum_rate")]
     {
-        assert_close(function, &with.run(function, ours), &expected(name), DIFFERENCES);
+        assert_close(function, &with.run(function, ours), &expected_derivatives(name), DIFFERENCES);
     }
     // `∂u̇/∂x = −M⁻¹ ∂τ/∂x` at fixed accelerations: the function returns the factors of this product.
     let outputs = with.run("forward_dynamics_derivatives", ours);
@@ -312,8 +314,13 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
         .chunks(n)
         .flat_map(|forces| times(&inverse, forces).into_iter().map(|a| -a))
         .collect();
-    assert_close("forward derivatives", &found, &expected("forward_dynamics"), DIFFERENCES * 100.0);
-    let changes: Vector = (0..n).flat_map(|i| by_q("rates_of_speeds", i)).collect();
+    assert_close(
+        "forward derivatives",
+        &found,
+        &expected_derivatives("forward_dynamics"),
+        DIFFERENCES * 100.0,
+    );
+    let changes: Vector = (0..n).flat_map(|i| derivative_by_coordinate("rates_of_speeds", i)).collect();
     assert_close("changes of rates", &with.run("__rate_changes", ours), &changes, DIFFERENCES);
 }
 

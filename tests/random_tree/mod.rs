@@ -4,7 +4,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// Joint with its child body.
+/// Random joint with its child body and the index of its parent body.
 #[derive(Clone, Debug)]
 struct Limb {
     kind: usize,
@@ -17,12 +17,12 @@ struct Limb {
     symbolic: bool,
 }
 
-/// Random tree of bodies.
+/// Random mechanism: a tree of bodies with elements between them.
 #[derive(Clone, Debug)]
 pub struct Tree {
     limbs: Vec<Limb>,
-    /// Elements between two bodies: index into `TIES`, first body, second body. If both bodies are the same,
-    /// one end is on the ground.
+    /// Elements between two bodies: index of the declaration in `TIES`, first body, second body. If both
+    /// bodies are the same, one end is on the ground.
     ties: Vec<(usize, usize, usize)>,
     gravity: [f64; 3],
 }
@@ -81,7 +81,7 @@ fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
 }
 
 impl Tree {
-    /// Returns the attribute's arguments and the struct.
+    /// Returns the generated source: the arguments of the attribute and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
         // The first joint must be movable, so that the mechanism has a degree of freedom.
@@ -91,9 +91,9 @@ impl Tree {
         for (k, (kind, first, second)) in self.ties.iter().enumerate() {
             let (first, second) = (first % self.limbs.len(), second % self.limbs.len());
             let other = if first == second { "ground".to_string() } else { format!("body{second}") };
-            let n = |which: usize| self.limbs[first].number(which + 3 * k);
-            let a = format!("body{first}.at([{:?}, 0.8, {:?}])", n(0), n(1));
-            let b = format!("{other}.at([{:?}, {:?}, 1.1])", n(2), n(3));
+            let indexed_number = |which: usize| self.limbs[first].number(which + 3 * k);
+            let a = format!("body{first}.at([{:?}, 0.8, {:?}])", indexed_number(0), indexed_number(1));
+            let b = format!("{other}.at([{:?}, {:?}, 1.1])", indexed_number(2), indexed_number(3));
             let tie = TIES[*kind].replace("@a", &a).replace("@b", &b);
             let tie = tie.replace("way#", &format!("way{k}")).replace("@o", &format!("body{first}"));
             let _ = writeln!(fields, "{}", tie.replace("#:", &format!("tie{k}:")));

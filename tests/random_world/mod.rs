@@ -12,13 +12,13 @@ use std::fmt::Write;
 pub struct World {
     root: usize,
     numbers: Vec<f64>,
-    /// Whether each element of `ACTIONS` is present.
+    /// Whether the mechanism contains each element of `ACTIONS`.
     chosen: Vec<bool>,
-    /// Whether the mechanism depends on time.
+    /// Whether the equations of the mechanism depend on time.
     time: bool,
 }
 
-/// Joints of the first body, with their axes.
+/// Declarations of the joint of the first body: type and axes.
 const ROOTS: [&str; 8] = [
     "Pin, about = unit([0.3, -0.2, 1])",
     "Sleeve, along = x",
@@ -30,7 +30,7 @@ const ROOTS: [&str; 8] = [
     "Planar, about = z",
 ];
 
-/// Returns random mechanisms.
+/// Returns a strategy that generates random mechanisms.
 pub fn worlds() -> impl Strategy<Value = World> {
     (0..ROOTS.len(), vec(-1.0..1.0_f64, 24), vec(any::<bool>(), ACTIONS.len()), any::<bool>())
         .prop_map(|(root, numbers, chosen, time)| World { root, numbers, chosen, time })
@@ -107,7 +107,7 @@ const ACTIONS: [&str; 21] = [
     "#[acts(on = pendant, along = turning.x + y)] e20: Force,",
 ];
 
-/// Outputs: the name, the expression, and the frame of its axes.
+/// Outputs of the mechanism: name, expression, and frame in whose axes the output is resolved.
 pub const OUTPUTS: [(&str, &str, &str); 18] = [
     ("r1", "r(pendant / hook)", "carried"),
     ("v1", "v(pendant / hook / carried)", "carried"),
@@ -130,7 +130,7 @@ pub const OUTPUTS: [(&str, &str, &str); 18] = [
 ];
 
 impl World {
-    /// Returns the attribute's arguments and the struct.
+    /// Returns the generated source: the arguments of the attribute and the struct.
     pub fn source(&self) -> (String, String) {
         let mut template = PLACES.to_string();
         for (action, _) in ACTIONS.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen) {

@@ -59,8 +59,8 @@ pub struct Marble {
     fan: Force,
 }
 
-/// Two arms with point masses on a cart. The hand stays at a constant distance from a driven peg, while one
-/// rate is a function of another.
+/// Double pendulum with point masses on a cart. Its tip stays at a constant distance from a driven peg, and
+/// the velocity of the elbow is a function of shoulder angle and cart velocity.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct Driven {
     sway: f64,
@@ -102,31 +102,32 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     let middle = [-reach[0] * s * turn, reach[0] * c * turn];
     let end = [middle[0] - reach[1] * s2 * both, middle[1] + reach[1] * c2 * both];
     let own = [[zero; 2], middle, end];
-    let dot = |a: [Hyper; 2], b: [Hyper; 2]| a[0] * b[0] + a[1] * b[1];
+    let dot_product = |a: [Hyper; 2], b: [Hyper; 2]| a[0] * b[0] + a[1] * b[1];
     let weighted_sum =
         |f: &dyn Fn(usize) -> Hyper| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
-    let mass = |i: usize, j: usize| weighted_sum(&|k| dot(columns[k][i], columns[k][j]));
-    let bias = |i: usize| weighted_sum(&|k| dot(columns[k][i], own[k]) + gravity * columns[k][i][1]);
+    let mass_entry = |i: usize, j: usize| weighted_sum(&|k| dot_product(columns[k][i], columns[k][j]));
+    let bias_entry =
+        |i: usize| weighted_sum(&|k| dot_product(columns[k][i], own[k]) + gravity * columns[k][i][1]);
     // Squared distance from the peg.
     let (wave, slope) = (sway * t).sin_cos();
     let peg = [number(1.0), number(0.2 * wave - 1.1)];
     let place = [x[0] + reach[0] * s + reach[1] * s2, -(reach[0] * c + reach[1] * c2)];
     let apart = [place[0] - peg[0], place[1] - peg[1]];
-    let velocity = |d: usize| hand[0][d] * v0 + hand[1][d] * v1 + hand[2][d] * v2;
-    let leaving = [velocity(0), velocity(1) - number(0.2 * sway * slope)];
+    let velocity_component = |d: usize| hand[0][d] * v0 + hand[1][d] * v1 + hand[2][d] * v2;
+    let leaving = [velocity_component(0), velocity_component(1) - number(0.2 * sway * slope)];
     let free = [end[0], end[1] + number(0.2 * sway * sway * wave)];
     let two = number(2.0);
-    let rows = [hand.map(|column| two * dot(apart, column)), [-s, zero, number(1.0)]];
-    let known = [two * dot(leaving, leaving) + two * dot(apart, free), -c * v1 * v0];
+    let rows = [hand.map(|column| two * dot_product(apart, column)), [-s, zero, number(1.0)]];
+    let known = [two * dot_product(leaving, leaving) + two * dot_product(apart, free), -c * v1 * v0];
     let system = std::array::from_fn::<_, 5, _>(|i| {
         std::array::from_fn::<_, 5, _>(|j| match (i < 3, j < 3) {
-            (true, true) => mass(i, j),
+            (true, true) => mass_entry(i, j),
             (true, false) => rows[j - 3][i],
             (false, true) => rows[i - 3][j],
             (false, false) => zero,
         })
     });
-    let side = std::array::from_fn(|i| if i < 3 { x[6 + i] - bias(i) } else { -known[i - 3] });
+    let side = std::array::from_fn(|i| if i < 3 { x[6 + i] - bias_entry(i) } else { -known[i - 3] });
     let [a, b, c, ..] = solve::<5>(system, side);
     [a, b, c]
 }
@@ -134,9 +135,10 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
 /// Returns the second derivatives of `λᵀ v̇` with respect to configuration, velocity and forces.
 fn hessian(sway: f64, t: f64, x: &SVector<f64, 9>, lambda: &SVector<f64, 3>) -> SMatrix<f64, 9, 9> {
     SMatrix::from_fn(|i, j| {
-        let unit = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
-        let seeded = |k: usize| Hyper { value: x[k], first: [unit(k, i), unit(k, j)], second: 0.0 };
-        let a = accelerations(sway, t, &std::array::from_fn(seeded));
+        let unit_entry = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
+        let seeded_coordinate =
+            |k: usize| Hyper { value: x[k], first: [unit_entry(k, i), unit_entry(k, j)], second: 0.0 };
+        let a = accelerations(sway, t, &std::array::from_fn(seeded_coordinate));
         a.iter().zip(lambda.iter()).map(|(a, factor)| a.second * factor).sum()
     })
 }
@@ -154,15 +156,18 @@ fn equations_by_hand_have_the_second_derivatives_of_generated_ones() {
         assert!(off < 1e-10 * (1.0 + values.iter().fold(0.0_f64, |s, a| s.max(a.abs()))), "{off:e}");
 
         let expected = hessian(2.0, t, &x, &lambda);
-        let block = |i: usize, j: usize| expected.fixed_view::<3, 3>(3 * i, 3 * j).clone_owned();
+        let block_of_hessian = |i: usize, j: usize| expected.fixed_view::<3, 3>(3 * i, 3 * j).clone_owned();
         let (qq, qv, vv, qf) = m.forward_dynamics_second_derivatives(t, &q, &v, &tau, &lambda);
         let size = expected.amax().max(1.0) * 1e-9 / TOLERANCE;
         for (what, found, (i, j)) in
             [("qq", qq, (0, 0)), ("qv", qv, (0, 1)), ("vv", vv, (1, 1)), ("qτ", qf, (0, 2))]
         {
-            assert_block(&format!("{seed}: {what}"), &found, &block(i, j), size);
+            assert_block(&format!("{seed}: {what}"), &found, &block_of_hessian(i, j), size);
         }
-        assert!(block(1, 2).amax() == 0.0 && block(2, 2).amax() == 0.0, "these are not given");
+        assert!(
+            block_of_hessian(1, 2).amax() == 0.0 && block_of_hessian(2, 2).amax() == 0.0,
+            "these are not given"
+        );
     }
 }
 

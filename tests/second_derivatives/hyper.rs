@@ -1,6 +1,6 @@
-//! Hyper-dual numbers: a value with its derivatives along two directions and the mixed second one, exact to
-//! rounding (Fike and Alonso, *The development of hyper-dual numbers for exact second-derivative
-//! calculations*, 2011).
+//! Hyper-dual numbers for exact second derivatives: a value, its derivatives along two directions, and the
+//! mixed second derivative (Fike and Alonso, *The development of hyper-dual numbers for exact
+//! second-derivative calculations*, 2011).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -13,7 +13,7 @@ pub struct Hyper {
 }
 
 impl Hyper {
-    /// Returns a constant.
+    /// Returns a constant as a hyper-dual number with zero derivatives.
     pub fn constant(value: f64) -> Hyper {
         Hyper { value, first: [0.0; 2], second: 0.0 }
     }

@@ -1,6 +1,6 @@
-//! Second derivatives of the dynamics against differences of first derivatives along the tangent space. The
-//! mechanisms have rotating axes, driven motion, and inputs in body axes; constrained ones are in
-//! `constrained`.
+//! Checks of second derivatives of the dynamics against finite differences of first derivatives along the
+//! tangent space. The mechanisms have rotating axes, driven motion, and inputs in body axes; constrained ones
+//! are in `constrained`.
 
 mod constrained;
 mod hyper;
@@ -56,28 +56,30 @@ struct Driven {
     motor: Torque,
 }
 
-/// Arm with seven axes and a gripper.
+/// Panda arm with seven axes and a gripper.
 #[mechanism(urdf = "../models/urdf/panda.urdf", second_derivatives)]
 struct Panda;
 
-/// Quadruped with a free base.
+/// Quadruped Solo12 with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
 struct Solo;
 
-/// Largest difference, relative to the largest entry.
+/// Maximum difference of derivatives, relative to the largest entry.
 const TOLERANCE: f64 = 2e-9;
 
 /// Returns the derivatives of a matrix function along every direction by differences of sixth order.
 fn slopes<const N: usize, const R: usize, const C: usize>(
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
 ) -> Vec<SMatrix<f64, R, C>> {
-    let derivative = |k: usize| {
+    let derivative_along = |k: usize| {
         let step = 1.2e-3;
-        let value = |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let part = |s: f64| value(s) - value(-s);
-        (part(1.0) * 45.0 - part(2.0) * 9.0 + part(3.0)) / (60.0 * step)
+        let value_at_displacement =
+            |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
+        let central_difference = |s: f64| value_at_displacement(s) - value_at_displacement(-s);
+        (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0))
+            / (60.0 * step)
     };
-    (0..N).map(derivative).collect()
+    (0..N).map(derivative_along).collect()
 }
 
 /// Returns the derivatives of `λᵀ A` by differences: entry `(i, j)` is the derivative along `j` of the
@@ -111,20 +113,23 @@ where
             (random.vector(1.5), random.vector(2.0), random.vector(3.0), random.vector(1.0));
         let (u, t) = (random.vector::<NU>(push), random.uniform(1.0));
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
-        let at_q = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
+        let displaced_configuration = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
         // Maps changes of `dq` to changes of `q ⊕ dq`.
         let displacement_map = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
-        let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+        let largest_magnitude = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
         let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
-        let first = |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
+        let inverse_derivatives =
+            |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
-            contracted(&lambda, |d| first(&at_q(d), &v, &a).0 * displacement_map(d)),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).0),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).1),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(a + d)).0),
+            contracted(&lambda, |d| {
+                inverse_derivatives(&displaced_configuration(d), &v, &a).0 * displacement_map(d)
+            }),
+            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).0),
+            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).1),
+            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &v, &(a + d)).0),
         ];
-        let size = scale(&expected.concat_slices());
+        let size = largest_magnitude(&expected.concat_slices());
         for (what, (found, expected)) in
             ["qq", "qv", "vv", "qa"].iter().zip([qq, qv, vv, qa].iter().zip(&expected))
         {
@@ -132,14 +137,17 @@ where
         }
 
         let (qq, qv, vv, qf) = m.forward_dynamics_second_derivatives(t, &q, &v, &tau, &lambda);
-        let first = |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
+        let forward_derivatives =
+            |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
-            contracted(&lambda, |d| first(&at_q(d), &v, &tau).0 * displacement_map(d)),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).0),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).1),
-            contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(tau + d)).0),
+            contracted(&lambda, |d| {
+                forward_derivatives(&displaced_configuration(d), &v, &tau).0 * displacement_map(d)
+            }),
+            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).0),
+            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).1),
+            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &v, &(tau + d)).0),
         ];
-        let size = scale(&expected.concat_slices());
+        let size = largest_magnitude(&expected.concat_slices());
         for (what, (found, expected)) in
             ["qq", "qv", "vv", "qτ"].iter().zip([qq, qv, vv, qf].iter().zip(&expected))
         {
@@ -148,24 +156,29 @@ where
 
         let now = at(m, t);
         let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&q, &v, &u, &lambda);
-        let first = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
-        let by_u = |d: &SVector<f64, NU>| first(&q, &v, &(u + d));
+        let linear_motion_at = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
+        let motion_at_input_step = |d: &SVector<f64, NU>| linear_motion_at(&q, &v, &(u + d));
         let states = [
-            (qq, contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q * displacement_map(d))),
-            (qv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_q)),
-            (vv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_v)),
+            (
+                qq,
+                contracted(&lambda, |d| {
+                    linear_motion_at(&displaced_configuration(d), &v, &u).by_q * displacement_map(d)
+                }),
+            ),
+            (qv, contracted(&lambda, |d: &SVector<f64, NV>| linear_motion_at(&q, &(v + d), &u).by_q)),
+            (vv, contracted(&lambda, |d: &SVector<f64, NV>| linear_motion_at(&q, &(v + d), &u).by_v)),
         ];
         let size = states.iter().fold(1.0_f64, |s, (_, b)| s.max(b.amax()));
         for (k, (found, expected)) in states.iter().enumerate() {
             assert_block(&format!("{name}, {seed}: motion, block {k}"), found, expected, size);
         }
-        assert_block("qu", &qu, &contracted(&lambda, |d| by_u(d).by_q), size);
-        assert_block("vu", &vu, &contracted(&lambda, |d| by_u(d).by_v), size);
-        assert_block("uu", &uu, &contracted(&lambda, |d| by_u(d).by_u), size);
+        assert_block("qu", &qu, &contracted(&lambda, |d| motion_at_input_step(d).by_q), size);
+        assert_block("vu", &vu, &contracted(&lambda, |d| motion_at_input_step(d).by_v), size);
+        assert_block("uu", &uu, &contracted(&lambda, |d| motion_at_input_step(d).by_u), size);
     }
 }
 
-/// Concatenates the entries of several matrices.
+/// Concatenation of the entries of several matrices into one list, for comparisons.
 trait ConcatSlices {
     fn concat_slices(&self) -> Vec<f64>;
 }
@@ -212,22 +225,33 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     let factors = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
     let (qq, qv, vv, qu, vu, uu) =
         discrete::second_order(m, method, t, &q, &v, &u, (&factors.0, &factors.1)).expect("it moves");
-    let gradient = |q: &_, v: &_, u: &_| {
+    let gradient_of_step = |q: &_, v: &_, u: &_| {
         discrete::transition(m, method, t, q, v, u).expect("it moves").adjoint(&factors.0, &factors.1)
     };
     let transposed =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
-    let by_q = transposed(slopes(|d: &SVector<f64, NV>| gradient(&(q + d), &v, &u).0));
+    let by_q = transposed(slopes(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0));
     let size = by_q.amax().max(1.0);
     assert_block(&format!("{name}: qq"), &qq, &by_q, size);
-    let by_v = |d: &SVector<f64, NV>| gradient(&q, &(v + d), &u);
-    assert_block(&format!("{name}: qv"), &qv, &transposed(slopes(|d| by_v(d).0)), size);
-    assert_block(&format!("{name}: vv"), &vv, &transposed(slopes(|d| by_v(d).1)), size);
-    let by_u = |d: &SVector<f64, NU>| gradient(&q, &v, &(u + d));
-    let mixed = |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
-    assert_block(&format!("{name}: qu"), &qu, &mixed(slopes(|d| by_u(d).0)), size);
-    assert_block(&format!("{name}: vu"), &vu, &mixed(slopes(|d| by_u(d).1)), size);
-    let inputs = slopes(|d| by_u(d).2);
+    let gradient_at_velocity_step = |d: &SVector<f64, NV>| gradient_of_step(&q, &(v + d), &u);
+    assert_block(&format!("{name}: qv"), &qv, &transposed(slopes(|d| gradient_at_velocity_step(d).0)), size);
+    assert_block(&format!("{name}: vv"), &vv, &transposed(slopes(|d| gradient_at_velocity_step(d).1)), size);
+    let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));
+    let matrix_of_columns =
+        |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
+    assert_block(
+        &format!("{name}: qu"),
+        &qu,
+        &matrix_of_columns(slopes(|d| gradient_at_input_step(d).0)),
+        size,
+    );
+    assert_block(
+        &format!("{name}: vu"),
+        &vu,
+        &matrix_of_columns(slopes(|d| gradient_at_input_step(d).1)),
+        size,
+    );
+    let inputs = slopes(|d| gradient_at_input_step(d).2);
     assert_block(&format!("{name}: uu"), &uu, &SMatrix::from_fn(|i, j| inputs[j][i]), size);
 }
 
@@ -242,9 +266,9 @@ fn jacobians_of_steps_change_as_second_derivatives_say() {
 /// Returns the numbers of operations of first and second derivatives of inverse dynamics.
 fn operations(arguments: &str) -> [usize; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(tokens(arguments), tokens("struct Robot;"), folder, &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };

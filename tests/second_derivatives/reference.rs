@@ -1,4 +1,4 @@
-//! Second derivatives of inverse dynamics against Pinocchio's.
+//! Checks of second derivatives of inverse dynamics against those of Pinocchio.
 
 use linkwork::prelude::*;
 use support::compare::assert_similar;

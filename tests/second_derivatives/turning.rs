@@ -8,8 +8,8 @@ use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
 
-/// Weights of the central second difference of tenth order at the multiples 1, 2, … of the step to both
-/// sides, for a function that is zero at the origin.
+/// Weights of the central difference of tenth order for a second derivative at zero. They apply to the
+/// multiples 1, 2, … of the step on both sides, for a function that is zero at the origin.
 const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1.0 / 3150.0];
 
 /// Compares quadratic forms of the second derivatives along random changes of state and inputs with

@@ -12,7 +12,7 @@ use linkwork::{Frames, index_of};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Body on three feet, one of which is a ball, in wind.
+/// Tripod: a body on three feet with different contacts, one of which is a ball, and a wind force as input.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Tripod {
     #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
@@ -59,7 +59,7 @@ struct TripodInSpeeds {
     wz: Speed,
 }
 
-/// Leg whose knee has limits.
+/// Leg on a hip and a knee, whose knee has limits with stops.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Leg {
     #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
@@ -106,8 +106,10 @@ fn tripod() -> (SVector<f64, 7>, SVector<f64, 6>) {
 
 /// Returns `Z(q)`, which maps generalized speeds to joint velocities.
 fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
-    let unit = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
-    SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| TripodInSpeeds {}.rates_of_speeds(q, &unit(i))))
+    let unit_vector = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
+    SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| {
+        TripodInSpeeds {}.rates_of_speeds(q, &unit_vector(i))
+    }))
 }
 
 #[test]
@@ -171,12 +173,12 @@ fn a_tripod_falls_and_slides_alike_in_speeds() {
         assert!(duration < 0.4 || gaps.iter().any(|gap| gap.abs() < 1e-6), "{gaps}");
         assert_close("place", end.q.as_slice(), expected.q.as_slice(), 1e-8);
         assert_close("velocity", m.rates_of_speeds(&end.q, &end.v).as_slice(), expected.v.as_slice(), 1e-7);
-        let off = |h: f64| {
+        let error_with_step = |h: f64| {
             let end =
                 simulate(&m).from(q, u).duration(duration).method(TimeStepping::step(h)).finish().unwrap();
             (end.q - expected.q).amax()
         };
-        let (coarse, fine) = (off(1e-3), off(1e-4));
+        let (coarse, fine) = (error_with_step(1e-3), error_with_step(1e-4));
         assert!(fine < coarse.max(1e-9) * 0.3 && fine < 2e-4, "{coarse:e} {fine:e}");
     }
 }
@@ -188,29 +190,54 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     let tau: SVector<f64, 6> = Random::new(6).vector(3.0);
     let touches = [Touch::Slips, Touch::Sticks, Touch::Open, Touch::Open];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &u, &tau, &touches).unwrap();
-    let motion = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
+    let motion_with_contacts = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
         contact::forward_dynamics(&m, 0.0, q, u, tau, &touches).unwrap()
     };
-    let displaced = |e: &SVector<f64, 6>| m.integrate(&q, e);
-    let check = |what: &str, found: &[f64], expected: &[f64]| {
+    let displaced_configuration = |e: &SVector<f64, 6>| m.integrate(&q, e);
+    let assert_similar_entries = |what: &str, found: &[f64], expected: &[f64]| {
         assert_similar(what, found, expected, DIFFERENCE * 10.0);
     };
-    check("∂u̇/∂q", found.by_q.as_slice(), slopes(|e| motion(&displaced(&e), &u, &tau).a).as_slice());
-    check("∂u̇/∂u", found.by_v.as_slice(), slopes(|e| motion(&q, &(u + e), &tau).a).as_slice());
-    check("∂u̇/∂τ", found.by_tau.as_slice(), slopes(|e| motion(&q, &u, &(tau + e)).a).as_slice());
-    check(
+    assert_similar_entries(
+        "∂u̇/∂q",
+        found.by_q.as_slice(),
+        slopes(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).a).as_slice(),
+    );
+    assert_similar_entries(
+        "∂u̇/∂u",
+        found.by_v.as_slice(),
+        slopes(|e| motion_with_contacts(&q, &(u + e), &tau).a).as_slice(),
+    );
+    assert_similar_entries(
+        "∂u̇/∂τ",
+        found.by_tau.as_slice(),
+        slopes(|e| motion_with_contacts(&q, &u, &(tau + e)).a).as_slice(),
+    );
+    assert_similar_entries(
         "∂f/∂q",
         found.forces_by_q.as_slice(),
-        slopes(|e| motion(&displaced(&e), &u, &tau).forces).as_slice(),
+        slopes(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).forces).as_slice(),
     );
-    check("∂f/∂u", found.forces_by_v.as_slice(), slopes(|e| motion(&q, &(u + e), &tau).forces).as_slice());
+    assert_similar_entries(
+        "∂f/∂u",
+        found.forces_by_v.as_slice(),
+        slopes(|e| motion_with_contacts(&q, &(u + e), &tau).forces).as_slice(),
+    );
     let landed = contact::land_derivatives(&m, 0.0, &q, &u, &touches).unwrap();
-    let land = |q: &SVector<f64, 7>, u: &SVector<f64, 6>| contact::land(&m, 0.0, q, u, &touches).unwrap().v;
-    check("∂u⁺/∂q", landed.by_q.as_slice(), slopes(|e| land(&displaced(&e), &u)).as_slice());
-    check("∂u⁺/∂u", landed.by_v.as_slice(), slopes(|e| land(&q, &(u + e))).as_slice());
+    let velocity_after_touchdown =
+        |q: &SVector<f64, 7>, u: &SVector<f64, 6>| contact::land(&m, 0.0, q, u, &touches).unwrap().v;
+    assert_similar_entries(
+        "∂u⁺/∂q",
+        landed.by_q.as_slice(),
+        slopes(|e| velocity_after_touchdown(&displaced_configuration(&e), &u)).as_slice(),
+    );
+    assert_similar_entries(
+        "∂u⁺/∂u",
+        landed.by_v.as_slice(),
+        slopes(|e| velocity_after_touchdown(&q, &(u + e))).as_slice(),
+    );
     let push = [0.7].into();
     let motion = contact::linear_motion(&m, 0.0, &q, &u, &push, &touches).unwrap();
-    check("turning", motion.turning.as_slice(), m.turning(&q, &u).as_slice());
+    assert_similar_entries("turning", motion.turning.as_slice(), m.turning(&q, &u).as_slice());
     // Steps with enforced contacts.
     let stance = contact::hold(&m, touches).stabilized(20.0);
     fn steps<S: discrete::DifferentiableStep<f64>>(
@@ -220,15 +247,15 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     ) {
         let push = [0.7].into();
         let next = discrete::transition(stance, method, 0.0, q, u, &push).unwrap();
-        let step = |q: &_, u: &_| discrete::step(stance, method, 0.0, q, u, &push).unwrap();
+        let step_state = |q: &_, u: &_| discrete::step(stance, method, 0.0, q, u, &push).unwrap();
         let m = TripodInSpeeds {};
-        let by_q = slopes(|e| m.difference(&next.q, &step(&m.integrate(q, &e), u).0));
+        let by_q = slopes(|e| m.difference(&next.q, &step_state(&m.integrate(q, &e), u).0));
         assert_similar("q by q", next.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
-        let by_v = slopes(|e| m.difference(&next.q, &step(q, &(u + e)).0));
+        let by_v = slopes(|e| m.difference(&next.q, &step_state(q, &(u + e)).0));
         assert_similar("q by u", next.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
-        let by_q = slopes(|e| step(&m.integrate(q, &e), u).1);
+        let by_q = slopes(|e| step_state(&m.integrate(q, &e), u).1);
         assert_similar("u by q", next.v_by_q.as_slice(), by_q.as_slice(), DIFFERENCE * 10.0);
-        let by_v = slopes(|e| step(q, &(u + e)).1);
+        let by_v = slopes(|e| step_state(q, &(u + e)).1);
         assert_similar("u by u", next.v_by_v.as_slice(), by_v.as_slice(), DIFFERENCE * 10.0);
     }
     steps(&stance, &Rk4::step(0.01), (&q, &u));

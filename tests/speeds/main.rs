@@ -11,7 +11,7 @@ use support::simulate::advance;
 mod contacts;
 mod singular;
 
-/// Tolerance against differences of order four.
+/// Tolerance of derivatives against finite differences of order four.
 const DIFFERENCE: f64 = 1e-8;
 
 /// Rigid body about a fixed point, in Euler angles.
@@ -159,10 +159,10 @@ fn slopes<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) -> SMatrix<f64, R, C> {
     let h = 1e-3;
-    let column = |e: SVector<f64, C>| {
+    let derivative_column = |e: SVector<f64, C>| {
         ((f(e * h) - f(e * -h)) * 8.0 - (f(e * (2.0 * h)) - f(e * (-2.0 * h)))) / (12.0 * h)
     };
-    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| column(unit(i))))
+    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| derivative_column(unit(i))))
 }
 
 /// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
@@ -205,7 +205,7 @@ where
     }
 }
 
-/// Function from configuration and velocity before a step to those after it.
+/// Function that maps configuration and velocity before an integration step to those after it.
 type Step<'a, const NQ: usize, const NV: usize> =
     &'a dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>);
 
@@ -218,7 +218,7 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
     let u: SVector<f64, NU> = Random::new(9).vector(1.0);
-    let end = |method: Step<'_, NQ, NV>| {
+    let step_derivatives = |method: Step<'_, NQ, NV>| {
         let there = method(q, v);
         let by_q = slopes(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
         let by_v = slopes(|e| m.difference(&there.0, &method(q, &(v + e)).0));
@@ -229,11 +229,11 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     let found = [
         (
             discrete::transition(m, &rk4, 0.0, q, v, &u).unwrap(),
-            end(&|q, v| discrete::step(m, &rk4, 0.0, q, v, &u).unwrap()),
+            step_derivatives(&|q, v| discrete::step(m, &rk4, 0.0, q, v, &u).unwrap()),
         ),
         (
             discrete::transition(m, &euler, 0.0, q, v, &u).unwrap(),
-            end(&|q, v| discrete::step(m, &euler, 0.0, q, v, &u).unwrap()),
+            step_derivatives(&|q, v| discrete::step(m, &euler, 0.0, q, v, &u).unwrap()),
         ),
     ];
     for (found, [by_q, by_v, faster]) in found {
@@ -334,18 +334,25 @@ fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVec
 fn methods_keep_their_orders() {
     let (q, rates) = euler_start();
     let exact = advance(&Angles {}, &q, &rates, 0.5);
-    let error = |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
-    let ratio = |coarse: f64, fine: f64| (coarse / fine).log2();
-    let rk4 = ratio(error(end(Rk4::step(0.01))), error(end(Rk4::step(0.005))));
+    let error_of_end =
+        |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
+    let order_of_errors = |coarse: f64, fine: f64| (coarse / fine).log2();
+    let rk4 = order_of_errors(error_of_end(end(Rk4::step(0.01))), error_of_end(end(Rk4::step(0.005))));
     assert!((3.8..4.3).contains(&rk4), "{rk4}");
-    let midpoint = ratio(error(end(ImplicitMidpoint::step(0.01))), error(end(ImplicitMidpoint::step(0.005))));
+    let midpoint = order_of_errors(
+        error_of_end(end(ImplicitMidpoint::step(0.01))),
+        error_of_end(end(ImplicitMidpoint::step(0.005))),
+    );
     assert!((1.9..2.1).contains(&midpoint), "{midpoint}");
-    let rosenbrock = ratio(error(end(Rosenbrock::step(0.002))), error(end(Rosenbrock::step(0.001))));
+    let rosenbrock = order_of_errors(
+        error_of_end(end(Rosenbrock::step(0.002))),
+        error_of_end(end(Rosenbrock::step(0.001))),
+    );
     assert!((1.8..2.2).contains(&rosenbrock), "{rosenbrock}");
     for tolerance in [1e-6, 1e-9, 1e-12] {
-        let adaptive = error(end(DormandPrince::new().tolerance(tolerance, tolerance)));
+        let adaptive = error_of_end(end(DormandPrince::new().tolerance(tolerance, tolerance)));
         assert!(adaptive < 300.0 * tolerance, "{adaptive} with {tolerance}");
-        let stiff = error(end(Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9))));
+        let stiff = error_of_end(end(Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9))));
         assert!(stiff < 1000.0 * tolerance.max(1e-9), "{stiff} with {tolerance}");
     }
 }
@@ -356,14 +363,19 @@ fn batches_are_single_states() {
     let m = speeds();
     let (q, rates) = euler_start();
     let u = m.speeds_of_rates(&q, &rates);
-    let scaled = |k: usize| u * (1.0 + k as f64);
+    let scaled_speeds = |k: usize| u * (1.0 + k as f64);
     let q_lanes = lane_by_lane::<f64, 4, 3, 1>(|_| q);
-    let u_lanes = lane_by_lane::<f64, 4, 3, 1>(scaled);
+    let u_lanes = lane_by_lane::<f64, 4, 3, 1>(scaled_speeds);
     let moved = m.integrate_lanes(&q_lanes, &u_lanes);
     let rate = m.displacement_rate_lanes(&q_lanes, &u_lanes, &u_lanes);
     for k in 0..4 {
-        assert_close("integrate", lane(&moved, k).as_slice(), m.integrate(&q, &scaled(k)).as_slice(), 1e-14);
-        let one = m.displacement_rate(&q, &scaled(k), &scaled(k));
+        assert_close(
+            "integrate",
+            lane(&moved, k).as_slice(),
+            m.integrate(&q, &scaled_speeds(k)).as_slice(),
+            1e-14,
+        );
+        let one = m.displacement_rate(&q, &scaled_speeds(k), &scaled_speeds(k));
         assert_close("rate", lane(&rate, k).as_slice(), one.as_slice(), 1e-13);
     }
 }
@@ -397,8 +409,8 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     let end = run.finish().expect("it rolls");
     assert_close("configuration", end.q.as_slice(), exact.0.as_slice(), 1e-9);
     assert_close("rates", m.rates_of_speeds(&end.q, &end.v).as_slice(), exact.1.as_slice(), 1e-9);
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    assert_close("energy", &[energy(&end.q, &end.v)], &[energy(&q, &u)], 1e-9);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    assert_close("energy", &[total_energy(&end.q, &end.v)], &[total_energy(&q, &u)], 1e-9);
     // Derivatives under constraints, along displacements in generalized speeds.
     let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(&q, &u, &tau);
     let expected = slopes(|e| m.forward_dynamics(&q, &(u + e), &tau));
@@ -417,26 +429,27 @@ fn constrained_methods_keep_their_orders() {
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
     let u = m.speeds_of_rates(&q, &rates);
     let exact = advance(&plain, &q, &rates, 0.5);
-    let error = |(q, v): (SVector<f64, 6>, SVector<f64, 6>)| {
+    let error_of_end = |(q, v): (SVector<f64, 6>, SVector<f64, 6>)| {
         (q - exact.0).norm() + (m.rates_of_speeds(&q, &v) - exact.1).norm()
     };
-    let midpoint = |h: f64, duration: f64| {
+    let end_of_midpoint = |h: f64, duration: f64| {
         let run = simulate(&m).from(q, u).duration(duration).method(ImplicitMidpoint::step(h));
         let end = run.finish().expect("it rolls");
         (end.q, end.v)
     };
-    let order = (error(midpoint(0.01, 0.5)) / error(midpoint(0.005, 0.5))).log2();
+    let order = (error_of_end(end_of_midpoint(0.01, 0.5)) / error_of_end(end_of_midpoint(0.005, 0.5))).log2();
     assert!((1.9..2.1).contains(&order), "{order}");
-    let euler = |h: f64| {
+    let error_of_euler = |h: f64| {
         let run = simulate(&m).from(q, u).duration(0.5).method(SemiImplicitEuler::step(h));
         let end = run.finish().expect("it rolls");
-        error((end.q, end.v))
+        error_of_end((end.q, end.v))
     };
-    let order = (euler(0.002) / euler(0.001)).log2();
+    let order = (error_of_euler(0.002) / error_of_euler(0.001)).log2();
     assert!((0.9..1.1).contains(&order), "{order}");
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     let energy_change =
-        |(at, v): (SVector<f64, 6>, SVector<f64, 6>)| (energy(&at, &v) - energy(&q, &u)).abs();
-    let (early, late) = (energy_change(midpoint(0.01, 1.0)), energy_change(midpoint(0.01, 20.0)));
+        |(at, v): (SVector<f64, 6>, SVector<f64, 6>)| (total_energy(&at, &v) - total_energy(&q, &u)).abs();
+    let (early, late) =
+        (energy_change(end_of_midpoint(0.01, 1.0)), energy_change(end_of_midpoint(0.01, 20.0)));
     assert!(late < 20.0 * early.max(1e-5), "{early:e} {late:e}");
 }

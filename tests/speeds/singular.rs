@@ -54,7 +54,8 @@ fn motions_that_begin_there_are_errors() {
     assert!(matches!(step, Err(Error::NotFinite { .. })));
 }
 
-/// A rolling disk that lies flat has such a configuration; a body in space has none.
+/// Checks that a configuration in which generalized speeds do not determine the rates of coordinates is found
+/// under constraints, too: a rolling disk has one where it lies flat, a free body has none.
 #[test]
 fn constraints_do_not_hide_it() {
     let flat: SVector<f64, 6> = [0.0, 0.0, 0.0, 0.2, std::f64::consts::FRAC_PI_2, 0.1].into();

@@ -1,4 +1,4 @@
-//! Comparison of numbers with reference values.
+//! Comparison of computed numbers with reference values.
 
 use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
@@ -20,12 +20,13 @@ pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolera
     }
 }
 
-/// Panics unless all entries agree, relative to the largest expected one.
+/// Panics unless all entries agree with the expected ones, with errors relative to the largest expected
+/// entry.
 #[track_caller]
 pub fn assert_similar(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
     let scale = expected.iter().fold(1.0_f64, |m, e| m.max(e.abs()));
-    let scaled = |x: &[f64]| x.iter().map(|x| x / scale).collect::<Vec<_>>();
-    assert_close(what, &scaled(actual), &scaled(expected), tolerance);
+    let divide_by_scale = |x: &[f64]| x.iter().map(|x| x / scale).collect::<Vec<_>>();
+    assert_close(what, &divide_by_scale(actual), &divide_by_scale(expected), tolerance);
 }
 
 /// Panics unless two mechanisms with the same coordinates have the same equations of motion and energies, to
@@ -46,11 +47,16 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
         let q = random.configuration(one);
         let [v, a, tau, dv] =
             [random.vector(2.0), random.vector(2.0), random.vector(5.0), random.vector(0.5)];
-        let close = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, tolerance);
-        let same =
-            |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| close(what, a.as_slice(), b.as_slice());
+        let assert_close_entries = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, tolerance);
+        let same = |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| {
+            assert_close_entries(what, a.as_slice(), b.as_slice())
+        };
 
-        close("mass matrix", one.mass_matrix(0.0, &q).as_slice(), other.mass_matrix(0.0, &q).as_slice());
+        assert_close_entries(
+            "mass matrix",
+            one.mass_matrix(0.0, &q).as_slice(),
+            other.mass_matrix(0.0, &q).as_slice(),
+        );
         same("bias forces", one.bias_forces(0.0, &q, &v), other.bias_forces(0.0, &q, &v));
         same(
             "inverse dynamics",
@@ -69,8 +75,20 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
         same("momentum", one.generalized_momentum(0.0, &q, &v), other.generalized_momentum(0.0, &q, &v));
         same("momentum rate", one.momentum_rate(0.0, &q, &v), other.momentum_rate(0.0, &q, &v));
         same("tangent rate", one.tangent_rate(&dv, &v), other.tangent_rate(&dv, &v));
-        close("kinetic energy", &[one.kinetic_energy(0.0, &q, &v)], &[other.kinetic_energy(0.0, &q, &v)]);
-        close("potential energy", &[one.potential_energy(0.0, &q)], &[other.potential_energy(0.0, &q)]);
-        close("integrate", one.integrate(&q, &dv).as_slice(), other.integrate(&q, &dv).as_slice());
+        assert_close_entries(
+            "kinetic energy",
+            &[one.kinetic_energy(0.0, &q, &v)],
+            &[other.kinetic_energy(0.0, &q, &v)],
+        );
+        assert_close_entries(
+            "potential energy",
+            &[one.potential_energy(0.0, &q)],
+            &[other.potential_energy(0.0, &q)],
+        );
+        assert_close_entries(
+            "integrate",
+            one.integrate(&q, &dv).as_slice(),
+            other.integrate(&q, &dv).as_slice(),
+        );
     }
 }

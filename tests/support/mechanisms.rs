@@ -1,5 +1,5 @@
-//! Mechanisms in the struct language: one for every joint, the equivalent chains of pins and sleeves, one
-//! with every force element, and one with a free base.
+//! Test mechanisms in the struct language: one for every type of joint, the equivalent chains of pins and
+//! sleeves, one with every force element, and one with a free base.
 
 use linkwork::mechanism;
 
@@ -69,7 +69,7 @@ macro_rules! chained {
 }
 
 carried! {
-    /// Body on a pin.
+    /// Body on a pin (revolute joint), which is carried by another body.
     OnPin: Pin, about = x
 }
 carried! {
@@ -77,7 +77,7 @@ carried! {
     OnSlantedPin: Pin, about = [0.6, 0, -0.8]
 }
 carried! {
-    /// Body on a sleeve.
+    /// Body on a sleeve (prismatic joint), which is carried by another body.
     OnSleeve: Sleeve, along = y
 }
 carried! {
@@ -89,23 +89,23 @@ carried! {
     OnScrewWithLead: Screw, along = z, lead = 0.3
 }
 carried! {
-    /// Body on a collar.
+    /// Body on a collar (cylindrical joint), which is carried by another body.
     OnCollar: Collar, about = z
 }
 carried! {
-    /// Body on a slot.
+    /// Body on a slot joint, which translates along one axis and rotates about another.
     OnSlot: Slot, along = x, about = z
 }
 carried! {
-    /// Body on a universal joint.
+    /// Body on a universal joint, which is carried by another body.
     OnUniversal: Universal, about = (x, y)
 }
 carried! {
-    /// Body on a ball joint.
+    /// Body on a ball joint, which is carried by another body.
     OnBall: Ball
 }
 carried! {
-    /// Body on a planar joint, given by its normal.
+    /// Body on a planar joint that is declared by its normal.
     OnPlanar: Planar, about = z
 }
 carried! {
@@ -113,19 +113,19 @@ carried! {
     OnPlanarAlong: Planar, along = (x, y)
 }
 carried! {
-    /// Body on a stage with two axes.
+    /// Body on a stage, which translates along two axes.
     OnStage: Stage, along = (x, y)
 }
 carried! {
-    /// Body on a stage with three axes.
+    /// Body on a stage, which translates along three axes.
     OnStage3: Stage, along = (x, y, z)
 }
 carried! {
-    /// Body that moves freely relative to its carrier.
+    /// Body that moves freely relative to a carrier, which moves itself.
     OnFree: Free
 }
 carried! {
-    /// Body welded to its carrier.
+    /// Body that is welded to a moving carrier.
     OnWeld: Weld
 }
 
@@ -160,14 +160,14 @@ chained! {
     #[joint(slide2 -> last, about = z)] angle: Pin,
 }
 chained! {
-    /// Stage as a chain of two sleeves.
+    /// Bodies connected by two sleeve joints, equivalent to one `Stage` joint with two axes.
     ChainedStage:
     #[body] slide1: Body,
     #[joint(socket -> slide1, along = x)] sx: Sleeve,
     #[joint(slide1 -> last, along = y)] sy: Sleeve,
 }
 chained! {
-    /// Stage as a chain of three sleeves.
+    /// Bodies connected by three sleeve joints, equivalent to one `Stage` joint with three axes.
     ChainedStage3:
     #[body] slide1: Body,
     #[body] slide2: Body,
@@ -210,15 +210,15 @@ pub struct Workshop {
     pub shoulder_stiffness: f64,
     /// Angle at which the spring in the shoulder is slack, rad.
     pub shoulder_rest: f64,
-    /// Damping in the shoulder, N·m·s/rad.
+    /// Damping coefficient of the joint in the shoulder, N·m·s/rad.
     pub shoulder_damping: f64,
     /// Stiffness of the spring along the track, N/m.
     pub track_stiffness: f64,
     /// Free length of the spring along the track, m.
     pub track_length: f64,
-    /// Damping of translation along the track, N·s/m.
+    /// Damping coefficient of translation along the track, N·s/m.
     pub slide_damping: f64,
-    /// Damping of rotation on the track, N·m·s/rad.
+    /// Damping coefficient of rotation on the track, N·m·s/rad.
     pub turn_damping: f64,
 
     #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))]

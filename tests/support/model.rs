@@ -1,4 +1,4 @@
-//! Models of generated sources, and numbers for their symbols.
+//! Models that are built from generated sources, and numbers for the symbols in their expressions.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::sample::sample;
@@ -10,7 +10,7 @@ use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::Description;
 use std::path::Path;
 
-/// Arguments of the attribute, and the struct to which it applies.
+/// Source of a mechanism: the arguments of the attribute, and the struct to which it applies.
 pub type Source = (String, String);
 
 /// Calls `check` with the description and the model of a source. Returns the error messages if the source has
@@ -19,9 +19,9 @@ pub fn try_model(
     (arguments, item): &Source,
     check: impl FnOnce(&Description, &Model<'_>),
 ) -> Result<(), Vec<String>> {
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let description = source.map(|source| source.mechanism.description);
     let model = description.as_ref().and_then(|d| build_model(d, &graph, &mut cx));
@@ -39,7 +39,8 @@ pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>))
     }
 }
 
-/// Returns numbers for all symbols at a random state: parameters near one, variables near zero.
+/// Returns a function that assigns numbers to all symbols of a model at a random state: parameters near one,
+/// variables near zero.
 pub fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
     let q = random_configuration(model, seed);
     move |s| match Quantity::from_symbol(s) {

@@ -1,4 +1,5 @@
-//! Robots of `models/urdf`: those of the gallery, and others. The top of each file states its source.
+//! Robots of the files in `models/urdf` for tests: those of the gallery, and others. The top of each file
+//! states its source.
 
 use linkwork::mechanism;
 
@@ -12,7 +13,7 @@ pub struct CartPole;
 #[mechanism(urdf = "../models/urdf/double_pendulum.urdf")]
 pub struct DoublePendulum;
 
-/// Arm with six axes and continuous joints.
+/// Kinova arm with six axes and continuous joints.
 #[mechanism(urdf = "../models/urdf/kinova.urdf")]
 pub struct Kinova;
 
@@ -24,6 +25,6 @@ pub struct Panda;
 #[mechanism(urdf = "../models/urdf/gen3.urdf")]
 pub struct Gen3;
 
-/// Humanoid with inclined hips and shoulders.
+/// Humanoid G1 with inclined hips and shoulders.
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free)]
 pub struct G1;

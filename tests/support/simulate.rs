@@ -1,4 +1,4 @@
-//! Motion of mechanisms without inputs.
+//! Simulation of mechanisms without inputs, for tests.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::SVector;

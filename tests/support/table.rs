@@ -3,11 +3,11 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use serde_json::Value;
 
-/// JSON object of a reference table.
+/// JSON object with reference values for tests.
 pub struct Record(Value);
 
 impl Record {
-    /// Reads the file `tests/data/<path>`.
+    /// Reads the reference values from the file `tests/data/<path>`.
     pub fn load(path: &str) -> Record {
         let path = format!("{}/data/{path}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -23,12 +23,12 @@ impl Record {
         self.0.get(key).is_some()
     }
 
-    /// Returns the objects of a list.
+    /// Returns the list of objects with this key.
     pub fn records(&self, key: &str) -> Vec<Record> {
         list(self.entry(key)).iter().cloned().map(Record).collect()
     }
 
-    /// Returns the strings of a list.
+    /// Returns the list of strings with this key.
     pub fn strings(&self, key: &str) -> Vec<String> {
         list(self.entry(key)).iter().map(|item| item.as_str().expect("a string").to_string()).collect()
     }
@@ -43,7 +43,7 @@ impl Record {
         number(self.entry(key))
     }
 
-    /// Returns a list of numbers.
+    /// Returns the list of numbers with this key.
     pub fn numbers(&self, key: &str) -> Vec<f64> {
         numbers(self.entry(key))
     }
@@ -58,7 +58,7 @@ impl Record {
         SVector::from(array(&self.numbers(key)))
     }
 
-    /// Returns a matrix that is stored as one list in row-major order.
+    /// Returns the matrix with this key, which is stored as one list in row-major order.
     pub fn matrix<const R: usize, const C: usize>(&self, key: &str) -> SMatrix<f64, R, C> {
         let numbers = self.numbers(key);
         assert_eq!(numbers.len(), R * C, "`{key}`");
@@ -72,7 +72,8 @@ impl Record {
         SMatrix::from_fn(|i, j| numbers[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)])
     }
 
-    /// Returns the entries of an object of lists of numbers, with their names.
+    /// Returns the entries of the object with this key, whose values are lists of numbers, together with
+    /// their names.
     pub fn named_lists(&self, key: &str) -> Vec<(String, Vec<f64>)> {
         let object = self.entry(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
         object.iter().map(|(name, value)| (name.clone(), numbers(value))).collect()

@@ -1,4 +1,4 @@
-//! Particles in user-defined coordinates.
+//! Checks of particles in user-defined coordinates.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -106,11 +106,11 @@ fn spherical_pendulum_in_two_charts() {
     let jacobian = other.place_jacobian(&angles);
     let rates = Vector2::from_fn(|k, _| jacobian.column(k).dot(&moving) / jacobian.column(k).norm_squared());
     assert_close("velocity", (jacobian * rates).as_slice(), moving.as_slice(), EXACT);
-    let energy = |t: f64, u: f64| t + u;
+    let sum_of_energies = |t: f64, u: f64| t + u;
     assert_close(
         "energy",
-        &[energy(one.kinetic_energy(&q, &v), one.potential_energy(&q))],
-        &[energy(other.kinetic_energy(&angles, &rates), other.potential_energy(&angles))],
+        &[sum_of_energies(one.kinetic_energy(&q, &v), one.potential_energy(&q))],
+        &[sum_of_energies(other.kinetic_energy(&angles, &rates), other.potential_energy(&angles))],
         EXACT,
     );
     let (end, _) = advance(&one, &q, &v, 5.0);
@@ -118,7 +118,8 @@ fn spherical_pendulum_in_two_charts() {
     assert_close("place", one.place(&end).as_slice(), other.place(&end_angles).as_slice(), MOTION);
 }
 
-/// Two particles in angles from the vertical; the lower one is placed relative to the upper one.
+/// Two particles whose coordinates are angles from the vertical. The lower one is placed relative to the
+/// upper one, as in a double pendulum.
 #[mechanism(gravity = -9.81 * y)]
 struct TwoParticles {
     first: Coordinate,

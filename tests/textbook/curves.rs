@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Bead on a helix.
+/// Bead that slides on a helical wire.
 #[mechanism(gravity = -9.81 * z)]
 struct Helix {
     a: f64,
@@ -198,12 +198,13 @@ struct Cables {
 /// Returns the length of the shortest path of two straight lines and a helix, by search over the points of
 /// contact with the cylinder that are visible from the ends.
 fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
-    let length = |[alpha, beta, za, zb]: [f64; 4]| {
-        let point = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
-        let distance = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-        distance(a, point(alpha, za))
+    let length_of_path = |[alpha, beta, za, zb]: [f64; 4]| {
+        let point_on_cylinder = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
+        let distance_between =
+            |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+        distance_between(a, point_on_cylinder(alpha, za))
             + (radius * (beta - alpha)).hypot(zb - za)
-            + distance(point(beta, zb), b)
+            + distance_between(point_on_cylinder(beta, zb), b)
     };
     let (from, to) = (a[1].atan2(a[0]), b[1].atan2(b[0]));
     let to = if to < from { to + 2.0 * PI } else { to };
@@ -216,10 +217,10 @@ fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
             next[k / 2] += if k % 2 == 0 { step } else { -step };
             [next[0].min(from + first), next[1].max(to - last), next[2], next[3]]
         });
-        let next = tried.min_by(|p, q| length(*p).total_cmp(&length(*q))).unwrap();
-        if length(next) < length(best) { best = next } else { step /= 2.0 }
+        let next = tried.min_by(|p, q| length_of_path(*p).total_cmp(&length_of_path(*q))).unwrap();
+        if length_of_path(next) < length_of_path(best) { best = next } else { step /= 2.0 }
     }
-    length(best)
+    length_of_path(best)
 }
 
 #[test]
@@ -254,8 +255,8 @@ fn cables_take_the_shortest_way_around() {
     assert!((m.ball(&q) - (2.0 * 0.75_f64.sqrt() + 0.5 * angle)).abs() < 1e-14);
 }
 
-/// Derivatives of a cable's length equal differences, with and without contact, and its force has their
-/// directions.
+/// Checks that derivatives of a cable's length equal finite differences, with and without contact with the
+/// surface, and that the cable force has the directions of these derivatives.
 #[test]
 fn cables_have_exact_derivatives() {
     let (m, h) = (Cables { radius: 0.5 }, 1e-5);
@@ -264,7 +265,7 @@ fn cables_have_exact_derivatives() {
         SVector::from([0.8, -1.0, 0.2, 1.0, 1.0, 0.4]),
         SVector::from([1.0, 0.1, 0.0, -0.8, 0.3, 0.6]),
     ] {
-        let differences = |f: fn(&Cables, &SVector<f64, 6>) -> f64| {
+        let central_differences = |f: fn(&Cables, &SVector<f64, 6>) -> f64| {
             SVector::<f64, 6>::from_fn(|k, _| {
                 let mut step = SVector::zeros();
                 step[k] = h;
@@ -272,8 +273,8 @@ fn cables_have_exact_derivatives() {
             })
         };
         let (drum, ball) = (m.drum_jacobian(&q).transpose(), m.ball_jacobian(&q).transpose());
-        assert!((drum - differences(Cables::drum)).amax() < 1e-9);
-        assert!((ball - differences(Cables::ball)).amax() < 1e-9);
+        assert!((drum - central_differences(Cables::drum)).amax() < 1e-9);
+        assert!((ball - central_differences(Cables::ball)).amax() < 1e-9);
         // A taut cable exerts one force on both ends along its own directions, which are unit vectors.
         assert!((drum.fixed_rows::<3>(0).norm() - 1.0).abs() < 1e-12);
         let forces = m.generalized_forces(&q, &[2.0].into());

@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 use support::compare::assert_close;
 use support::simulate::{advance, advance_from};
 
-/// With a vibrating pivot `m l² θ̈ + m l (g + ÿ) sin θ = 0`, and the upper equilibrium is stable if
-/// `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
+/// Checks Kapitza's pendulum with a vibrating pivot: `m l² θ̈ + m l (g + ÿ) sin θ = 0`. The upper equilibrium
+/// is stable if `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
 #[test]
 fn kapitza_pendulum() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.04, 160.0);
@@ -52,9 +52,9 @@ struct PendulumOnCrank {
     pin: Pin,
 }
 
-/// Pendulum on a rotating crank (Landau and Lifshitz, *Mechanics*, § 5, problem 3 a). The pivot's axes are
-/// those of the ground, relative to which it is placed. The angle is therefore measured from the vertical
-/// although the crank rotates.
+/// Checks a pendulum on a rotating crank (Landau and Lifshitz, *Mechanics*, § 5, problem 3 a). The axes of
+/// the pivot are those of the ground, so that the angle is measured from the vertical although the crank
+/// rotates.
 #[test]
 fn pendulum_on_crank() {
     let (g, m, l, radius, speed) = (9.81, 0.3, 0.5, 0.2, 3.0);
@@ -101,8 +101,8 @@ struct Turntable {
     velocity: Vector,
 }
 
-/// In the rotating frame Coriolis and centrifugal forces appear; in the ground frame the plane of oscillation
-/// is constant, as that of Foucault's pendulum.
+/// Checks an oscillator on a rotating table, as Foucault's pendulum at the pole. Coriolis and centrifugal
+/// forces appear in the rotating frame; in the ground frame the plane of oscillation is constant.
 #[test]
 fn foucault_pendulum_at_the_pole() {
     let (m, k, spin) = (1.4, 20.0, 0.7);
@@ -110,15 +110,18 @@ fn foucault_pendulum_at_the_pole() {
     let (t, q, v) = (0.6, Vector2::new(0.4, -0.3), Vector2::new(1.1, 0.5));
     let a = Vector2::new(-0.8, 2.0);
     let up = Vector3::z() * spin;
-    let three = |v: &Vector2<f64>| Vector3::new(v[0], v[1], 0.0);
-    assert_close("v seen", table.seen(t, &q, &v).as_slice(), three(&v).as_slice(), EXACT);
+    let horizontal_vector = |v: &Vector2<f64>| Vector3::new(v[0], v[1], 0.0);
+    assert_close("v seen", table.seen(t, &q, &v).as_slice(), horizontal_vector(&v).as_slice(), EXACT);
     let seen = table.seen_acceleration(t, &q, &v, &a);
-    assert_close("a seen", seen.as_slice(), three(&a).as_slice(), EXACT);
-    let whole = three(&a) + up.cross(&three(&v)) * 2.0 + up.cross(&up.cross(&three(&q)));
+    assert_close("a seen", seen.as_slice(), horizontal_vector(&a).as_slice(), EXACT);
+    let whole = horizontal_vector(&a)
+        + up.cross(&horizontal_vector(&v)) * 2.0
+        + up.cross(&up.cross(&horizontal_vector(&q)));
     assert_close("a", table.acceleration(t, &q, &v, &a).as_slice(), whole.as_slice(), EXACT);
-    let velocity = three(&v) + up.cross(&three(&q));
+    let velocity = horizontal_vector(&v) + up.cross(&horizontal_vector(&q));
     assert_close("v", table.velocity(t, &q, &v).as_slice(), velocity.as_slice(), EXACT);
-    let bias = (up.cross(&three(&v)) * 2.0 + up.cross(&up.cross(&three(&q)))) * m + three(&q) * k;
+    let bias = (up.cross(&horizontal_vector(&v)) * 2.0 + up.cross(&up.cross(&horizontal_vector(&q)))) * m
+        + horizontal_vector(&q) * k;
     assert_close("bias", table.bias_forces(t, &q, &v).as_slice(), &[bias.x, bias.y], EXACT);
 
     // Released at rest relative to the ground, the particle oscillates along one line of the ground frame.

@@ -175,10 +175,10 @@ struct Buffers {
 fn stops() {
     let (k, gap) = (1000.0, 0.5);
     let cart = Buffers { k, gap };
-    let force = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
+    let force_at = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
     let cases = [(0.3, 0.0), (-0.4, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.7, 200.0), (-0.6, -100.0)];
     for (x, expected) in cases {
-        assert_close(format!("at {x}"), &[force(x)], &[expected], 1e-12);
+        assert_close(format!("at {x}"), &[force_at(x)], &[expected], 1e-12);
     }
     // One period: across the gap and back, with half an oscillation in each buffer.
     let period = 4.0 * gap / 2.0 + 2.0 * PI / k.sqrt();
@@ -417,8 +417,8 @@ struct Workbench {
     push: Force,
 }
 
-/// `d(T + U)/dt = control + disturbance − dissipated`, with the left side by central differences along the
-/// motion.
+/// Checks the power balance `d(T + U)/dt = control + disturbance − dissipated`, with the left side by central
+/// differences along the motion.
 #[test]
 fn power_balance() {
     let m = Workbench { wind: 0.8 };
@@ -427,13 +427,15 @@ fn power_balance() {
         let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
             (random.vector(1.0), random.vector(2.0), random.vector(3.0));
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
-        let energy = |h: f64| {
+        let total_energy_after = |h: f64| {
             let (q, v) = (q + v * h + a * (h * h / 2.0), v + a * h);
             m.kinetic_energy(&q, &v) + m.potential_energy(&q)
         };
         let h = 1e-4;
         // Differences of fourth order.
-        let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
+        let rate = (8.0 * (total_energy_after(h) - total_energy_after(-h))
+            - (total_energy_after(2.0 * h) - total_energy_after(-2.0 * h)))
+            / (12.0 * h);
         let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
         assert_close("power", &[rate], &[power], 1e-8);
         assert!(m.dissipated_power(&q, &v) > 0.0, "what dissipates takes energy out");

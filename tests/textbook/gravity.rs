@@ -1,4 +1,4 @@
-//! Central gravity of points and of bodies.
+//! Checks of central gravity that acts on points and on extended bodies.
 
 use super::EXACT;
 use linkwork::nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3, Vector6};

@@ -1,4 +1,4 @@
-//! Complete mechanisms against their closed-form solutions.
+//! Checks of complete machines against closed-form solutions.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Matrix2, Matrix3, Rotation3, Vector1, Vector2, Vector3, Vector6};
@@ -64,8 +64,8 @@ fn tuned_suspension() {
     assert_eq!(cart.bias_forces(&origin, &origin), origin);
     let mass = cart.mass_matrix(&origin);
     assert_close("mass", mass.as_slice(), &[2.5, -0.5, -0.5, 1.5], EXACT);
-    let column = |k: usize| cart.bias_forces(&Vector2::ith(k, 1.0), &origin);
-    let stiffness = Matrix2::from_columns(&[column(0), column(1)]);
+    let stiffness_column = |k: usize| cart.bias_forces(&Vector2::ith(k, 1.0), &origin);
+    let stiffness = Matrix2::from_columns(&[stiffness_column(0), stiffness_column(1)]);
     assert_close("stiffness", stiffness.as_slice(), &[140.0, -40.0, -40.0, 40.0], EXACT);
     let damping = cart.bias_forces(&origin, &Vector2::new(1.0, 3.0));
     assert_close("damping", damping.as_slice(), &[-0.6, 0.6], EXACT);
@@ -90,8 +90,8 @@ fn gyroscope() {
     assert_close("mass", gyroscope.mass_matrix(&q).as_slice(), mass.as_slice(), EXACT);
 }
 
-/// In gimbal lock, with the axes of precession and spin in line, the mass matrix is singular. All other
-/// functions are still correct, and the acceleration is not finite instead of wrong.
+/// Checks a gyroscope in gimbal lock, with the axes of precession and spin in line. The mass matrix is
+/// singular and the acceleration is not finite instead of wrong; all other functions are correct.
 #[test]
 fn gimbal_lock() {
     let gyroscope = Gyroscope { g: 9.81, mass: 1.0, offset: 0.0, axial: 2.0, transverse: 3.0 };

@@ -1,6 +1,6 @@
-//! Textbook problems in the terms in which they are stated: free coordinates, moving frames, force laws,
-//! potentials and outputs, each against its closed-form solution. Mechanisms that the gallery contains are
-//! used from there.
+//! Checks of textbook problems in their usual formulation: free coordinates, moving frames, force laws,
+//! potentials and outputs, each against its closed-form solution. Mechanisms are taken from the gallery if it
+//! contains them.
 
 mod coordinates;
 mod curves;
@@ -12,7 +12,7 @@ mod matrices;
 mod motions;
 mod orientations;
 
-/// Tolerance of identities.
+/// Tolerance of identities, which hold up to rounding.
 const EXACT: f64 = 1e-13;
-/// Tolerance of integrated motions.
+/// Tolerance of motions that are integrated numerically.
 const MOTION: f64 = 1e-10;

@@ -96,12 +96,12 @@ fn matrices_are_what_their_vectors_say() {
         assert!((m.rows(&q) - SVector::from([2.0, 2.0, 0.0])).amax() < 1e-15);
         // The moment of inertia of all bodies about z is twice their energy of unit rotation about it.
         let z = Vector3::z();
-        let turn = |w: Vector3<f64>| {
+        let energy_of_rotation = |w: Vector3<f64>| {
             let at = m.frame_placement(frame!(Carrier, "hull"), &q);
             let (w, v) = (hull.inverse() * w, hull.inverse() * w.cross(&at.translation.vector));
             m.kinetic_energy(&q, &SVector::from([v.x, v.y, v.z, w.x, w.y, w.z, 0.0]))
         };
-        assert!((m.column(&q)[2] - 2.0 * turn(z)).abs() < 1e-12);
+        assert!((m.column(&q)[2] - 2.0 * energy_of_rotation(z)).abs() < 1e-12);
     }
 }
 

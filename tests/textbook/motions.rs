@@ -42,7 +42,7 @@ fn a_ladder_turns_about_its_instantaneous_centre() {
     }
 }
 
-/// Wheel that rolls along a line.
+/// Wheel that rolls along a straight line.
 #[mechanism]
 struct Wheel {
     radius: f64,
@@ -194,8 +194,8 @@ struct Carrier {
     parts: Scalar,
 }
 
-/// Momenta of several bodies add up to those of the whole, and change only by external forces and torques
-/// (Euler's laws). In a rotating frame, the rate of a vector is smaller by `ω × h` (the transport theorem).
+/// Checks Euler's laws for several bodies: momenta add up to those of the whole, and change only by external
+/// forces and torques. In a rotating frame, the rate of a vector is smaller by `ω × h` (transport theorem).
 #[test]
 fn euler_s_laws_hold_for_a_set_of_bodies() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
@@ -299,7 +299,8 @@ fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
     }
 }
 
-/// Pendulum with its inertia given about its pivot, and one with its inertia about its centre of mass.
+/// Two pendulums: the inertia of one is given about its pivot, that of the other about a point other than its
+/// centre of mass.
 #[mechanism(gravity = -9.81 * y)]
 struct AboutPivot {
     j: f64,
@@ -340,7 +341,7 @@ struct Flywheel {
     lost: State,
 }
 
-/// The work of a force is a first-order state, the integral of its power.
+/// Checks work as a first-order state, which integrates the power of a force.
 #[test]
 fn work_is_what_energy_gains_and_drag_takes() {
     let m = Flywheel { work: 0.0, lost: 0.0 };

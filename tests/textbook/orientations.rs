@@ -1,4 +1,4 @@
-//! Frames in angles, and functions for vectors.
+//! Checks of frames that are declared by angles, and of functions of vectors.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -108,8 +108,10 @@ struct TopByBall {
 fn heavy_top_in_two_charts() {
     let (one, other) = (TopByFrame {}, TopByBall {});
     let (q, v) = (Vector3::new(0.2, 0.7, -0.1), Vector3::new(0.5, -0.3, 40.0));
-    let turn = |axis, angle| linkwork::nalgebra::UnitQuaternion::from_axis_angle(&axis, angle);
-    let pose = turn(Vector3::z_axis(), q[0]) * turn(Vector3::x_axis(), q[1]) * turn(Vector3::z_axis(), q[2]);
+    let rotation_about = |axis, angle| linkwork::nalgebra::UnitQuaternion::from_axis_angle(&axis, angle);
+    let pose = rotation_about(Vector3::z_axis(), q[0])
+        * rotation_about(Vector3::x_axis(), q[1])
+        * rotation_about(Vector3::z_axis(), q[2]);
     let rate = one.rate(&q, &v);
     let energies = [one.kinetic_energy(&q, &v), one.potential_energy(&q)];
     let quaternion = SVector::from(pose.into_inner().coords);

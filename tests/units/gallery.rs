@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use syn::{Item, ItemStruct, Meta};
 
-/// Mechanism of a source file.
+/// Mechanism of a source file: the arguments of its attribute, and its struct.
 struct Source {
     arguments: TokenStream,
     item: ItemStruct,
@@ -21,7 +21,7 @@ impl Source {
 
     /// Returns the parameters with the units at the end of their documentation, as in "Mass of the cart, kg."
     fn documented(&self) -> Vec<(String, String)> {
-        let field = |f: &syn::Field| {
+        let documented_unit = |f: &syn::Field| {
             let doc = f.attrs.iter().filter_map(|a| match &a.meta {
                 Meta::NameValue(doc) if a.path().is_ident("doc") => {
                     Some(doc.value.to_token_stream().to_string())
@@ -33,11 +33,11 @@ impl Source {
             let unit = first.split(", ").map(str::trim).find(|part| is_unit(part))?;
             Some((f.ident.as_ref()?.to_string(), unit.to_string()))
         };
-        self.item.fields.iter().filter(|f| is_parameter(f)).filter_map(field).collect()
+        self.item.fields.iter().filter(|f| is_parameter(f)).filter_map(documented_unit).collect()
     }
 
-    /// Returns a copy with one occurrence of a parameter replaced by another text, or `None` if it has fewer
-    /// occurrences.
+    /// Returns a copy of the mechanism in which one occurrence of a parameter is replaced by another text.
+    /// Returns `None` if there are fewer occurrences.
     fn replaced(&self, parameter: &str, occurrence: usize, by: &str) -> Option<Source> {
         let mut left = occurrence as isize;
         let by: TokenStream = by.parse().unwrap();
@@ -53,7 +53,7 @@ impl Source {
         (left < 0).then_some(Source { arguments, item })
     }
 
-    /// Returns a copy that declares the unit of every parameter except one.
+    /// Returns a copy of the mechanism that declares the unit of every parameter except one.
     fn pinned(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
         for (field, unit) in item.fields.iter_mut().filter(|field| is_parameter(field)).zip(units) {
@@ -75,7 +75,7 @@ impl Source {
             .any(|f| matches!(&f.ty, syn::Type::Path(path) if path.path.segments[0].ident == "Table"))
     }
 
-    /// Returns the parameters with their units.
+    /// Returns the parameters of the mechanism with their inferred units.
     fn parameters(&self) -> Vec<(String, String)> {
         let units = self.units().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
         let fields = self.item.fields.iter().filter(|field| is_parameter(field));
@@ -102,7 +102,8 @@ fn is_unit(text: &str) -> bool {
 /// Replaces the occurrence of a parameter with the index `left`. Keys and members with its name do not count.
 fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut isize) -> TokenStream {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let is = |k: usize, c: char| matches!(tokens.get(k), Some(TokenTree::Punct(p)) if p.as_char() == c);
+    let is_punctuation_at =
+        |k: usize, c: char| matches!(tokens.get(k), Some(TokenTree::Punct(p)) if p.as_char() == c);
     let mut new = TokenStream::new();
     for (k, token) in tokens.iter().enumerate() {
         match token {
@@ -110,7 +111,11 @@ fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut is
                 let inner = replace(group.stream(), parameter, by, left);
                 new.extend([TokenTree::from(Group::new(group.delimiter(), inner))]);
             }
-            TokenTree::Ident(i) if i == parameter && !is(k + 1, '=') && !(k > 0 && is(k - 1, '.')) => {
+            TokenTree::Ident(i)
+                if i == parameter
+                    && !is_punctuation_at(k + 1, '=')
+                    && !(k > 0 && is_punctuation_at(k - 1, '.')) =>
+            {
                 match *left {
                     0 => new.extend([TokenTree::from(Group::new(Delimiter::Parenthesis, by.clone()))]),
                     _ => new.extend([token.clone()]),
@@ -123,7 +128,7 @@ fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut is
     new
 }
 
-/// Returns the mechanisms of a file.
+/// Returns all mechanisms that a source file contains.
 fn sources(text: &str) -> Vec<Source> {
     let found = syn::parse_file(text).unwrap().items.into_iter().filter_map(|item| {
         let Item::Struct(mut item) = item else { return None };
@@ -150,7 +155,7 @@ fn gallery() -> Vec<Source> {
     all.filter(|source| !source.documented().is_empty()).collect()
 }
 
-/// Inferred units equal those in the documentation.
+/// Checks that inferred units of parameters equal those in their documentation.
 #[test]
 fn units_are_those_of_the_documentation() {
     let mut compared = 0;
@@ -249,8 +254,8 @@ fn a_factor_too_few_is_refused() {
     assert!(refused > 40, "{refused} mistakes");
 }
 
-/// Whether a message names the parameter, another parameter whose unit follows from it, or the definition in
-/// which it may occur. Earlier checks reject one of the two entries of a symmetric matrix, and a loop that a
+/// Whether an error message names the parameter, another parameter whose unit follows from it, or the
+/// definition that may contain it. Earlier checks reject an asymmetric inertia matrix, and a loop that a
 /// wrong length locks.
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");

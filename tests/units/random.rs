@@ -6,7 +6,7 @@ use linkwork_compiler::{read, resolve::build_model};
 use std::path::Path;
 use support::random::Random;
 
-/// Exponents of metre, kilogram and second.
+/// Physical dimension of a quantity, as exponents of metre, kilogram and second.
 type Dimension = [i32; 3];
 
 const PLAIN: Dimension = [0, 0, 0];
@@ -24,7 +24,7 @@ const PARAMETERS: [(&str, Dimension); 7] = [
     ("j", [2, 1, 0]),
 ];
 
-/// Quantities of the motion.
+/// Expressions for quantities of the motion, such as coordinates and velocities, with their dimensions.
 const MOTION: [(&str, Dimension); 12] = [
     ("rail", [1, 0, 0]),
     ("hinge", PLAIN),
@@ -63,7 +63,7 @@ fn machine(more: &str) -> String {
     )
 }
 
-/// Returns the messages for a machine with an additional element, one for each.
+/// Returns the error messages for a machine with an additional element; each message is one string.
 fn messages(more: &str) -> Vec<String> {
     let mut cx = Diagnostics::new();
     let source = read("".parse().unwrap(), machine(more).parse().unwrap(), Path::new(""), &mut cx).unwrap();
@@ -71,7 +71,7 @@ fn messages(more: &str) -> Vec<String> {
     cx.messages()
 }
 
-/// Returns a random integer less than `n`.
+/// Returns a random integer from zero to `n − 1`.
 fn random_index(n: usize, random: &mut Random) -> usize {
     ((random.uniform(0.5) + 0.5) * n as f64) as usize % n
 }
@@ -141,7 +141,7 @@ fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     }
 }
 
-/// Returns a sum of terms of this dimension, one of which contains a parameter.
+/// Returns the text of a random sum of terms of the given dimension; one term contains a parameter.
 fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let mut text = anchored(dimension, depth, random);
     for _ in 0..random_index(3, random) {
@@ -154,7 +154,7 @@ fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String
     text
 }
 
-/// Returns another dimension.
+/// Returns a random dimension other than the given one.
 fn another(dimension: Dimension, random: &mut Random) -> Dimension {
     loop {
         let other = std::array::from_fn(|k| dimension[k] + random_index(5, random) as i32 - 2);
@@ -164,7 +164,7 @@ fn another(dimension: Dimension, random: &mut Random) -> Dimension {
     }
 }
 
-/// Returns a sum in which the unit of one term is inconsistent.
+/// Returns the text of a random sum in which one term has an inconsistent dimension.
 fn wrong(dimension: Dimension, random: &mut Random) -> String {
     let (good, bad) = (expression(dimension, 1, random), anchored(another(dimension, random), 1, random));
     match random_index(6, random) {

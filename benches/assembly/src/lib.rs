@@ -16,7 +16,7 @@ pub struct Panda;
 #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives, packed)]
 pub struct Solo12;
 
-/// Humanoid with 35 velocities.
+/// Humanoid robot with 35 velocities: a free base and 29 joints.
 #[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, derivatives, packed)]
 pub struct Humanoid;
 
@@ -93,7 +93,7 @@ macro_rules! call_into {
     };
 }
 
-/// Expands to the type of an argument.
+/// Expands to the vector type of the argument with this name.
 macro_rules! vector {
     ($type:ident, q) => {
         SVector<f64, { $type::NQ }>
@@ -132,7 +132,7 @@ functions!(panda, Panda);
 functions!(solo12, Solo12);
 functions!(humanoid, Humanoid);
 
-/// Functions of [`SliderCrank`].
+/// Functions that call the generated functions of [`SliderCrank`].
 pub mod slider_crank {
     use super::*;
 

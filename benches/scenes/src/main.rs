@@ -17,8 +17,9 @@ use linkwork::prelude::*;
 use linkwork::simulate::Overlaps;
 use rustix::time::{ClockId, clock_gettime};
 
-/// Boxes on the ground and on each other, the pairs by the difference of their indices. The mass of a box is
-/// `exp(grade)` times that of the one before, and its lengths are `exp(taper)` times as long.
+/// Declares a mechanism of boxes on the ground and on each other. The contact pairs are listed by the
+/// difference of the boxes' indices; each box has `exp(grade)` times the mass of the previous one, and
+/// `exp(taper)` times its lengths.
 macro_rules! boxes {
     ($name:ident, $n:tt, $($d:tt $field:ident $count:tt),*) => {
         #[mechanism(gravity = -9.81 * z)]
@@ -193,7 +194,7 @@ struct Tower {
     seat: [Contact; 9],
 }
 
-/// Reproducible numbers.
+/// Reproducible random numbers.
 struct Random(u64);
 
 impl Random {
@@ -211,13 +212,13 @@ impl Random {
     }
 }
 
-/// Time of the thread, µs.
+/// Processor time of this thread, µs.
 fn now() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
 }
 
-/// Statistics of the runs of a family.
+/// Statistics of all runs of one family of scenes.
 #[derive(Default)]
 struct Tally {
     runs: usize,
@@ -281,11 +282,12 @@ fn run<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     }
 }
 
-/// Prints a row.
+/// Prints the row of a family of scenes in the table.
 fn report(name: &str, mut tally: Tally) {
     let times = &mut tally.times;
     times.sort_by(f64::total_cmp);
-    let quantile = |part: f64| times.get((times.len() as f64 * part) as usize).copied().unwrap_or(0.0);
+    let quantile_of_times =
+        |part: f64| times.get((times.len() as f64 * part) as usize).copied().unwrap_or(0.0);
     let mean = times.iter().sum::<f64>() / times.len() as f64;
     println!(
         "{name:10} runs {} errors {} NaN {} | steps {} mean {mean:.1} median {:.1} p99.9 {:.1} | gain {:.1e} \
@@ -294,8 +296,8 @@ fn report(name: &str, mut tally: Tally) {
         tally.errors,
         tally.nans,
         times.len(),
-        quantile(0.5),
-        quantile(0.999),
+        quantile_of_times(0.5),
+        quantile_of_times(0.999),
         tally.gain,
         tally.depth,
         tally.relaxed,
@@ -303,7 +305,7 @@ fn report(name: &str, mut tally: Tally) {
     );
 }
 
-/// Sets the pose of a body.
+/// Sets the pose of body `k`: its position and its quaternion.
 fn place<const NQ: usize>(q: &mut SVector<f64, NQ>, k: usize, at: [f64; 3], turn: [f64; 4]) {
     for i in 0..3 {
         q[7 * k + i] = at[i];
@@ -384,7 +386,7 @@ fn row<const NQ: usize, const NV: usize>(n: usize) -> (SVector<f64, NQ>, SVector
     (q, v)
 }
 
-/// Steps of the fixed scenes.
+/// Measures the steps of the scenes with fixed initial states.
 fn fixed_scenes() {
     let methods = [
         ("4 evaluations", TimeStepping::step(1e-3)),
@@ -392,15 +394,26 @@ fn fixed_scenes() {
         ("1", TimeStepping::step(1e-3).leapfrog()),
     ];
     for (text, method) in methods {
-        let scene = |name, size, duration| Scene { name, seed: 0, size, method, h: 1e-3, duration };
+        let build_fixed_scene =
+            |name, size, duration| Scene { name, seed: 0, size, method, h: 1e-3, duration };
         println!("evaluations of the dynamics in a step: {text}");
         let (mass, grade, taper, e) = (0.02, 0.0, 0.0, 0.0);
         let (a, b, c, mu) = (0.008, 0.025, 0.05, 0.3);
         let mut tally = Tally::default();
-        run(&scene("bricks", a, 1.0), &Boxes2 { mass, grade, a, b, c, taper, mu, e }, row(2), &mut tally);
+        run(
+            &build_fixed_scene("bricks", a, 1.0),
+            &Boxes2 { mass, grade, a, b, c, taper, mu, e },
+            row(2),
+            &mut tally,
+        );
         report("bricks", tally);
         let mut tally = Tally::default();
-        run(&scene("dominoes", a, 1.0), &Dominoes { mass, grade, a, b, c, taper, mu, e }, row(5), &mut tally);
+        run(
+            &build_fixed_scene("dominoes", a, 1.0),
+            &Dominoes { mass, grade, a, b, c, taper, mu, e },
+            row(5),
+            &mut tally,
+        );
         report("dominoes", tally);
         let m = Boxes3 { mass: 1.0, grade, a: 0.3, b: 0.2, c: 0.1, taper, mu: 0.5, e };
         let (mut q, mut v) = (SVector::zeros(), SVector::zeros());
@@ -410,19 +423,19 @@ fn fixed_scenes() {
             v[6 * k + 3] = 1.0 + s;
         }
         let mut tally = Tally::default();
-        run(&scene("tumbling", 0.1, 1.5), &m, (q, v), &mut tally);
+        run(&build_fixed_scene("tumbling", 0.1, 1.5), &m, (q, v), &mut tally);
         report("tumbling", tally);
         let mut q = Tower {}.neutral();
         for k in 0..10 {
             (q[7 * k], q[7 * k + 2]) = (0.02 * ((k % 3) as f64 - 1.0), 0.05 + 0.1 * k as f64);
         }
         let mut tally = Tally::default();
-        run(&scene("tower", 0.1, 0.2), &Tower {}, (q, SVector::zeros()), &mut tally);
+        run(&build_fixed_scene("tower", 0.1, 0.2), &Tower {}, (q, SVector::zeros()), &mut tally);
         report("tower", tally);
     }
 }
 
-/// Runs random scenes of all families, or of one.
+/// Runs random scenes of all families, or of the family with this name.
 fn random_scenes(count: u64, first: u64, which: &str) {
     macro_rules! family {
         ($name:ident, $n:tt, $nq:tt, $nv:tt, |$random:ident, $mu:ident, $e:ident, $grade:ident| $scene:expr) => {
@@ -473,18 +486,18 @@ fn random_scenes(count: u64, first: u64, which: &str) {
     });
     family!(Mixed, 5, 35, 30, |random, mu, e, grade| {
         let s = random.uniform(0.02, 0.1);
-        let halves = move |k: usize| match k {
+        let half_lengths_of_body = move |k: usize| match k {
             0 => [s, 0.75 * s, 0.5 * s],
             1 => [1.5 * s, s / 2.0, s / 2.0],
             2 => [s, s, 0.75 * s],
             3 => [s; 3],
             _ => [s / 2.0; 3],
         };
-        (Mixed { mass: 0.3, grade, s, mu, e }, Box::new(halves), s)
+        (Mixed { mass: 0.3, grade, s, mu, e }, Box::new(half_lengths_of_body), s)
     });
 }
 
-/// Runs what the arguments ask for.
+/// Runs the fixed or random scenes that the arguments of the command ask for.
 fn all() {
     let mut arguments = std::env::args().skip(1);
     let count = arguments.next().and_then(|x| x.parse().ok()).unwrap_or(20);

@@ -147,8 +147,8 @@ fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
     if !status.success() {
         return Err("the package does not compile".to_string());
     }
-    let read = |error: std::io::Error| error.to_string();
-    Ok((fs::read_to_string(text).map_err(read)?, fs::read(object).map_err(read)?))
+    let error_message = |error: std::io::Error| error.to_string();
+    Ok((fs::read_to_string(text).map_err(error_message)?, fs::read(object).map_err(error_message)?))
 }
 
 /// Returns the size of every function in an object file, bytes.
@@ -174,7 +174,7 @@ fn parts<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'
     parts
 }
 
-/// Returns a message for each call outside of the file's functions and the documented ones.
+/// Returns a message for each call of a function that is neither in the file nor on the documented list.
 fn undocumented(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) -> Vec<String> {
     let mut wrong = Vec::new();
     for symbol in symbols {

@@ -51,8 +51,9 @@ fn main() {
 
 /// Packs the states into lanes, `L` states each.
 fn wide<const L: usize, const N: usize>(states: &[SVector<f64, N>]) -> Vec<SVector<Lanes<f64, L>, N>> {
-    let group = |group: &[SVector<f64, N>]| SVector::from_fn(|i, _| Lanes::from_fn(|k| group[k][i]));
-    states.chunks_exact(L).map(group).collect()
+    let pack_group_into_lanes =
+        |group: &[SVector<f64, N>]| SVector::from_fn(|i, _| Lanes::from_fn(|k| group[k][i]));
+    states.chunks_exact(L).map(pack_group_into_lanes).collect()
 }
 
 /// States as single vectors, and packed into 4 and 8 lanes.

@@ -40,7 +40,7 @@ struct Humanoid {
 type Stepping = TimeStepping<f64>;
 type End = Sample<f64, 19, 18, 12>;
 
-/// Target angles of the drives, rad.
+/// Target angles of the three joint drives of each leg, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 
 /// Returns the torques of springs and dampers at the joints, with the given stiffness, N·m/rad. With zero
@@ -49,7 +49,7 @@ fn drives(q: &SVector<f64, 19>, v: &SVector<f64, 18>, stiffness: f64) -> SVector
     SVector::from_fn(|k, _| stiffness * (POSTURE[k % 3] - q[7 + k] - 0.025 * v[6 + k]))
 }
 
-/// Returns the state after `duration` seconds.
+/// Returns the state of the quadruped after `duration` seconds.
 fn end(
     m: &Solo,
     start: (SVector<f64, 19>, SVector<f64, 18>),
@@ -68,16 +68,16 @@ fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, m
     })
 }
 
-/// Returns the processor time of one of `steps` steps, µs: the minimum over several runs.
+/// Returns the processor time per step of a run of `steps` steps, µs: the minimum over several runs.
 fn least(steps: f64, run: impl Fn()) -> f64 {
-    let now = || {
+    let cpu_time_in_microseconds = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
     };
     let times = (0..30).map(|_| {
-        let begin = now();
+        let begin = cpu_time_in_microseconds();
         run();
-        now() - begin
+        cpu_time_in_microseconds() - begin
     });
     times.fold(f64::INFINITY, f64::min) / steps
 }
@@ -89,30 +89,37 @@ fn humanoid(method: Stepping) -> [f64; 4] {
     let high = m.neutral();
     let mut low = high;
     low[2] -= m.contact_gaps(&high).min() - 0.01;
-    let end = |(q, v): (SVector<f64, 36>, SVector<f64, 35>), stiffness: f64, duration: f64| {
-        let drives = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
+    let simulate_final_state = |(q, v): (SVector<f64, 36>, SVector<f64, 35>),
+                                stiffness: f64,
+                                duration: f64| {
+        let posture_control_torques = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
             SVector::from_fn(|k, _| -stiffness * (q[7 + k] + 0.05 * v[6 + k]))
         };
-        let run = simulate(&m).from(q, v).inputs(move |_, q, v| drives(q, v)).method(method);
+        let run = simulate(&m).from(q, v).inputs(move |_, q, v| posture_control_torques(q, v)).method(method);
         let end = run.duration(duration).finish().expect("the robot moves");
         (end.q, end.v)
     };
     let still = SVector::zeros();
-    let stands = end((low, still), 1e4, 8.0);
-    let creep = (end(stands, 1e4, 1.0).0 - stands.0).fixed_rows::<3>(0).norm();
+    let stands = simulate_final_state((low, still), 1e4, 8.0);
+    let creep = (simulate_final_state(stands, 1e4, 1.0).0 - stands.0).fixed_rows::<3>(0).norm();
     let mut up = low;
     up[2] += 100.0;
-    let time = |start, stiffness| {
+    let measure_simulation_time = |start, stiffness| {
         least(500.0, || {
-            end(start, stiffness, 0.5);
+            simulate_final_state(start, stiffness, 0.5);
         })
     };
-    [time(stands, 1e4), time((low, still), 0.0), time((up, still), 1e4), creep]
+    [
+        measure_simulation_time(stands, 1e4),
+        measure_simulation_time((low, still), 0.0),
+        measure_simulation_time((up, still), 1e4),
+        creep,
+    ]
 }
 
 /// Returns the table values for one kind of step as JSON.
 fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
-    let posed = |m: &Solo, height: f64| {
+    let standing_state_at_height = |m: &Solo, height: f64| {
         let mut q = m.neutral();
         q[2] = height;
         (0..12).for_each(|k| q[7 + k] = POSTURE[k % 3]);
@@ -120,19 +127,19 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
     };
     let method = stepping(1e-3);
     let (level, inclined) = (Solo { slope: 0.0 }, Solo { slope: 10.0_f64.to_radians() });
-    let drop = posed(&level, 0.26);
+    let drop = standing_state_at_height(&level, 0.26);
     let rest_state = |m: &Solo| {
         let end = end(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
     // Velocity over the following second, m/s.
-    let creep = |m: &Solo| {
+    let creep_distance = |m: &Solo| {
         let from = rest_state(m);
         (end(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()
     };
     let stands = rest_state(&level);
     let depth = -level.contact_gaps(&stands.0).min();
-    let difference = |h: f64| {
+    let error_of_step_size = |h: f64| {
         let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, stepping(h), 0.2).q);
         (coarse - fine).fixed_rows::<3>(0).norm()
     };
@@ -144,12 +151,12 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
         ("humanoid_creep", humanoid_creep),
         ("standing", time(&level, stands, 6.0, method)),
         ("collapsing", time(&level, drop, 0.0, method)),
-        ("free", time(&level, posed(&level, 100.0), 6.0, method)),
+        ("free", time(&level, standing_state_at_height(&level, 100.0), 6.0, method)),
         ("depth", depth),
-        ("creep", creep(&level)),
-        ("inclined", creep(&inclined)),
-        ("one", difference(1e-3)),
-        ("two", difference(2e-3)),
+        ("creep", creep_distance(&level)),
+        ("inclined", creep_distance(&inclined)),
+        ("one", error_of_step_size(1e-3)),
+        ("two", error_of_step_size(2e-3)),
     ];
     let all = all.map(|(name, value)| format!("\"{name}\": {value}"));
     format!("{{{}}}", all.join(", "))

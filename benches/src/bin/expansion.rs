@@ -36,7 +36,7 @@ const DOUBLE_PENDULUM: &str = "pub struct DoublePendulum {
     #[joint(upper.at(-l1 * y) -> lower, about = z)] elbow: Pin,
 }";
 
-/// Name, options of the file, target time.
+/// Name, options of the file, and target time of each robot.
 const ROBOTS: [(&str, &str, &str); 4] = [
     ("ur5", "", ""),
     ("panda", ", mimic = independent", "150 ms"),
@@ -50,13 +50,15 @@ const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Returns name, target time and text of every mechanism.
 fn mechanisms() -> Vec<(String, &'static str, Source)> {
-    let mechanism = |name: &str, goal, item: &str| {
+    let named_mechanism_source = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
         let item = item.to_string();
         (name.to_string(), goal, Source { arguments, item })
     };
-    let mut list =
-        vec![mechanism("CartPole", "20 ms", CART_POLE), mechanism("DoublePendulum", "", DOUBLE_PENDULUM)];
+    let mut list = vec![
+        named_mechanism_source("CartPole", "20 ms", CART_POLE),
+        named_mechanism_source("DoublePendulum", "", DOUBLE_PENDULUM),
+    ];
     for (name, options, goal) in ROBOTS {
         let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
         let item = "pub struct Robot;".to_string();
@@ -98,7 +100,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Prints the line of a mechanism.
+/// Prints the table line of mechanism `k`.
 fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
     let mechanisms = mechanisms();
     let (name, goal, source) = mechanisms.get(k).ok_or("there is no such mechanism")?;
@@ -130,7 +132,7 @@ fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns a line of the table.
+/// Returns the table line of a mechanism.
 fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arguments: TokenStream = source.arguments.parse()?;
@@ -149,19 +151,19 @@ fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<St
             break;
         }
     }
-    let ms = |time: Duration| time.as_secs_f64() * 1e3;
+    let duration_in_milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let derived = Operations::compile(&source.arguments, &source.item);
-    let operations = |name: &str| derived.function(name).operations;
+    let operations_of_function = |name: &str| derived.function(name).operations;
     Ok(format!(
         "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",
         derived.velocities,
-        ms(whole),
-        ms(derivation),
+        duration_in_milliseconds(whole),
+        duration_in_milliseconds(derivation),
         output.len() as f64 / 1e3,
         derived.nodes,
-        operations("mass_matrix"),
-        operations("inverse_dynamics"),
-        operations("forward_dynamics"),
+        operations_of_function("mass_matrix"),
+        operations_of_function("inverse_dynamics"),
+        operations_of_function("forward_dynamics"),
         rustc.time.as_secs_f64(),
         rustc.memory / 1e6
     ))

@@ -41,7 +41,7 @@ fn main() -> Result<(), Error> {
 /// A state: configuration, velocity, and acceleration or force.
 type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
-/// Prints the rows of a robot.
+/// Prints the rows of a robot: each function loaded at run time and compiled in.
 fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     file: &str,
@@ -85,7 +85,7 @@ where
     )
 }
 
-/// A robot that is loaded, and states to call it with.
+/// Robot that is loaded at run time, and the states at which its functions are called.
 struct Comparison<'a, const NQ: usize, const NV: usize> {
     name: &'a str,
     robot: &'a Robot,
@@ -93,7 +93,7 @@ struct Comparison<'a, const NQ: usize, const NV: usize> {
 }
 
 impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
-    /// Prints the row of a function.
+    /// Measures one function loaded and compiled in, and prints its row.
     fn measure<T>(
         &self,
         function: &str,
@@ -136,7 +136,7 @@ impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
         self.robot.evaluate_into(f, &all[..count], out)
     }
 
-    /// Panics if results differ.
+    /// Panics if the results of the loaded and the compiled function differ.
     fn agree(&self, function: &str, loaded: &[f64], compiled: &[f64]) {
         let scale = compiled.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
         let difference = loaded.iter().zip(compiled).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));

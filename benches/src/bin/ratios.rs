@@ -47,8 +47,8 @@ fn measure(pair: &mut Pair) -> (f64, f64) {
         generated = generated.min(batch(&mut pair.generated));
         generic = generic.min(batch(&mut pair.generic));
     }
-    let each = |time: Duration| time.as_secs_f64() * 1e9 / STATES as f64;
-    (each(generated), each(generic))
+    let nanoseconds_per_state = |time: Duration| time.as_secs_f64() * 1e9 / STATES as f64;
+    (nanoseconds_per_state(generated), nanoseconds_per_state(generic))
 }
 
 fn batch(f: &mut dyn FnMut(usize)) -> Duration {

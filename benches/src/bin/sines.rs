@@ -17,7 +17,7 @@ const BUDGET: Duration = Duration::from_millis(300);
 /// Number of configurations that the calls cycle through.
 const STATES: usize = 64;
 
-/// Largest angle, rad.
+/// Largest angle at which sines and cosines are compared, rad.
 const BOUND: f64 = 1e4;
 
 /// Sines and cosines of `N` angles.

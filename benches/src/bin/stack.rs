@@ -15,9 +15,9 @@ use std::thread;
 const PAINTED: usize = 6 << 20;
 /// Reserve for the filling function itself, bytes: smaller values cannot be measured.
 const MARGIN: usize = 512;
-/// Stack of the thread, bytes.
+/// Size of the stack of the measuring thread, bytes.
 const STACK: usize = PAINTED + (2 << 20);
-/// Pattern that fills the stack.
+/// Byte pattern that fills the unused stack, so that the deepest use can be found.
 const PAINT: u8 = 0xA5;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", batch, derivatives)]

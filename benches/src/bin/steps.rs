@@ -13,7 +13,7 @@ use linkwork_benches::states::{STATES, State, states};
 use std::path::Path;
 use std::rc::Rc;
 
-/// The period of a step, s.
+/// Step size, s.
 const PERIOD: f64 = 0.01;
 /// Time for the measurement of each implementation, s.
 const BUDGET: f64 = 0.2;
@@ -60,7 +60,7 @@ fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     Box::new(Own { owner, mechanism, states, name, call })
 }
 
-/// Result whose values are not compared.
+/// Result of a call whose values are not compared.
 struct Unread<R>(R);
 
 impl<R> Flat for Unread<R> {
@@ -93,10 +93,10 @@ where
             return Err(wrong.join("\n"));
         }
         let measured = time(&mut all, STATES, BUDGET);
-        let least = |owner| {
+        let shortest_time_of_owner = |owner| {
             measured.iter().filter(|m| m.owner == owner).map(|m| m.time).fold(f64::INFINITY, f64::min)
         };
-        let (ours, theirs) = (least(Owner::Linkwork), least(Owner::Casadi));
+        let (ours, theirs) = (shortest_time_of_owner(Owner::Linkwork), shortest_time_of_owner(Owner::Casadi));
         println!(
             "| {name} | step with Jacobians | {ours:.0} | CasADi C | {theirs:.0} | {:.1} × |",
             theirs / ours
@@ -134,9 +134,9 @@ fn main() -> Result<(), String> {
     let folder = folder.as_deref().map(Path::new);
     println!("| robot | function | ns | next to | ns | ratio |");
     println!("| --- | --- | ---: | --- | ---: | ---: |");
-    let read = |text: &str, lock| Model::from_urdf(text, &Options { free: false, lock });
-    measure("ur5", Ur5, &read(include_str!("../../../models/urdf/ur5.urdf"), &[])?, folder)?;
+    let read_fixed_base_urdf = |text: &str, lock| Model::from_urdf(text, &Options { free: false, lock });
+    measure("ur5", Ur5, &read_fixed_base_urdf(include_str!("../../../models/urdf/ur5.urdf"), &[])?, folder)?;
     let locked = &["panda_finger_joint1", "panda_finger_joint2"];
-    let panda = read(include_str!("../../../models/urdf/panda.urdf"), locked)?;
+    let panda = read_fixed_base_urdf(include_str!("../../../models/urdf/panda.urdf"), locked)?;
     measure("panda_arm", PandaArm, &panda, folder)
 }

@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// Twist (velocity of the origin, angular velocity) or wrench (force, moment about the origin).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spatial {
-    /// Velocity of the origin, or force.
+    /// Linear velocity of the origin, or force.
     pub linear: Vector3<f64>,
     /// Angular velocity, or moment about the origin.
     pub angular: Vector3<f64>,
@@ -18,12 +18,12 @@ impl Spatial {
         Spatial { linear, angular }
     }
 
-    /// Returns the zero vector.
+    /// Returns the spatial vector of zeros.
     pub fn zero() -> Spatial {
         Spatial::new(Vector3::zeros(), Vector3::zeros())
     }
 
-    /// Returns the unit vector with entry `k` one.
+    /// Returns the spatial unit vector whose entry `k` is one.
     pub fn unit(k: usize) -> Spatial {
         let mut s = Spatial::zero();
         let part = if k < 3 { &mut s.linear } else { &mut s.angular };
@@ -36,13 +36,13 @@ impl Spatial {
         Spatial::new(Vector3::new(s[0], s[1], s[2]), Vector3::new(s[3], s[4], s[5]))
     }
 
-    /// Returns all six numbers.
+    /// Returns the six entries, linear before angular, as one vector.
     pub fn vector(&self) -> Vector6<f64> {
         let (l, a) = (self.linear, self.angular);
         Vector6::new(l.x, l.y, l.z, a.x, a.y, a.z)
     }
 
-    /// Applies a function to both parts.
+    /// Applies a function to the linear and to the angular part.
     pub fn map(&self, f: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Spatial {
         Spatial::new(f(&self.linear), f(&self.angular))
     }
@@ -106,7 +106,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Creates a placement from its parts.
+    /// Creates a placement from its rotation and translation.
     pub fn new(rotation: Matrix3<f64>, translation: Vector3<f64>) -> Placement {
         Placement { rotation, translation }
     }
@@ -174,7 +174,7 @@ impl Inertia {
         }
     }
 
-    /// Returns the momentum of a twist.
+    /// Returns the spatial momentum of a body with this inertia and twist.
     pub fn times(&self, t: &Spatial) -> Spatial {
         Spatial::new(
             t.linear * self.mass + t.angular.cross(&self.moment),
@@ -206,11 +206,11 @@ impl AddAssign for Inertia {
 /// Articulated inertia: force `m a + hᵀ w`, moment `h a + i w` for an acceleration `(a, w)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Articulated {
-    /// Block from linear acceleration to force.
+    /// Block of the articulated inertia that maps linear acceleration to force.
     pub m: Matrix3<f64>,
-    /// Block from linear acceleration to moment.
+    /// Block of the articulated inertia that maps linear acceleration to moment.
     pub h: Matrix3<f64>,
-    /// Block from angular acceleration to moment.
+    /// Block of the articulated inertia that maps angular acceleration to moment.
     pub i: Matrix3<f64>,
 }
 
@@ -224,7 +224,7 @@ impl Articulated {
         }
     }
 
-    /// Returns the wrench of an acceleration.
+    /// Returns the wrench that gives a body of this articulated inertia an acceleration.
     pub fn times(&self, a: &Spatial) -> Spatial {
         Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
     }
@@ -242,15 +242,15 @@ impl Articulated {
     /// Transforms the articulated inertia to the parent's origin and axes.
     pub fn to_parent(&self, placement: &Placement) -> Articulated {
         let r = &placement.rotation;
-        let rotate = |x: &Matrix3<f64>| r * x * r.transpose();
+        let rotate_matrix = |x: &Matrix3<f64>| r * x * r.transpose();
         let p = placement.translation.cross_matrix();
-        let m = rotate(&self.m);
-        let h = rotate(&self.h);
+        let m = rotate_matrix(&self.m);
+        let h = rotate_matrix(&self.h);
         let moved = h + p * m;
-        Articulated { m, h: moved, i: rotate(&self.i) - moved * p + p * h.transpose() }
+        Articulated { m, h: moved, i: rotate_matrix(&self.i) - moved * p + p * h.transpose() }
     }
 
-    /// Returns the acceleration that a wrench causes.
+    /// Returns the acceleration that a wrench causes by this articulated inertia.
     pub fn solve(&self, wrench: &Spatial) -> Spatial {
         let mut full = Matrix6::zeros();
         full.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.m);

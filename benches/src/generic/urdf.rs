@@ -5,7 +5,7 @@ use super::{Frame, Inertia, Link, Model, Motion, Placement};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node};
 
-/// Options of reading. Mimic joints are independent.
+/// Options for reading a robot file. Mimic joints are read as independent joints.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
     /// Whether the base is free.
@@ -18,10 +18,10 @@ pub struct Options<'a> {
 pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
     let document = Document::parse(text).map_err(|e| e.to_string())?;
     let robot = document.root_element();
-    let children = |kind: &'static str| robot.children().filter(move |n| n.has_tag_name(kind));
-    let mut joints: Vec<Node<'_, '_>> = children("joint").collect();
+    let children_with_tag = |kind: &'static str| robot.children().filter(move |n| n.has_tag_name(kind));
+    let mut joints: Vec<Node<'_, '_>> = children_with_tag("joint").collect();
     joints.sort_by_key(|joint| joint.attribute("name"));
-    let links: Vec<Node<'_, '_>> = children("link").collect();
+    let links: Vec<Node<'_, '_>> = children_with_tag("link").collect();
     let is_child = |link: &Node<'_, '_>| joints.iter().any(|j| end(j, "child") == link.attribute("name"));
     let root = links.iter().find(|link| !is_child(link)).ok_or("no root link")?;
     let mut reader = Reader {
@@ -41,7 +41,7 @@ pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
     Ok(reader.model)
 }
 
-/// Returns the name of the link at one end of a joint.
+/// Returns the name of the parent or child link of a joint.
 fn end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
     let node = joint.children().find(|n| n.has_tag_name(which))?;
     node.attribute("link")
@@ -121,10 +121,10 @@ fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
 
 /// Reads an `<inertial>` element about the link's origin.
 fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
-    let find = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
-    let mass = find("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;
+    let find_child_by_tag = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
+    let mass = find_child_by_tag("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;
     let mut entries = [0.0; 6];
-    if let Some(node) = find("inertia") {
+    if let Some(node) = find_child_by_tag("inertia") {
         for (entry, key) in entries.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
             *entry = number(&node, key)?;
         }

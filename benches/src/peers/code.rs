@@ -37,10 +37,10 @@ impl Sizes {
         let file = std::fs::read(&path).ok()?;
         let file = object::File::parse(&*file).ok()?;
         let offset = if file.kind() == ObjectKind::Dynamic { start } else { 0 };
-        let name = |symbol: &object::Symbol<'_, '_>| symbol.name().unwrap_or_default().to_string();
+        let symbol_name = |symbol: &object::Symbol<'_, '_>| symbol.name().unwrap_or_default().to_string();
         Some(Sizes {
             addresses: file.symbols().map(|symbol| (symbol.address() + offset, symbol.size())).collect(),
-            names: file.symbols().map(|symbol| (name(&symbol), symbol.size())).collect(),
+            names: file.symbols().map(|symbol| (symbol_name(&symbol), symbol.size())).collect(),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Functions and implementations that are measured.
+//! Functions that are measured, and their implementations by Linkwork and its peers.
 
 /// Function of dynamics. Results are stored in column-major order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Function {
         Function::ForwardDerivatives,
     ];
 
-    /// Returns the name in the table.
+    /// Returns the name of the function in the table.
     pub fn title(self) -> &'static str {
         match self {
             Function::Inverse => "inverse dynamics",
@@ -45,7 +45,7 @@ impl Function {
         }
     }
 
-    /// Returns the name of Linkwork's function.
+    /// Returns the name of Linkwork's generated function.
     pub fn name(self) -> &'static str {
         match self {
             Function::Inverse => "inverse_dynamics",
@@ -59,7 +59,7 @@ impl Function {
         }
     }
 
-    /// Returns the name in file names.
+    /// Returns the name of the function in file names.
     pub fn file(self) -> &'static str {
         match self {
             Function::Inverse => "inverse",
@@ -114,11 +114,11 @@ pub trait Contender {
     fn owner(&self) -> Owner;
     /// Returns the variant among the owner's implementations.
     fn variant(&self) -> String;
-    /// Evaluates every state once, one after another.
+    /// Evaluates the function once at every state, in order.
     fn pass(&mut self);
-    /// Returns the result of one state.
+    /// Returns the result at one state.
     fn result(&mut self, state: usize) -> Vec<f64>;
-    /// Returns the bytes of machine code, if they are known.
+    /// Returns the size of the machine code in bytes, if it is known.
     fn bytes(&self) -> Option<u64> {
         None
     }

@@ -23,7 +23,7 @@ type Step = unsafe extern "C" fn(*mut c_void, usize);
 type FindStep = unsafe extern "C" fn(*mut c_void, usize, usize) -> Option<Step>;
 type TakeResult = unsafe extern "C" fn(*mut c_void, usize, usize, *mut f64);
 
-/// States, with a row of numbers each.
+/// States for the calls, as a matrix with one row of numbers per state.
 #[derive(Clone, Copy)]
 pub struct Rows<'a> {
     /// Number of coordinates.
@@ -147,11 +147,11 @@ pub fn casadi(path: &Path, function: Function, rows: Rows<'static>) -> Option<Bo
         Function::Forward | Function::ForwardDerivatives | Function::Step => rows.nq + 2 * rows.nv,
         _ => rows.nq + rows.nv,
     };
-    let pointers = |row: &'static [f64]| [0, rows.nq, third].map(|start| row[start..].as_ptr());
+    let argument_pointers = |row: &'static [f64]| [0, rows.nq, third].map(|start| row[start..].as_ptr());
     Some(Box::new(Casadi {
         variant: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         call,
-        arguments: rows.numbers.chunks_exact(rows.length()).map(pointers).collect(),
+        arguments: rows.numbers.chunks_exact(rows.length()).map(argument_pointers).collect(),
         given: vec![std::ptr::null(); arguments],
         out: vec![0.0; function.columns(rows.nv) * rows.nv],
         results: vec![std::ptr::null_mut(); results],

@@ -1,5 +1,5 @@
-//! Comparison of generated functions with other libraries, in one process, interleaved, on the same states:
-//! shared parts of the programs.
+//! Shared parts of the programs that compare generated functions with other libraries: in one process,
+//! interleaved, on the same states.
 
 pub mod clock;
 mod code;

@@ -1,4 +1,4 @@
-//! Generated functions as contenders.
+//! Implementation of contenders by generated functions.
 
 use super::code;
 use super::contender::{Contender, Owner};
@@ -7,16 +7,16 @@ use linkwork::nalgebra::SMatrix;
 use std::hint::black_box;
 use std::rc::Rc;
 
-/// Function of the mechanism `M`.
+/// Closure type that calls one function of the mechanism `M` at a state.
 pub type Call<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<NQ, NV>) -> R;
 
 /// Generated function with its mechanism.
 pub struct Own<M, R, const NQ: usize, const NV: usize> {
     /// Variant of the generated code: with or without parameters.
     pub owner: Owner,
-    /// Mechanism of the function.
+    /// Mechanism whose function is called.
     pub mechanism: M,
-    /// Arguments of the calls.
+    /// States at which the function is called.
     pub states: Rc<Vec<State<NQ, NV>>>,
     /// Name of the function.
     pub name: &'static str,
@@ -51,9 +51,9 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
 
 /// Generated function that writes its results to `K` matrices with permanent zeros.
 pub struct Keeping<M, const NQ: usize, const NV: usize, const K: usize> {
-    /// Mechanism of the function.
+    /// Mechanism whose function is called.
     pub mechanism: M,
-    /// Arguments of the calls.
+    /// States at which the function is called.
     pub states: Rc<Vec<State<NQ, NV>>>,
     /// Name of the function.
     pub name: &'static str,
@@ -89,7 +89,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for Keeping<
     }
 }
 
-/// Results as lists of numbers.
+/// Conversion of results to lists of numbers.
 pub trait Flat {
     /// Returns all numbers in column-major order.
     fn flat(&self) -> Vec<f64>;

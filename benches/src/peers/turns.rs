@@ -62,28 +62,30 @@ pub fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
     }))
 }
 
-/// Returns the largest number, or NaN if there is one.
+/// Returns the largest number, or NaN if one of the numbers is NaN.
 pub fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
 /// Measures the contenders in turns, each for `budget` seconds. The result is the minimum time.
 pub fn time(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -> Vec<Measured> {
-    let seconds = |contender: &mut Box<dyn Contender>, passes: usize| {
+    let seconds_per_pass = |contender: &mut Box<dyn Contender>, passes: usize| {
         let start = clock::seconds();
         for _ in 0..passes {
             contender.pass();
         }
         (clock::seconds() - start) / passes as f64
     };
-    let once = |contender: &mut Box<dyn Contender>| (seconds(contender, 1), seconds(contender, 1)).1;
+    let seconds_after_warmup = |contender: &mut Box<dyn Contender>| {
+        (seconds_per_pass(contender, 1), seconds_per_pass(contender, 1)).1
+    };
     let passes: Vec<usize> =
-        contenders.iter_mut().map(|c| (BATCH / once(c)).ceil().max(1.0) as usize).collect();
+        contenders.iter_mut().map(|c| (BATCH / seconds_after_warmup(c)).ceil().max(1.0) as usize).collect();
     let mut least = vec![f64::INFINITY; contenders.len()];
     let end = clock::seconds() + budget * contenders.len() as f64;
     while clock::seconds() < end {
         for (k, contender) in contenders.iter_mut().enumerate() {
-            least[k] = least[k].min(seconds(contender, passes[k]));
+            least[k] = least[k].min(seconds_per_pass(contender, passes[k]));
         }
     }
     let measured = contenders.iter().zip(least).map(|(contender, least)| Measured {

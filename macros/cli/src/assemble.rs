@@ -15,13 +15,13 @@ const SATISFIED: f64 = 1e-10;
 /// Number of perturbed initial configurations from which a mechanism is assembled.
 const ASSEMBLIES: u8 = 50;
 
-/// Constraints of a mechanism, by joint velocities.
+/// Constraints of a mechanism, evaluated for its assembly.
 pub struct Assembly<'a, 'g> {
     pub robot: &'a Robot,
     pub model: &'a Model<'g>,
 }
 
-/// Returns the indices of marked entries.
+/// Returns the indices of the entries that are true.
 fn indices(marks: &[bool]) -> Vec<usize> {
     (0..marks.len()).filter(|k| marks[*k]).collect()
 }
@@ -71,11 +71,11 @@ impl Assembly<'_, '_> {
     fn evaluated(&self, name: &str, arguments: &[(&str, &[f64])]) -> Option<Vec<f64>> {
         let f = self.robot.function(name).ok()?;
         let time = [0.0];
-        let find = |(name, _): &(&str, usize)| match *name {
+        let find_argument_values = |(name, _): &(&str, usize)| match *name {
             "t" => Some(&time[..]),
             name => arguments.iter().find(|(known, _)| *known == name).map(|(_, values)| *values),
         };
-        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(find).collect();
+        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(find_argument_values).collect();
         self.robot.evaluate(&f, &arguments?).ok()
     }
 
@@ -91,17 +91,18 @@ impl Assembly<'_, '_> {
             let near = near.as_slice();
             let Some(jacobian) = self.evaluated("constraint_jacobian", &[("q", near)]) else { continue };
             let rows = self.model.constraints.len();
-            let column = |k: usize| &jacobian[k * rows..(k + 1) * rows];
+            let jacobian_column = |k: usize| &jacobian[k * rows..(k + 1) * rows];
             for k in 0..n {
-                unreached[1][k] &= column(k).iter().all(|entry| *entry == 0.0);
+                unreached[1][k] &= jacobian_column(k).iter().all(|entry| *entry == 0.0);
                 let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
                 let speeds = match self.model.speeds.is_some() {
                     true => self.evaluated("speeds_of_rates", &[("q", near), ("v", &unit), ("rates", &unit)]),
                     false => Some(unit),
                 };
                 let speeds = speeds.unwrap_or_else(|| vec![1.0; n]);
-                let reaches = |i: usize| (0..n).map(|j| column(j)[i] * speeds[j]).sum::<f64>() != 0.0;
-                unreached[0][k] &= !(0..rows).any(reaches);
+                let has_nonzero_velocity =
+                    |i: usize| (0..n).map(|j| jacobian_column(j)[i] * speeds[j]).sum::<f64>() != 0.0;
+                unreached[0][k] &= !(0..rows).any(has_nonzero_velocity);
             }
         }
         unreached
@@ -169,16 +170,16 @@ impl Assembly<'_, '_> {
     /// Subtracts whole revolutions from angles that differ by more than half a revolution from the guess, if
     /// the constraints remain satisfied: from all angles together, or otherwise from each one separately.
     fn unwound(&self, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
-        let unwind = |mut q: Vec<f64>, k: usize| {
+        let unwind_angle = |mut q: Vec<f64>, k: usize| {
             q[k] -= 2.0 * PI * ((q[k] - guess[k]) / (2.0 * PI)).round();
             q
         };
-        let all = self.angles().fold(q.clone(), unwind);
+        let all = self.angles().fold(q.clone(), unwind_angle);
         if all == q || self.holds(&all) {
             return all;
         }
         self.angles().fold(q, |q, k| {
-            let next = unwind(q.clone(), k);
+            let next = unwind_angle(q.clone(), k);
             if self.holds(&next) { next } else { q }
         })
     }

@@ -1,4 +1,4 @@
-//! `linkwork check`: lists every error with its location.
+//! The command `linkwork check`: lists every error with its location.
 
 use crate::Stop;
 use crate::input::{Input, Mistake};

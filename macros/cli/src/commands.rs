@@ -79,7 +79,7 @@ pub fn command() -> Command {
         .subcommand(export())
 }
 
-/// Returns the definition of `linkwork view`.
+/// Returns the definition of the subcommand `linkwork view`.
 pub fn view() -> Command {
     with_motion(with_input(
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
@@ -163,7 +163,7 @@ fn export_kernels(name: &'static str, about: &'static str) -> Command {
     with_source_options(Command::new(name).about(about), "Output folder of the files")
 }
 
-/// Adds the options of exported sources.
+/// Adds the options that all exports of source code share.
 fn with_source_options(command: Command, folder: &'static str) -> Command {
     with_input(command)
         .arg(text("out", "FOLDER", folder).short('o').default_value(".").value_parser(value_parser!(PathBuf)))
@@ -269,7 +269,7 @@ fn with_start(command: Command) -> Command {
 
 fn with_motion(command: Command) -> Command {
     let command = with_start(with_tables(command));
-    let number = |name, value, help| {
+    let number_argument = |name, value, help| {
         text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
     };
     command
@@ -277,9 +277,9 @@ fn with_motion(command: Command) -> Command {
             text("inputs", "FILE", "Inputs over time: comma-separated values with the columns t and u.…")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(number("duration", "SECONDS", "Duration of the motion [default: 10]"))
-        .arg(number("every", "SECONDS", "Time between samples [default: 1/60]"))
-        .arg(number("tolerance", "NUMBER", "Relative and absolute error of a step [default: 1e-8]"))
+        .arg(number_argument("duration", "SECONDS", "Duration of the motion [default: 10]"))
+        .arg(number_argument("every", "SECONDS", "Time between samples [default: 1/60]"))
+        .arg(number_argument("tolerance", "NUMBER", "Relative and absolute error of a step [default: 1e-8]"))
         .arg(
             text(
                 "method",
@@ -289,7 +289,7 @@ fn with_motion(command: Command) -> Command {
             )
             .value_parser(methods()),
         )
-        .arg(number("step", "SECONDS", "Step of methods with fixed steps [default: 1e-3]"))
+        .arg(number_argument("step", "SECONDS", "Step of methods with fixed steps [default: 1e-3]"))
         .arg(switch("without-contacts", "Ignores contacts: bodies pass through each other"))
 }
 

@@ -62,7 +62,7 @@ struct Struct<'a> {
     /// Names of drives on cable lengths that do not change with the motion.
     constant: BTreeSet<String>,
     fields: String,
-    /// Differences from the file.
+    /// Notes on what the converted struct does not take over from the file.
     notes: Vec<String>,
     /// Description of each renamed element with its name in the file, and its new name.
     renamed: Vec<(String, String)>,
@@ -181,7 +181,7 @@ impl<'a> Struct<'a> {
         name
     }
 
-    /// Adds a field for a named element of the file, and records its name if it differs.
+    /// Adds a field for a named element of the file, and records the name if it must be changed.
     fn declare(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
         let field = self.element(attribute, name, kind);
         self.rename(what, name, &field);
@@ -268,8 +268,8 @@ impl<'a> Struct<'a> {
             let motor = self.element(&attribute, &format!("{on}_motor"), push(joint.kind));
             self.rename("input", &joint.name.text, &motor);
         }
-        let geared = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
-        for drive in self.description.drives.iter().filter(geared) {
+        let is_driven_by_input = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
+        for drive in self.description.drives.iter().filter(is_driven_by_input) {
             if let [(joint, 1.0)] = drive.on.terms() {
                 let on = self.joints.field_or_same(&joint.text);
                 let kind = push(self.kind(&joint.text));

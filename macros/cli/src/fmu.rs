@@ -57,7 +57,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Start values, and whether the mechanism has derivatives of its motion.
+/// Start values of the variables, and whether the mechanism has derivatives of its motion.
 struct Values {
     start: StartValues,
     is_tree: bool,

@@ -80,9 +80,9 @@ impl Grid {
 
     /// Returns the table for interpolation; its values are leaked and live as long as the process.
     pub fn looked(&self) -> Result<AnyTable, TableError> {
-        let leaked = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
-        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| leaked(axis)).collect();
-        let values = leaked(&self.values);
+        let leak_to_static_slice = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
+        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| leak_to_static_slice(axis)).collect();
+        let values = leak_to_static_slice(&self.values);
         match axes[..] {
             [a] => Table::new([a], values).map(|table| self.shaped(table).into()),
             [a, b] => Table::new([a, b], values).map(|table| self.shaped(table).into()),
@@ -102,8 +102,9 @@ impl Grid {
 pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
     let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
     for given in matches.get_many::<String>("table").into_iter().flatten() {
-        let fail = |why: String| Stop::Failure(format!("`--table {given}`: {why}"));
-        let (name, rest) = given.split_once('=').ok_or_else(|| fail("expected NAME=FILE".to_string()))?;
+        let invalid_table_option = |why: String| Stop::Failure(format!("`--table {given}`: {why}"));
+        let (name, rest) =
+            given.split_once('=').ok_or_else(|| invalid_table_option("expected NAME=FILE".to_string()))?;
         let at = tables.iter().position(|(known, _)| known == name.trim()).ok_or_else(|| {
             let known: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
             let known = if known.is_empty() {
@@ -111,7 +112,7 @@ pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result
             } else {
                 format!("but {}", known.join(", "))
             };
-            fail(format!("there is no table `{}`, {known}", name.trim()))
+            invalid_table_option(format!("there is no table `{}`, {known}", name.trim()))
         })?;
         let (mut smooth, mut extrapolated, mut file) = (false, false, rest);
         while let Some((before, word)) = file.rsplit_once(',') {
@@ -122,10 +123,11 @@ pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result
             }
             file = before;
         }
-        let text = text_of(Path::new(file.trim())).map_err(fail)?;
-        let grid = Grid::parse(&text, tables[at].1).map_err(|why| fail(format!("{file}: {why}")))?;
+        let text = text_of(Path::new(file.trim())).map_err(invalid_table_option)?;
+        let grid =
+            Grid::parse(&text, tables[at].1).map_err(|why| invalid_table_option(format!("{file}: {why}")))?;
         if found[at].replace(Grid { smooth, extrapolated, ..grid }).is_some() {
-            return Err(fail(format!("the table `{}` is given twice", name.trim())));
+            return Err(invalid_table_option(format!("the table `{}` is given twice", name.trim())));
         }
     }
     let missing: Vec<String> = (tables.iter().zip(&found))

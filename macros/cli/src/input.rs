@@ -15,9 +15,9 @@ use proc_macro2::{Span, TokenStream};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// Arguments and struct of a `#[mechanism]`, with their origin.
+/// Arguments and struct of a `#[mechanism]`, with the file and folder that contain it.
 pub struct Input {
-    /// File, as named on the command line.
+    /// Path of the file, as named on the command line.
     pub file: PathBuf,
     /// Struct with its attribute.
     pub declaration: DeclaredStruct,
@@ -27,7 +27,7 @@ pub struct Input {
     pub is_robot: bool,
 }
 
-/// Mechanism without errors.
+/// Mechanism that was compiled without errors.
 pub struct Compiled<'g> {
     /// Parsed source.
     pub source: Source,
@@ -37,7 +37,7 @@ pub struct Compiled<'g> {
     pub output: Output,
 }
 
-/// Mechanism with machine code.
+/// Mechanism whose functions were compiled to machine code.
 pub struct Loaded<'g> {
     /// Parsed source.
     pub source: Source,
@@ -142,14 +142,14 @@ impl Input {
             Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
             None => (self.file.display().to_string(), (!self.is_robot).then(|| start(one.place().span))),
         };
-        let words = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
+        let reword_for_command = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
         Mistake {
             mechanism: Some(self.declaration.name.clone()),
             file,
             at,
-            message: words(&one.message().to_string()),
-            notes: one.notes().iter().map(words).collect(),
-            helps: one.helps().iter().map(words).collect(),
+            message: reword_for_command(&one.message().to_string()),
+            notes: one.notes().iter().map(reword_for_command).collect(),
+            helps: one.helps().iter().map(reword_for_command).collect(),
         }
     }
 }
@@ -166,8 +166,8 @@ fn for_command(text: &str) -> String {
         let Some(end) = said[at..].find(")]`").map(|end| at + end) else { break };
         let options = &said[at + "`#[mechanism(".len()..end];
         // The file is already named on the command line.
-        let is_own = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
-        let options: Vec<&str> = options.split(", ").skip_while(is_own).collect();
+        let has_string_value = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
+        let options: Vec<&str> = options.split(", ").skip_while(has_string_value).collect();
         let with = format!("`--with \"{}\"`", options.join(", "));
         said.replace_range(at..end + ")]`".len(), &with);
         from = at + with.len();
@@ -187,18 +187,18 @@ fn start(span: Span) -> (usize, usize) {
     (start.line, start.column + 1)
 }
 
-/// Error in a file.
+/// Error in a mechanism's source file.
 #[derive(Default)]
 pub struct Mistake {
     /// Name of the struct, if the error is in one.
     pub mechanism: Option<String>,
-    /// File.
+    /// Path of the file with the error.
     pub file: String,
     /// Line and column, both counted from one.
     pub at: Option<(usize, usize)>,
-    /// Error message.
+    /// Text of the error message.
     pub message: String,
-    /// Additional information.
+    /// Notes that follow the message.
     pub notes: Vec<String>,
     /// Suggested corrections.
     pub helps: Vec<String>,
@@ -221,24 +221,24 @@ impl std::fmt::Display for Mistake {
 
 /// Reads the text of a user's file, and limits its size.
 fn text_of(path: &Path) -> Result<String, Stop> {
-    let fail = |why: String| Stop::Failure(format!("{}: {why}", path.display()));
+    let read_failure = |why: String| Stop::Failure(format!("{}: {why}", path.display()));
     let about = std::fs::metadata(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => fail("there is no such file".to_string()),
-        _ => fail(error.to_string()),
+        ErrorKind::NotFound => read_failure("there is no such file".to_string()),
+        _ => read_failure(error.to_string()),
     })?;
     if !about.is_file() {
-        return Err(fail("expected a file".to_string()));
+        return Err(read_failure("expected a file".to_string()));
     }
     let mut bytes = Vec::new();
     let most = import::LARGEST_FILE as u64;
     std::fs::File::open(path)?
         .take(most + 1)
         .read_to_end(&mut bytes)
-        .map_err(|error| fail(error.to_string()))?;
+        .map_err(|error| read_failure(error.to_string()))?;
     if bytes.len() as u64 > most {
-        return Err(fail(format!("is larger than {} MiB", most >> 20)));
+        return Err(read_failure(format!("is larger than {} MiB", most >> 20)));
     }
-    String::from_utf8(bytes).map_err(|_| fail("is not UTF-8 text".to_string()))
+    String::from_utf8(bytes).map_err(|_| read_failure("is not UTF-8 text".to_string()))
 }
 
 /// Returns the mechanisms of a Rust file, including those in inline modules. Paths in them are relative to
@@ -254,29 +254,30 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     if found.is_empty() {
         return Err(Stop::Failure(format!("{}: there is no struct with `#[mechanism]`", path.display())));
     }
-    let input = |declaration| Input {
+    let input_from_declaration = |declaration| Input {
         declaration,
         file: path.to_path_buf(),
         folder: folder.clone(),
         is_robot: false,
     };
-    Ok(found.into_iter().map(input).collect())
+    Ok(found.into_iter().map(input_from_declaration).collect())
 }
 
 /// Returns a struct without fields whose arguments name a robot file.
 fn from_robot(path: &Path) -> Result<Input, Stop> {
     let is_known =
         path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)));
-    let unknown = || {
+    let unknown_file_type_failure = || {
         let (file, known) = (path.display(), ENDINGS.join("`, `."));
         Stop::Failure(format!(
             "{file}: unknown type of file: expected a Rust file (`.rs`), or a robot file (`.{known}`) with \
              an element `<robot>`, `<sdf>` or `<mujoco>`"
         ))
     };
-    let text = text_of(path).map_err(|stop| if is_known || !path.is_file() { stop } else { unknown() })?;
+    let text = text_of(path)
+        .map_err(|stop| if is_known || !path.is_file() { stop } else { unknown_file_type_failure() })?;
     if !is_known && !["<robot", "<sdf", "<mujoco"].iter().any(|element| text.contains(element)) {
-        return Err(unknown());
+        return Err(unknown_file_type_failure());
     }
     let declaration = DeclaredStruct::of_file(path, &text);
     // The path remains as written, so that messages show it, and is resolved in the current directory.

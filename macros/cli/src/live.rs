@@ -23,7 +23,8 @@ pub fn motion(start: &Start<'_, '_>, figure: Figure) -> Result<Motion, Stop> {
     let state = WebStart { q: &q, v: &v, x: &start.x, u: &start.u };
     let (data, module) = robot.web_data(&lower(&numbers), state)?;
     let placements = start.placements(0.0, &q, &start.x)?;
-    let heights = |number: usize, place: [f64; 2]| robot.terrain_heights(place)?.get(number).copied();
-    let motion = Motion::from_placements("", figure, vec![0.0], vec![placements])?.terrain(heights);
+    let terrain_height_at =
+        |number: usize, place: [f64; 2]| robot.terrain_heights(place)?.get(number).copied();
+    let motion = Motion::from_placements("", figure, vec![0.0], vec![placements])?.terrain(terrain_height_at);
     Ok(motion.simulated(data, module))
 }

@@ -25,13 +25,13 @@ mod zip;
 
 use std::process::ExitCode;
 
-/// Reason why a command stops.
+/// Reason why a subcommand stops early.
 enum Stop {
-    /// The mechanism has errors, which were printed.
+    /// The mechanism has errors, which have been printed.
     Mistakes,
     /// A syntax error of a file, with its location.
     Syntax(Box<input::Mistake>),
-    /// The command cannot be carried out.
+    /// The command cannot be carried out, for the reason in the text.
     Failure(String),
 }
 

@@ -1,4 +1,4 @@
-//! Initial state of a motion, and its simulation.
+//! Initial state of a motion, and the simulation from it.
 
 use crate::Stop;
 use crate::assemble::Assembly;
@@ -16,17 +16,17 @@ use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 use linkwork_jit::{Error, Inputs, Method, Robot};
 use std::path::PathBuf;
 
-/// State at one instant of a motion.
+/// Sample of a motion: the state at one instant.
 pub struct Sample {
     /// Time, s.
     pub t: f64,
-    /// Configuration.
+    /// Configuration at this instant.
     pub q: Vec<f64>,
-    /// Velocity.
+    /// Velocity at this instant.
     pub v: Vec<f64>,
-    /// States of first order.
+    /// States of first order at this instant.
     pub x: Vec<f64>,
-    /// Inputs.
+    /// Inputs at this instant.
     pub u: Vec<f64>,
 }
 
@@ -38,12 +38,12 @@ pub struct Start<'a, 'g> {
     pub model: &'a Model<'g>,
     /// Names of the states of first order.
     pub states: Vec<String>,
-    /// Configuration.
+    /// Initial configuration.
     pub q: Vec<f64>,
     v: Vec<f64>,
-    /// States of first order.
+    /// Initial states of first order.
     pub x: Vec<f64>,
-    /// Inputs.
+    /// Constant inputs of the motion.
     pub u: Vec<f64>,
     /// Whether each entry of the configuration and of the velocity was specified.
     given: [Vec<bool>; 2],
@@ -82,10 +82,10 @@ impl<'a, 'g> Start<'a, 'g> {
     pub fn new(loaded: &'a Loaded<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
         let Loaded { source, model, robot, .. } = loaded;
         let mut robot = robot.clone();
-        let names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
+        let prefixed_velocity_names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
             list.iter().map(|(name, _)| format!("v.{name}")).collect()
         };
-        let velocities = names(&model.velocities);
+        let velocities = prefixed_velocity_names(&model.velocities);
         let configuration: Vec<String> = model.configuration.iter().map(|name| format!("q.{name}")).collect();
         let inputs: Vec<String> = model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         let mut parameters = vec![None; model.parameters.len()];
@@ -98,16 +98,16 @@ impl<'a, 'g> Start<'a, 'g> {
         let (mut v, mut u) = (vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for (name, value) in values("set", matches)? {
-            let place = |list: &[String]| list.iter().position(|known| known == name);
-            if let Some(k) = place(&model.parameters) {
+            let index_of_name = |list: &[String]| list.iter().position(|known| known == name);
+            if let Some(k) = index_of_name(&model.parameters) {
                 parameters[k] = Some(value);
-            } else if let Some(k) = place(&of_states) {
+            } else if let Some(k) = index_of_name(&of_states) {
                 parameters[states[k].1] = Some(value);
-            } else if let Some(k) = place(&configuration) {
+            } else if let Some(k) = index_of_name(&configuration) {
                 (q[k], known[0][k]) = (value, true);
-            } else if let Some(k) = place(&velocities) {
+            } else if let Some(k) = index_of_name(&velocities) {
                 (v[k], known[1][k]) = (value, true);
-            } else if let Some(k) = place(&inputs) {
+            } else if let Some(k) = index_of_name(&inputs) {
                 u[k] = value;
             } else {
                 let is_state = |name: &&String| states.iter().any(|(state, _)| state == *name);
@@ -172,11 +172,11 @@ impl<'a, 'g> Start<'a, 'g> {
             robot.set_parameter(name, *value)?;
         }
         let placed = robot.frames().iter().map(|frame| robot.frame_placement(frame, q));
-        let rotations = |placement: linkwork::nalgebra::Isometry3<f64>| {
+        let isometry_with_rotation_matrix = |placement: linkwork::nalgebra::Isometry3<f64>| {
             let rotation = placement.rotation.to_rotation_matrix();
             IsometryMatrix3::from_parts(placement.translation, rotation)
         };
-        Ok(placed.map(|placement| placement.map(rotations)).collect::<Result<_, _>>()?)
+        Ok(placed.map(|placement| placement.map(isometry_with_rotation_matrix)).collect::<Result<_, _>>()?)
     }
 
     /// Evaluates an expression of the parameters.
@@ -190,13 +190,13 @@ impl<'a, 'g> Start<'a, 'g> {
 
     /// Returns the method of integration.
     fn method(&self, matches: &ArgMatches, without_contacts: bool) -> Result<Method, Stop> {
-        let positive = |name: &str| match matches.get_one::<f64>(name) {
+        let read_positive_option = |name: &str| match matches.get_one::<f64>(name) {
             Some(x) if !(*x > 0.0 && x.is_finite()) => {
                 Err(Stop::Failure(format!("`--{name}`: expected a number above zero, found {x}")))
             }
             given => Ok(given.copied()),
         };
-        let (tolerance, step) = (positive("tolerance")?, positive("step")?);
+        let (tolerance, step) = (read_positive_option("tolerance")?, read_positive_option("step")?);
         let has_contacts = !self.model.contacts.is_empty() && !without_contacts;
         let name = match matches.get_one::<String>("method").map(|name| name.replace('-', "_")) {
             None if has_contacts => "time_stepping".to_string(),
@@ -220,19 +220,20 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(Method::from_name(&name, setting)?)
     }
 
-    /// Simulates the motion and returns its samples.
+    /// Simulates the motion that the options describe, and returns its samples.
     pub fn run(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
         let name = &self.model.name;
         if let Some(why) = self.obstacle() {
             return Err(Stop::Failure(format!("`{name}` cannot be simulated: {why}")));
         }
-        let positive = |name: &str, usual: f64| match matches.get_one::<f64>(name) {
+        let positive_option_or_default = |name: &str, usual: f64| match matches.get_one::<f64>(name) {
             Some(x) if !(*x > 0.0 && x.is_finite()) => {
                 Err(Stop::Failure(format!("`--{name}`: expected a number above zero, found {x}")))
             }
             given => Ok(given.copied().unwrap_or(usual)),
         };
-        let (duration, every) = (positive("duration", 10.0)?, positive("every", 1.0 / 60.0)?);
+        let (duration, every) =
+            (positive_option_or_default("duration", 10.0)?, positive_option_or_default("every", 1.0 / 60.0)?);
         if duration / every > MAX_SAMPLES {
             return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
@@ -241,9 +242,10 @@ impl<'a, 'g> Start<'a, 'g> {
         let (times, values) = self.inputs(matches)?;
         let (q, v) = self.state()?;
         let state = [&v[..], &self.x].concat();
-        let inputs = || Inputs::Samples { times: &times, values: &values };
-        let begun = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
-            let run = self.robot.simulate().from(q, v).inputs(inputs()).method(method).duration(duration);
+        let sampled_inputs = || Inputs::Samples { times: &times, values: &values };
+        let simulate_from_state = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
+            let run =
+                self.robot.simulate().from(q, v).inputs(sampled_inputs()).method(method).duration(duration);
             let run = run.sample_every(every).overlaps(Overlaps::Part);
             let run = if without_contacts { run.without_contacts() } else { run };
             let count = self.v.len();
@@ -254,7 +256,7 @@ impl<'a, 'g> Start<'a, 'g> {
             })
         };
         let mut samples = Vec::new();
-        let ended = begun(&q, &state, duration, &mut samples);
+        let ended = simulate_from_state(&q, &state, duration, &mut samples);
         if let Some(first) = samples.first_mut().filter(|_| self.robot.is_constrained()) {
             // The projection of the start changes rounding alone.
             (first.q, first.v) = (q.clone(), v.clone());
@@ -280,7 +282,7 @@ impl<'a, 'g> Start<'a, 'g> {
                     let (_, from) = last.as_ref()?;
                     let t = failure(&error)?;
                     let to = from + (t - from) * (1.0 - 1e-3);
-                    let _ = begun(&q, &state, to, &mut before);
+                    let _ = simulate_from_state(&q, &state, to, &mut before);
                     before.pop()
                 };
                 return Err(self.ended(&error, near().map(|sample| sample.q)));
@@ -312,7 +314,7 @@ impl<'a, 'g> Start<'a, 'g> {
         }
     }
 
-    /// Returns the inputs at the start.
+    /// Returns the inputs at the start of the motion.
     pub fn inputs_at_start(&self) -> &[f64] {
         &self.u
     }
@@ -366,8 +368,9 @@ impl<'a, 'g> Start<'a, 'g> {
         let moves = self.moves(&q, &v);
         let some = self.given.iter().flatten().any(|given| *given);
         let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(q.iter().chain(&v)));
-        let is_far = |(is_given, (wanted, is)): (&bool, (&f64, &f64))| *is_given && (wanted - is).abs() > FAR;
-        if !kept && given.into_iter().any(is_far) {
+        let is_far_from_given_value =
+            |(is_given, (wanted, is)): (&bool, (&f64, &f64))| *is_given && (wanted - is).abs() > FAR;
+        if !kept && given.into_iter().any(is_far_from_given_value) {
             return Err(Stop::Failure(format!(
                 "the given values do not satisfy the constraints: give fewer (`--guess q.NAME=VALUE` gives \
                  an approximate value), or the nearest ones: {moves}"
@@ -431,9 +434,9 @@ impl<'a, 'g> Start<'a, 'g> {
             };
             return Err(Stop::Failure(format!("{}: {expected}", path.display())));
         }
-        let row = |k: usize| (0..columns.len()).map(move |i| (i, k));
-        let value = |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
-        let values = (0..table.times.len()).flat_map(row).map(value).collect();
+        let index_pairs_of_row = |k: usize| (0..columns.len()).map(move |i| (i, k));
+        let input_value_at = |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
+        let values = (0..table.times.len()).flat_map(index_pairs_of_row).map(input_value_at).collect();
         Ok((table.times.clone(), values))
     }
 }

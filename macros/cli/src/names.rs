@@ -34,8 +34,9 @@ impl Names {
         let begins = plain.starts_with(|c: char| c.is_ascii_alphabetic());
         let mut field =
             if begins { plain } else { format!("{kind}_{plain}").trim_end_matches('_').to_string() };
-        let is_word = |text: &str| WORDS.contains(&text) || syn::parse_str::<syn::Ident>(text).is_err();
-        if is_word(&field) || self.taken.contains(&field) {
+        let is_reserved_word =
+            |text: &str| WORDS.contains(&text) || syn::parse_str::<syn::Ident>(text).is_err();
+        if is_reserved_word(&field) || self.taken.contains(&field) {
             field = format!("{field}_{kind}");
         }
         let first = field.clone();
@@ -67,11 +68,11 @@ mod tests {
         let mut taken = Names::default();
         let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
         let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");
-        let all = |names: &Names, list: &[&str]| {
+        let field_names_of = |names: &Names, list: &[&str]| {
             list.iter().map(|name| names.field_or_same(name)).collect::<Vec<_>>()
         };
-        let of_links = all(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);
+        let of_links = field_names_of(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);
         assert_eq!(of_links, ["ground", "hand_left", "x_link", "link_2nd", "fn_link", "hand_left_link"]);
-        assert_eq!(all(&joints, &["Hand-left", "é"]), ["hand_left_joint", "joint"]);
+        assert_eq!(field_names_of(&joints, &["Hand-left", "é"]), ["hand_left_joint", "joint"]);
     }
 }

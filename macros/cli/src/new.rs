@@ -15,15 +15,17 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     if folder.exists() {
         return Err(Stop::Failure(format!("{} already exists", folder.display())));
     }
-    let fail = |error: std::io::Error| Stop::Failure(format!("cannot make {}: {error}", folder.display()));
-    std::fs::create_dir_all(folder.join("src")).map_err(fail)?;
-    let write = |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(fail);
+    let creation_failure =
+        |error: std::io::Error| Stop::Failure(format!("cannot make {}: {error}", folder.display()));
+    std::fs::create_dir_all(folder.join("src")).map_err(creation_failure)?;
+    let write_project_file =
+        |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(creation_failure);
     let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
     let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
     let sources = sources.or_else(sources::of_command);
-    write("Cargo.toml", &manifest(&name, sources.as_deref()))?;
-    write("src/main.rs", MAIN)?;
-    write(".gitignore", "/target\n/motion.html\n")?;
+    write_project_file("Cargo.toml", &manifest(&name, sources.as_deref()))?;
+    write_project_file("src/main.rs", MAIN)?;
+    write_project_file(".gitignore", "/target\n/motion.html\n")?;
     crate::say!("{0}: `cd {0}`, then `cargo run`, and open motion.html", folder.display());
     Ok(())
 }

@@ -122,9 +122,12 @@ impl Shown<'_, '_> {
             }).collect::<Vec<_>>(),
         });
         for (_, key, names, units) in self.lists() {
-            let unit = |k: usize| units.get(k).map_or("", String::as_str);
-            let list: Vec<Value> =
-                names.iter().enumerate().map(|(k, name)| json!({ "name": name, "unit": unit(k) })).collect();
+            let unit_at_index = |k: usize| units.get(k).map_or("", String::as_str);
+            let list: Vec<Value> = names
+                .iter()
+                .enumerate()
+                .map(|(k, name)| json!({ "name": name, "unit": unit_at_index(k) }))
+                .collect();
             all[key] = list.into();
         }
         all

@@ -37,11 +37,11 @@ fn mcap(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let names =
         Names { frames: &frames, configuration: &configuration, velocities: &velocities, inputs: &inputs };
-    let instant = |Sample { t, q, v, x, u }| {
+    let instant_from_sample = |Sample { t, q, v, x, u }| {
         let placements = start.placements(t, &q, &x)?;
         Ok(Instant { t, q, v: [v, x].concat(), u, placements })
     };
-    let instants = samples.into_iter().map(instant).collect::<Result<Vec<_>, Stop>>()?;
+    let instants = samples.into_iter().map(instant_from_sample).collect::<Result<Vec<_>, Stop>>()?;
     Ok(mcap_of(&names, instants)?)
 }
 
@@ -52,11 +52,11 @@ fn csv(start: &Start<'_, '_>, samples: &[Sample]) -> String {
     head.extend(model.velocities.iter().map(|(name, _)| format!("v.{name}")));
     head.extend(start.states.iter().map(|name| format!("x.{name}")));
     head.extend(model.inputs.iter().map(|(name, _)| format!("u.{name}")));
-    let quoted = |name: &String| match name.contains([',', '"']) {
+    let quote_csv_cell = |name: &String| match name.contains([',', '"']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),
         false => name.clone(),
     };
-    let mut text = head.iter().map(quoted).collect::<Vec<_>>().join(",");
+    let mut text = head.iter().map(quote_csv_cell).collect::<Vec<_>>().join(",");
     text.push_str("\r\n");
     for sample in samples {
         let numbers = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);

@@ -1,4 +1,4 @@
-//! Linkwork sources that generated crates depend on.
+//! Folder of the Linkwork sources that generated crates depend on.
 
 use std::path::{Path, PathBuf};
 

@@ -74,18 +74,19 @@ fn misaligned(text: &str) -> Option<LineColumn> {
     };
     let last = text.lines().count();
     let lines: Vec<&str> = text.lines().collect();
-    let indentation = |line: usize| lines.get(line - 1).map(|text| text.len() - text.trim_start().len());
+    let indentation_of_line =
+        |line: usize| lines.get(line - 1).map(|text| text.len() - text.trim_start().len());
     let (mut found, mut todo) = (None, vec![tokens]);
     while let Some(tokens) = todo.pop() {
         for token in tokens {
             let TokenTree::Group(group) = token else { continue };
             let (open, close) = (group.span_open().start(), group.span_close().start());
-            let is_first = |at: LineColumn| indentation(at.line) == Some(at.column);
+            let is_first = |at: LineColumn| indentation_of_line(at.line) == Some(at.column);
             if group.delimiter() == Delimiter::Brace
                 && close.line <= last
                 && close.line > open.line
                 && is_first(close)
-                && indentation(open.line) != Some(close.column)
+                && indentation_of_line(open.line) != Some(close.column)
             {
                 found = found.max(Some(open));
             }
@@ -120,7 +121,7 @@ fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) 
     (before, after)
 }
 
-/// Returns the closing bracket of an opening one.
+/// Returns the closing bracket that belongs to an opening one.
 fn partner(opening: char) -> char {
     match opening {
         '(' => ')',

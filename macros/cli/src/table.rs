@@ -6,9 +6,9 @@ use std::path::Path;
 
 /// Named columns of numbers, for times that do not decrease.
 pub struct Table {
-    /// Times, s.
+    /// Times of the rows, s.
     pub times: Vec<f64>,
-    /// Other columns, with their names.
+    /// Columns other than the time, with their names.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 

@@ -13,7 +13,7 @@ use linkwork_compiler::mechanism;
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
-/// Time, configuration, states of first order, and inputs, if they are known.
+/// Time, configuration, states of first order, and inputs, if inputs are known.
 type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Maximum number of coordinates that are plotted by default.
@@ -66,15 +66,17 @@ fn recorded(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Resu
     let times = states.iter().map(|(t, ..)| *t).collect();
     let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
     let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
-    let heights = |number: usize, place: [f64; 2]| {
+    let terrain_height_at = |number: usize, place: [f64; 2]| {
         let heights = start.robot.terrain_heights(place)?;
         heights.get(number).copied()
     };
-    let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
+    let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(terrain_height_at);
     if states.len() > 1 && model.nq() <= PLOTTED {
-        let values = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
-        motion =
-            motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
+        let values_of_coordinate = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
+        motion = motion.plots(
+            "Coordinates",
+            curves(&model.configuration, &model.units.configuration, values_of_coordinate),
+        )?;
     }
     if states.len() > 1 && model.nu() <= PLOTTED {
         // Constant inputs are not plotted.
@@ -137,7 +139,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let inputs = start.model.inputs.iter().map(|(name, _)| format!("u.{name}"));
     let inputs = all_or_none(inputs.collect())?.unwrap_or_default();
     let states = all_or_none(start.states.iter().map(|name| format!("x.{name}")).collect())?;
-    let state = |(k, t): (usize, &f64)| {
+    let state_of_log_row = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
         normalise(start.model, &mut q)?;
         let u = inputs.iter().map(|column| column[k]).collect();
@@ -146,7 +148,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
             .map_or(start.x.clone(), |columns| columns.iter().map(|column| column[k]).collect());
         Ok((*t, q, x, u))
     };
-    table.times.iter().enumerate().map(state).collect()
+    table.times.iter().enumerate().map(state_of_log_row).collect()
 }
 
 /// Returns curves with their units and names.
@@ -155,8 +157,8 @@ fn curves<'n>(
     units: &'n [String],
     values: impl Fn(usize) -> Vec<f64>,
 ) -> Vec<(&'n str, &'n str, Vec<f64>)> {
-    let unit = |k: usize| units.get(k).map_or("", String::as_str);
-    names.into_iter().enumerate().map(|(k, name)| (unit(k), name.as_str(), values(k))).collect()
+    let unit_at_index = |k: usize| units.get(k).map_or("", String::as_str);
+    names.into_iter().enumerate().map(|(k, name)| (unit_at_index(k), name.as_str(), values(k))).collect()
 }
 
 /// Returns the declared drawing with the values of the parameters.

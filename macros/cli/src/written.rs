@@ -1,4 +1,4 @@
-//! Expressions as text of attributes.
+//! Conversion of expressions to the text of attributes.
 
 use linkwork_compiler::syntax::{BinaryOp, Expr, ExprKind};
 
@@ -16,7 +16,7 @@ pub fn angle(text: &str) -> String {
     if turns { format!("1 * {text}") } else { text.to_string() }
 }
 
-/// Role of a name in an expression: a link and a joint of a file may share one name.
+/// Role of a name in an expression, since a link and a joint of a file may share one name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// Body: in arguments of functions, and before a point or an axis.
@@ -36,18 +36,19 @@ pub fn place(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
 }
 
 fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
-    let inner = |e: &Expr| spelled(e, role, rename);
-    let on_body = |e: &Expr| spelled(e, Role::Body, rename);
-    let list = |all: &[Expr]| all.iter().map(on_body).collect::<Vec<_>>().join(", ");
+    let spell_subexpression = |e: &Expr| spelled(e, role, rename);
+    let spell_in_body_role = |e: &Expr| spelled(e, Role::Body, rename);
+    let spell_comma_separated =
+        |all: &[Expr]| all.iter().map(spell_in_body_role).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(x) => number(*x),
         ExprKind::Name(name) => rename(name, role).unwrap_or_else(|| name.clone()),
-        ExprKind::Field(of, name) => format!("{}.{}", on_body(of), name.text),
+        ExprKind::Field(of, name) => format!("{}.{}", spell_in_body_role(of), name.text),
         ExprKind::Method(of, name, arguments) => {
-            format!("{}.{}({})", on_body(of), name.text, list(arguments))
+            format!("{}.{}({})", spell_in_body_role(of), name.text, spell_comma_separated(arguments))
         }
-        ExprKind::Call(name, arguments) => format!("{}({})", name.text, list(arguments)),
-        ExprKind::Neg(of) => format!("-({})", inner(of)),
+        ExprKind::Call(name, arguments) => format!("{}({})", name.text, spell_comma_separated(arguments)),
+        ExprKind::Neg(of) => format!("-({})", spell_subexpression(of)),
         ExprKind::Binary(op, a, b, _) => {
             let sign = match op {
                 BinaryOp::Add => "+",
@@ -55,14 +56,14 @@ fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) 
                 BinaryOp::Mul => "*",
                 BinaryOp::Div => "/",
             };
-            let side = |e: &Expr| match e.kind {
-                ExprKind::Binary(..) => format!("({})", inner(e)),
-                _ => inner(e),
+            let spell_binary_operand = |e: &Expr| match e.kind {
+                ExprKind::Binary(..) => format!("({})", spell_subexpression(e)),
+                _ => spell_subexpression(e),
             };
-            format!("{} {sign} {}", side(a), side(b))
+            format!("{} {sign} {}", spell_binary_operand(a), spell_binary_operand(b))
         }
-        ExprKind::Tuple(all) => format!("({})", list(all)),
-        ExprKind::Array(all) => format!("[{}]", list(all)),
+        ExprKind::Tuple(all) => format!("({})", spell_comma_separated(all)),
+        ExprKind::Array(all) => format!("[{}]", spell_comma_separated(all)),
     }
 }
 
@@ -112,8 +113,8 @@ pub fn axis(e: &Expr) -> String {
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
     // Along a coordinate axis, the length is the magnitude of the single nonzero entry.
     let unit = numbers.map(|x| if x.abs() == size { x.signum() } else { x / size });
-    let number = |x: f64| Expr { kind: ExprKind::Number(x), place: e.place.clone() };
-    let unit = Expr { kind: ExprKind::Array(unit.map(number).to_vec()), place: e.place.clone() };
+    let number_expression = |x: f64| Expr { kind: ExprKind::Number(x), place: e.place.clone() };
+    let unit = Expr { kind: ExprKind::Array(unit.map(number_expression).to_vec()), place: e.place.clone() };
     vector(&unit).unwrap_or_default()
 }
 

@@ -2,19 +2,19 @@
 
 use crate::Stop;
 
-/// Archive under construction.
+/// ZIP archive under construction.
 #[derive(Default)]
 pub struct Archive {
-    /// Headers and contents of the files.
+    /// Headers and contents of the files written so far.
     contents: Vec<u8>,
-    /// Directory, which follows the files.
+    /// Central directory of the archive, which is written after the files.
     directory: Vec<u8>,
     count: u16,
 }
 
 /// Version of the format that stored files need.
 const VERSION: u16 = 20;
-/// Flag of names in UTF-8.
+/// Flag of a file entry whose name is in UTF-8.
 const UTF_8: u16 = 1 << 11;
 /// Date of all files: the first day that the format has, so that equal contents give equal archives.
 const DATE: u16 = (1 << 5) | 1;
@@ -65,13 +65,13 @@ impl Archive {
 
 /// Returns the cyclic redundancy check of the format.
 fn checksum(bytes: &[u8]) -> u32 {
-    let step = |sum: u32| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
-    !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| step(sum)))
+    let advance_crc_by_bit = |sum: u32| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
+    !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| advance_crc_by_bit(sum)))
 }
 
 #[cfg(test)]
 mod tests {
-    /// Published check value of the checksum.
+    /// Checks the checksum against the published check value of CRC-32.
     #[test]
     fn checksum_of_the_nine_digits() {
         assert_eq!(super::checksum(b"123456789"), 0xcbf4_3926);

@@ -52,11 +52,12 @@ fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let run = Command::new(folder.join("main")).output().expect("the program starts");
     let text = String::from_utf8_lossy(&run.stdout).into_owned();
-    let line = |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    text.lines().map(line).collect()
+    let parse_numbers_of_line =
+        |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+    text.lines().map(parse_numbers_of_line).collect()
 }
 
-/// Concatenates several results.
+/// Concatenates several results to one list.
 fn all(parts: &[&[f64]]) -> Vec<f64> {
     parts.concat()
 }
@@ -65,9 +66,10 @@ fn all(parts: &[&[f64]]) -> Vec<f64> {
 fn speeds_are_the_same_in_c() {
     let m = Juggler { axial: 0.7 };
     const N: usize = Juggler::NV;
-    let some = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
-    let q = m.integrate(&m.neutral(), &some(0.3));
-    let (v, a, tau, dv): (_, _, _, SVector<f64, N>) = (some(1.1), some(2.3), some(4.0), some(0.9) * 0.3);
+    let sample_vector = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
+    let q = m.integrate(&m.neutral(), &sample_vector(0.3));
+    let (v, a, tau, dv): (_, _, _, SVector<f64, N>) =
+        (sample_vector(1.1), sample_vector(2.3), sample_vector(4.0), sample_vector(0.9) * 0.3);
     let u = SVector::from([0.8]);
     let there = m.integrate(&q, &dv);
     let (f, h) = (frame!(Juggler, "hand"), 0.02);
@@ -122,15 +124,15 @@ fn speeds_are_the_same_in_c() {
     let euler = discrete::step(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
     entries.push(("rk4_step", "(self, q, v, u, 0.02, r, r + NQ)", step(rk4)));
     entries.push(("semi_implicit_euler_step", "(self, q, v, u, 0.02, r, r + NQ)", step(euler)));
-    let transition = |next: discrete::Transition<f64, { Juggler::NQ }, N, 1>| {
+    let transition_matrices = |next: discrete::Transition<f64, { Juggler::NQ }, N, 1>| {
         all(&[next.a::<{ 2 * N }>().as_slice(), next.b::<{ 2 * N }>().as_slice()])
     };
     let call = "(self, q, v, u, 0.02, next, next + NQ, r, r + 4 * N * N, by_h)";
     let rk4 = discrete::transition(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
     let euler =
         discrete::transition(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
-    entries.push(("rk4_transition", call, transition(rk4)));
-    entries.push(("semi_implicit_euler_transition", call, transition(euler)));
+    entries.push(("rk4_transition", call, transition_matrices(rk4)));
+    entries.push(("semi_implicit_euler_transition", call, transition_matrices(euler)));
 
     let mut given = String::from(
         "    enum { N = JUGGLER_NV, NQ = JUGGLER_NQ, HAND = JUGGLER_FRAME_HAND };\n    double next[NQ + N], \

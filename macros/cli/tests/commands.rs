@@ -1,9 +1,9 @@
-//! Output and exit status of the command.
+//! Tests of the output and the exit status of the command.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Returns a folder for one test.
+/// Creates a folder for the files of one test, and returns it.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
@@ -13,8 +13,8 @@ fn folder(name: &str) -> PathBuf {
 fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let Output { status, stdout, stderr } =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (status.code().unwrap(), text(stdout), text(stderr))
+    let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), decode_utf8(stdout), decode_utf8(stderr))
 }
 
 const PENDULUM: &str = "
@@ -283,15 +283,15 @@ fn libraries_contain_the_attribute_or_its_code() {
         #[joint(ground -> block, along = x)] rail: Sleeve, \
         #[limit(on = rail, from = -1, to = 2.5, max_speed = 3)] ends: Limit }";
     std::fs::write(here.join("slider.rs"), slider).unwrap();
-    let written = |more: &[&str]| {
+    let export_library_files = |more: &[&str]| {
         let (status, _, stderr) =
             linkwork(&here, &[&["export", "library", "slider.rs", "--out", "slider"], more].concat());
         assert_eq!((status, stderr.as_str()), (0, ""));
         ["src/lib.rs", "description.json", "include/slider.h", "Cargo.toml"]
             .map(|file| std::fs::read_to_string(here.join("slider").join(file)).unwrap())
     };
-    let [declared, description, header, manifest] = written(&[]);
-    let [expanded, same_description, same_header, same_manifest] = written(&["--expanded"]);
+    let [declared, description, header, manifest] = export_library_files(&[]);
+    let [expanded, same_description, same_header, same_manifest] = export_library_files(&["--expanded"]);
     assert_eq!([&description, &header, &manifest], [&same_description, &same_header, &same_manifest]);
     assert!(declared.contains("#[mechanism") && !declared.contains("fn forward_dynamics"));
     assert!(!expanded.contains("#[mechanism") && expanded.contains("fn forward_dynamics"));
@@ -301,8 +301,8 @@ fn libraries_contain_the_attribute_or_its_code() {
     assert_eq!(description["limits"], limits);
 }
 
-/// Outputs whose names end like those of other forms of a function are in the library, and what C does not
-/// have is listed.
+/// Checks that outputs whose names end like other forms of a function are exported, and that functions that C
+/// does not have are listed.
 #[test]
 fn functions_that_another_language_lacks_are_listed() {
     let here = folder("forms");

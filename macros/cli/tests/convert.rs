@@ -20,41 +20,42 @@ fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Outpu
 
 /// Evaluates a function at a state that depends on the indices of its entries.
 fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
-    let value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
-    let q = |k: usize| match model.configuration.get(k).and_then(|name| name.rsplit('.').next()) {
-        // Quaternions of unit length.
-        Some("qx") => 0.1,
-        Some("qy" | "qw") => 0.7,
-        Some("qz") => -0.1,
-        _ => value(k, 0.3),
-    };
-    let find = |name: &str| output.functions.iter().find(|f| f.name == name);
-    let run = |name: &str, passive: &[f64]| {
-        find(name).unwrap().program.run(&|symbol| match Quantity::from_symbol(symbol) {
-            Quantity::Configuration(k) => q(k),
-            Quantity::Velocity(k) => value(k, 0.9),
-            Quantity::Acceleration(k) => value(k, 1.3),
-            Quantity::Force(k) => value(k, 2.1),
-            Quantity::Input(k) => value(k, 0.1),
+    let sample_value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
+    let sample_coordinate =
+        |k: usize| match model.configuration.get(k).and_then(|name| name.rsplit('.').next()) {
+            // Quaternions of unit length.
+            Some("qx") => 0.1,
+            Some("qy" | "qw") => 0.7,
+            Some("qz") => -0.1,
+            _ => sample_value(k, 0.3),
+        };
+    let find_function = |name: &str| output.functions.iter().find(|f| f.name == name);
+    let evaluate_function = |name: &str, passive: &[f64]| {
+        find_function(name).unwrap().program.run(&|symbol| match Quantity::from_symbol(symbol) {
+            Quantity::Configuration(k) => sample_coordinate(k),
+            Quantity::Velocity(k) => sample_value(k, 0.9),
+            Quantity::Acceleration(k) => sample_value(k, 1.3),
+            Quantity::Force(k) => sample_value(k, 2.1),
+            Quantity::Input(k) => sample_value(k, 0.1),
             Quantity::PassiveForce(k) => passive[k],
             other => panic!("{other:?}"),
         })
     };
     // Long passive forces are a separate function, whose results are arguments of the other functions.
-    let passive = find("__passive_forces").map(|_| run("__passive_forces", &[]));
-    run(function, &passive.unwrap_or_default())
+    let passive = find_function("__passive_forces").map(|_| evaluate_function("__passive_forces", &[]));
+    evaluate_function(function, &passive.unwrap_or_default())
 }
 
 fn converted(file: &Path, with: &str) -> (String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_linkwork"));
     let output = command.arg("convert").arg(file).args(["--with", with]).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    let (code, stderr) = (text(output.stdout), text(output.stderr));
+    let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let (code, stderr) = (decode_utf8(output.stdout), decode_utf8(output.stderr));
     assert!(output.status.success(), "{}: {stderr}", file.display());
     (code, stderr)
 }
 
-/// Returns the attribute's arguments, and the struct.
+/// Returns the arguments of the attribute, and the struct.
 fn parts(code: &str) -> (String, String) {
     let (_, rest) = code.split_once("#[mechanism(").unwrap();
     let (arguments, item) = rest.split_once(")]\n").unwrap();
@@ -83,10 +84,14 @@ fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
-    let all = |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
-    let expected =
-        compiled(&given, "struct Robot;", |m, o| (m.nq(), m.nu(), frames(m), m.limits.len(), all(m, o)));
-    let found = compiled(&arguments, &item, |m, o| (m.nq(), m.nu(), frames(m), m.limits.len(), all(m, o)));
+    let evaluate_all_functions =
+        |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
+    let expected = compiled(&given, "struct Robot;", |m, o| {
+        (m.nq(), m.nu(), frames(m), m.limits.len(), evaluate_all_functions(m, o))
+    });
+    let found = compiled(&arguments, &item, |m, o| {
+        (m.nq(), m.nu(), frames(m), m.limits.len(), evaluate_all_functions(m, o))
+    });
     assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
     assert_eq!((found.2, found.3), (expected.2, expected.3), "frames and limits of {}", file.display());
     for (k, (a, b)) in found.4.iter().zip(&expected.4).enumerate() {
@@ -165,7 +170,7 @@ fn elements_of_files_become_fields() {
     check("mjcf", &file, "");
 }
 
-/// Writes a file for one test.
+/// Writes a file for one test, and returns its path.
 fn written(name: &str, text: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("structs");
     std::fs::create_dir_all(&folder).unwrap();
@@ -195,21 +200,25 @@ fn robot_files_of_the_tests_become_structs() {
     ] {
         let file = repository().join(file);
         let given = format!("{format} = {:?}, {with}", file.display().to_string());
-        let all = |model: &Model<'_>, output: &Output| {
+        let sizes_and_dynamics_values = |model: &Model<'_>, output: &Output| {
             (
                 model.nq(),
                 model.nu(),
                 ["mass_matrix", "bias_forces"].map(|function| run(model, output, function)),
             )
         };
-        let expected = compiled(&given, "struct Robot;", all);
+        let expected = compiled(&given, "struct Robot;", sizes_and_dynamics_values);
         let (arguments, item) = parts(&converted(&file, with).0);
-        let found = compiled(&arguments, &item, all);
+        let found = compiled(&arguments, &item, sizes_and_dynamics_values);
         assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
         for (a, b) in found.2.iter().zip(&expected.2) {
             let size = b.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
-            let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 * size;
-            assert!(a.len() == b.len() && a.iter().zip(b).all(is_near), "{}: {a:?} {b:?}", file.display());
+            let is_nearly_equal = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 * size;
+            assert!(
+                a.len() == b.len() && a.iter().zip(b).all(is_nearly_equal),
+                "{}: {a:?} {b:?}",
+                file.display()
+            );
         }
     }
 }
@@ -232,11 +241,12 @@ fn links_and_joints_share_a_name() {
     );
     let given = format!("mjcf = {:?}", file.display().to_string());
     let functions = ["mass_matrix", "bias_forces", "potential_energy", "constraint_residuals"];
-    let all = |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
-    let expected = compiled(&given, "struct Robot;", all);
+    let evaluate_all_functions =
+        |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
+    let expected = compiled(&given, "struct Robot;", evaluate_all_functions);
     let (code, _) = converted(&file, "");
     let (arguments, item) = parts(&code);
-    for (a, b) in compiled(&arguments, &item, all).iter().zip(&expected) {
+    for (a, b) in compiled(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
         assert!(a.len() == b.len() && !a.is_empty(), "{a:?} {b:?}");
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{a:?} {b:?}");
     }
@@ -298,7 +308,7 @@ fn other_names_than_in_the_file_are_reported() {
     let file = folder.join("arm.urdf");
     let inertial =
         "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
-    let joint = |name: &str, parent: &str, child: &str| {
+    let joint_element = |name: &str, parent: &str, child: &str| {
         format!(
             "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/>\
              <axis xyz='0 0 1'/></joint>"
@@ -307,8 +317,8 @@ fn other_names_than_in_the_file_are_reported() {
     let arm = format!(
         "<robot name='arm'><link name='world'/><link name='Upper-arm'>{inertial}</link>\
          <link name='hand'>{inertial}</link>{}{}</robot>",
-        joint("shoulder", "world", "Upper-arm"),
-        joint("hand", "Upper-arm", "hand")
+        joint_element("shoulder", "world", "Upper-arm"),
+        joint_element("hand", "Upper-arm", "hand")
     );
     std::fs::write(&file, arm).unwrap();
     let (code, stderr) = converted(&file, "");
@@ -336,18 +346,18 @@ fn other_names_than_in_the_file_are_reported() {
 
 #[test]
 fn what_cannot_be_converted_is_reported() {
-    let run = |arguments: &[&str]| {
+    let run_command_line = |arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_linkwork")).args(arguments).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    let (status, stderr) = run(&["convert", file!(), "--struct", "None"]);
+    let (status, stderr) = run_command_line(&["convert", file!(), "--struct", "None"]);
     assert!(status == Some(2), "{stderr}");
     let panda = repository().join("models/urdf/panda.urdf");
-    let (status, stderr) = run(&["convert", panda.to_str().unwrap()]);
+    let (status, stderr) = run_command_line(&["convert", panda.to_str().unwrap()]);
     assert!(
         status == Some(0) && stderr.contains("follows `panda_finger_joint1` by a constraint"),
         "{stderr}"
     );
-    let (status, stderr) = run(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
+    let (status, stderr) = run_command_line(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
     assert!(status == Some(2) && stderr.contains("a file that ends in .rs, not panda.sdf"), "{stderr}");
 }

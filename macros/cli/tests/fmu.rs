@@ -21,18 +21,18 @@ fn linkwork(arguments: &[&str]) -> Result<String, String> {
         .args(arguments)
         .output()
         .expect("the command starts");
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    if output.status.success() { Ok(text(&output.stdout)) } else { Err(text(&output.stderr)) }
+    let decode_utf8 = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if output.status.success() { Ok(decode_utf8(&output.stdout)) } else { Err(decode_utf8(&output.stderr)) }
 }
 
 /// Returns the paths and contents of an archive whose files are stored without compression.
 fn unpacked(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
-    let number = |at: usize, length: usize| {
+    let little_endian_number = |at: usize, length: usize| {
         archive[at..at + length].iter().rev().fold(0, |sum, byte| (sum << 8) | usize::from(*byte))
     };
     let (mut files, mut at) = (Vec::new(), 0);
     while archive[at..].starts_with(b"PK\x03\x04") {
-        let (size, name) = (number(at + 18, 4), number(at + 26, 2));
+        let (size, name) = (little_endian_number(at + 18, 4), little_endian_number(at + 26, 2));
         let start = at + 30 + name;
         let path = String::from_utf8_lossy(&archive[at + 30..start]).into_owned();
         files.push((path, archive[start..start + size].to_vec()));
@@ -76,7 +76,7 @@ impl Fmu {
         Some(Fmu { description: String::from_utf8_lossy(description).into_owned(), program })
     }
 
-    /// Runs the importer, and returns the lines that it prints.
+    /// Runs the compiled importer, and returns the lines that it prints.
     fn lines(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
         let (_, rest) = self.description.split_once("instantiationToken=\"").expect("a token");
         let token = rest.split('"').next().unwrap_or_default();
@@ -92,9 +92,9 @@ impl Fmu {
 
     /// Returns rows of numbers that the importer prints.
     fn rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
-        let number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
-        let row = |line: &String| line.split_whitespace().map(number).collect();
-        self.lines(kind, numbers).iter().map(row).collect()
+        let parse_number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
+        let parse_numbers_of_line = |line: &String| line.split_whitespace().map(parse_number).collect();
+        self.lines(kind, numbers).iter().map(parse_numbers_of_line).collect()
     }
 }
 
@@ -111,7 +111,7 @@ fn simulated(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
     lines.map(|line| line.split(',').take(count).map(|x| x.parse().expect("a number")).collect()).collect()
 }
 
-/// Compares rows of states.
+/// Compares the rows of states of two motions.
 fn compare(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{name}");
     for (found, expected) in found.iter().zip(expected) {
@@ -232,7 +232,7 @@ fn ball_bounces_by_its_closed_form() {
     let values = set(&["bounce=0.7", "q.height=1.1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
     let Some(fmu) = Fmu::new("ball", &arguments) else { return };
-    let height = |t: f64| {
+    let height_of_bouncing_ball = |t: f64| {
         let g = 9.81;
         let mut speed = (2.0 * g * 1.0_f64).sqrt();
         let mut at = speed / g;
@@ -252,14 +252,18 @@ fn ball_bounces_by_its_closed_form() {
         let rows = fmu.rows(kind, [4.0, 40.0, steps]);
         assert_eq!(rows.len(), 41);
         for row in &rows {
-            assert!((row[1] - height(row[0])).abs() < 1e-8, "{kind}: {row:?}, not {}", height(row[0]));
+            assert!(
+                (row[1] - height_of_bouncing_ball(row[0])).abs() < 1e-8,
+                "{kind}: {row:?}, not {}",
+                height_of_bouncing_ball(row[0])
+            );
         }
         assert!(rows[40][2].abs() < 1e-12, "{kind}: at rest");
     }
 }
 
-/// A door rests against its stop until the force `-cos(2 t)` opens it at π/4; equal balls exchange their
-/// velocities.
+/// Checks a door that rests against its stop until the force `-cos(2 t)` opens it at π/4, and equal balls
+/// that exchange their velocities.
 #[test]
 fn stops_open_and_balls_collide_by_closed_forms() {
     let values = set(&["strength=1", "q.rail=-1", "v.rail=0.7"]);

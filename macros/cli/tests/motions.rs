@@ -1,4 +1,4 @@
-//! Simulation and pages by the command.
+//! Tests of the commands `simulate` and `view`.
 
 #[path = "motions/flail.rs"]
 mod flail;
@@ -24,8 +24,8 @@ fn folder(name: &str) -> PathBuf {
 fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
 /// Returns the numbers of a log, line by line.
@@ -38,7 +38,7 @@ fn rows(log: &str) -> Vec<Vec<f64>> {
 fn programs_and_generated_code_move_alike() {
     let here = folder("alike");
     std::fs::write(here.join("thrust.csv"), "t,u.thrust,remark\n0,0,1\n1,40,2\n2,10,3\n").unwrap();
-    let thrust = |t: f64| if t < 1.0 { 40.0 * t } else { 40.0 - 30.0 * (t - 1.0) };
+    let thrust_at_time = |t: f64| if t < 1.0 { 40.0 * t } else { 40.0 - 30.0 * (t - 1.0) };
     let set =
         ["--set", "handle=0.5", "--set", "v.flight.wx=2", "--set", "v.chain.wy=-3", "--set", "q.flight.z=1"];
     let mut arguments =
@@ -52,7 +52,7 @@ fn programs_and_generated_code_move_alike() {
     let flail = Flail { handle: 0.5 };
     let (mut q, mut v) = (flail.neutral(), SVector::<f64, 9>::zeros());
     (q[2], v[3], v[7]) = (1.0, 2.0, -3.0);
-    let motion = simulate(&flail).from(q, v).inputs(|t, _, _| [thrust(t)].into());
+    let motion = simulate(&flail).from(q, v).inputs(|t, _, _| [thrust_at_time(t)].into());
     let motion = motion.method(Rk4::step(5e-4)).duration(2.0).sample_every(0.5);
     let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
     let rows = rows(&log);
@@ -62,7 +62,7 @@ fn programs_and_generated_code_move_alike() {
         for (a, b) in row.iter().zip(other) {
             assert!((a - b).abs() < 1e-8, "{row:?} {:?} {:?}", sample.q, sample.v);
         }
-        assert!((row[21] - thrust(row[0])).abs() < 1e-12);
+        assert!((row[21] - thrust_at_time(row[0])).abs() < 1e-12);
     }
 }
 
@@ -248,8 +248,8 @@ pub struct Cart {
         let view = [&["view", "cart.rs", "--duration", "1"][..], inputs].concat();
         assert_eq!(linkwork(&here, &view).0, 0);
         let page = std::fs::read_to_string(here.join("Cart.html")).unwrap();
-        let count = |text: &str| page.matches(text).count();
-        assert_eq!((count("[\"Coordinates\","), count("[\"Inputs\",\"N\",")), (2, plots));
+        let count_in_page = |text: &str| page.matches(text).count();
+        assert_eq!((count_in_page("[\"Coordinates\","), count_in_page("[\"Inputs\",\"N\",")), (2, plots));
     }
 }
 
@@ -270,15 +270,15 @@ fn messages(file: &[u8]) -> Vec<serde_json::Value> {
 #[test]
 fn logs_hold_what_tables_hold() {
     let here = folder("logs");
-    let simulated = |out: &str| {
+    let simulate_to_file = |out: &str| {
         let (set, every) =
             (["--set", "handle=0.5", "--set", "v.chain.wy=-3"], ["--duration", "0.4", "--every", "0.2"]);
         let log = [&["simulate", FLAIL][..], &set, &every, &["--out", out]].concat();
         assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
         std::fs::read(here.join(out)).unwrap()
     };
-    let table = rows(&String::from_utf8(simulated("log.csv")).unwrap());
-    let sample = |row: &Vec<f64>| {
+    let table = rows(&String::from_utf8(simulate_to_file("log.csv")).unwrap());
+    let sample_from_row = |row: &Vec<f64>| {
         let (q, v) = (SVector::from_column_slice(&row[1..12]), SVector::from_column_slice(&row[12..21]));
         linkwork::simulate::Sample::<f64, 11, 9, 1> {
             t: row[0],
@@ -289,9 +289,9 @@ fn logs_hold_what_tables_hold() {
             violation: 0.0,
         }
     };
-    let samples: Vec<_> = table.iter().map(sample).collect();
+    let samples: Vec<_> = table.iter().map(sample_from_row).collect();
     let expected = messages(&linkwork_view::mcap(&Flail { handle: 0.5 }, &samples).unwrap());
-    let found = messages(&simulated("log.mcap"));
+    let found = messages(&simulate_to_file("log.mcap"));
     assert_eq!((found.len(), expected.len()), (9, 9));
     for (found, expected) in found.iter().zip(&expected) {
         let Some(transforms) = found["transforms"].as_array() else {
@@ -304,8 +304,11 @@ fn logs_hold_what_tables_hold() {
             assert_eq!(one["child_frame_id"], other["child_frame_id"]);
             for (part, axes) in [("translation", "xyz"), ("rotation", "xyzw")] {
                 for axis in axes.chars().map(String::from) {
-                    let number = |of: &serde_json::Value| of[part][&axis].as_f64().unwrap();
-                    assert!((number(one) - number(other)).abs() < 1e-12, "{one} {other}");
+                    let component_of_json = |of: &serde_json::Value| of[part][&axis].as_f64().unwrap();
+                    assert!(
+                        (component_of_json(one) - component_of_json(other)).abs() < 1e-12,
+                        "{one} {other}"
+                    );
                 }
             }
         }
@@ -444,18 +447,19 @@ fn loops_stay_closed() {
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
-    let state = |row: &[f64]| -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let state_of_row = |row: &[f64]| -> (SVector<f64, 3>, SVector<f64, 3>) {
         (SVector::from_column_slice(&row[1..4]), SVector::from_column_slice(&row[4..7]))
     };
-    let (q, v) = state(&rows[0]);
+    let (q, v) = state_of_row(&rows[0]);
     let motion = simulate(&m).from(q, v).method(Rk4::step(5e-4)).duration(2.0).sample_every(0.25);
     let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
-    let energy = |q: &SVector<f64, 3>, v: &SVector<f64, 3>| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let total_energy =
+        |q: &SVector<f64, 3>, v: &SVector<f64, 3>| m.kinetic_energy(q, v) + m.potential_energy(q);
     for (row, sample) in rows.iter().zip(&samples) {
-        let (at, rate) = state(row);
+        let (at, rate) = state_of_row(row);
         assert!(m.constraint_residuals(&at).norm() < 1e-11, "{row:?}");
         assert!(m.constraint_rates(&at, &rate).norm() < 1e-11, "{row:?}");
-        assert!((energy(&at, &rate) - energy(&q, &v)).abs() < 1e-7, "{row:?}");
+        assert!((total_energy(&at, &rate) - total_energy(&q, &v)).abs() < 1e-7, "{row:?}");
         assert!(
             (at - sample.q).norm() + (rate - sample.v).norm() < 1e-6,
             "{row:?} {:?} {:?}",
@@ -477,14 +481,14 @@ fn loops_stay_closed() {
         stderr.contains("v.input = ") && !stderr.contains("q.input") && !stderr.contains("v.output"),
         "{stderr}"
     );
-    let (at, rate) = state(&self::rows(&log)[0]);
+    let (at, rate) = state_of_row(&self::rows(&log)[0]);
     assert_eq!((at[0], rate[2]), (0.3, 2.0));
     assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
     // The same angle in the other assembly mode.
     let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
     let (status, log, stderr) = linkwork(&here, &guessed);
     assert!(status == 0 && stderr.contains("the given values are kept"), "{stderr}");
-    let (other, _) = state(&self::rows(&log)[0]);
+    let (other, _) = state_of_row(&self::rows(&log)[0]);
     assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
     assert!(m.constraint_residuals(&other).norm() < 1e-11);
     // Angles that contradict the constraints are rejected.
@@ -706,13 +710,14 @@ fn driven_mechanisms_follow_time() {
 #[test]
 fn speeds_of_driven_mechanisms_may_be_singular() {
     let here = folder("driven_speeds");
-    let run = |speeds: &str| {
+    let simulate_driven_with_speeds = |speeds: &str| {
         let with = DRIVEN.replace("#[output(crank)]\n    loads: FreeBody,", speeds);
         std::fs::write(here.join("driven.rs"), with).unwrap();
         linkwork(&here, &["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"])
     };
-    let (status, log, stderr) =
-        run("#[speed(3 * rate(big_end))] a: Speed, #[speed(rate(cylinder) + 0.1 * rate(big_end))] b: Speed,");
+    let (status, log, stderr) = simulate_driven_with_speeds(
+        "#[speed(3 * rate(big_end))] a: Speed, #[speed(rate(cylinder) + 0.1 * rate(big_end))] b: Speed,",
+    );
     assert_eq!(status, 0, "{stderr}");
     for row in rows(&log) {
         let (sine, cosine) = (7.0 * row[0]).sin_cos();
@@ -720,21 +725,24 @@ fn speeds_of_driven_mechanisms_may_be_singular() {
         assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
     }
     // The crank begins at zero, where the rod is in line with it.
-    let (status, _, stderr) =
-        run("#[speed(sin(big_end) * rate(cylinder))] a: Speed, #[speed(rate(big_end))] b: Speed,");
+    let (status, _, stderr) = simulate_driven_with_speeds(
+        "#[speed(sin(big_end) * rate(cylinder))] a: Speed, #[speed(rate(big_end))] b: Speed,",
+    );
     assert!(
         status == 2 && stderr.contains("the speeds of `Driven` are singular at the beginning"),
         "{stderr}"
     );
     // Their determinant is proportional to 1 + cos(big_end): zero after half a turn.
-    let (status, _, stderr) = run("#[speed(cos(big_end) * rate(cylinder) - 0.1 * rate(big_end))] a: Speed,
-         #[speed(2 * rate(cylinder) + 0.2 * rate(big_end))] b: Speed,");
+    let (status, _, stderr) = simulate_driven_with_speeds(
+        "#[speed(cos(big_end) * rate(cylinder) - 0.1 * rate(big_end))] a: Speed,
+         #[speed(2 * rate(cylinder) + 0.2 * rate(big_end))] b: Speed,",
+    );
     let there =
         stderr.split_once("beyond 0.448").is_some_and(|(_, why)| why.contains("speeds are singular there"));
     assert!(status == 2 && there, "{stderr}");
 }
 
-/// Leg of Jansen's linkage.
+/// Declaration of a leg of Jansen's linkage.
 const LEG: &str = "
 #[mechanism(gravity = -9.81 * y)]
 struct Leg {

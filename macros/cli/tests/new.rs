@@ -1,4 +1,4 @@
-//! Generated projects, and completions of shells.
+//! Tests of generated projects and of completions for shells.
 
 #[path = "../src/starter/main.rs"]
 #[allow(dead_code, reason = "the `main` of another program")]
@@ -17,8 +17,8 @@ fn folder(name: &str) -> PathBuf {
 fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
 /// Checks the program of the project: one pole falls, and the other one is kept upright.

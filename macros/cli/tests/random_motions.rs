@@ -169,38 +169,43 @@ fn states_move_as_velocities_do() {
             random.number_between(0.2, 2.0),
             random.number_between(-8.0, 8.0),
         ];
-        let rate = |x: &str| {
+        let state_rate_source = |x: &str| {
             format!(
                 "lag * (drive - {x}) + lift * sin(scale * {j}) - drag * rate({j}) + wave * {x} * cos(3 * t)"
             )
         };
         let declared: String = parameters.iter().map(|name| format!("    pub {name}: f64,\n")).collect();
-        let force = |x: &str| {
+        let force_declaration = |x: &str| {
             format!(
                 "{declared}    pub share: f64,\n    drive: Input,\n    #[acts(on = {j}, value = gain * \
                  tanh(share * {x}))]\n    f: Force,\n"
             )
         };
         let is_pin = linkage.contains("j0: Pin");
-        let force = |x: &str| if is_pin { force(x).replace("f: Force", "f: Torque") } else { force(x) };
-        let of_state =
-            format!("{}    #[state(rate = {})]\n    level: State,\n{linkage}", force("level"), rate("level"));
+        let actuator_declaration = |x: &str| {
+            if is_pin { force_declaration(x).replace("f: Force", "f: Torque") } else { force_declaration(x) }
+        };
+        let of_state = format!(
+            "{}    #[state(rate = {})]\n    level: State,\n{linkage}",
+            actuator_declaration("level"),
+            state_rate_source("level")
+        );
         let of_rail = format!(
             "{}{linkage}    #[particle(mass = 1)]\n    dot: Particle,\n    #[joint(ground -> dot, along = x)]\n    rail: Sleeve,
     #[acts(on = rail, value = {})]\n    push: Force,\n",
-            force("rate(rail)"),
-            rate("rate(rail)")
+            actuator_declaration("rate(rail)"),
+            state_rate_source("rate(rail)")
         );
         let (level, drive) = (random.number_between(-1.0, 1.0), random.number_between(-2.0, 2.0));
         let begin = if loops { vec![] } else { vec![format!("q.{j}={}", random.number_between(-0.5, 0.5))] };
-        let set = |name: &str| {
+        let options_with_values = |name: &str| {
             let values = parameters.iter().zip(values).map(|(name, value)| format!("{name}={value}"));
             let own = ["share=0.7".to_string(), format!("{name}={level}"), format!("u.drive={drive}")];
             [begin.clone(), values.collect(), own.to_vec()].concat()
         };
         let more = ["--duration", "1"];
-        let a = simulated(&here, "states", &mechanism(&of_state), &set("x.level"), &more);
-        let b = simulated(&here, "states", &mechanism(&of_rail), &set("v.rail"), &more);
+        let a = simulated(&here, "states", &mechanism(&of_state), &options_with_values("x.level"), &more);
+        let b = simulated(&here, "states", &mechanism(&of_rail), &options_with_values("v.rail"), &more);
         let names = joints.iter().map(|joint| (format!("q.{joint}"), format!("q.{joint}")));
         for (name, other) in names.chain([("x.level".to_string(), "v.rail".to_string())]) {
             let (a, b) = (a.last(&name), b.last(&other));

@@ -49,12 +49,12 @@ fn run() -> Result<(), Failure> {
     let arguments = format!("{format} = {file:?}{more}").parse()?;
     let mut cx = Diagnostics::new();
     let source = read(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
-    let reported = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
-    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| reported(&cx))?;
+    let failure_from_diagnostics = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
+    let source = source.filter(|_| cx.is_empty()).ok_or_else(|| failure_from_diagnostics(&cx))?;
     let description = &source.mechanism.description;
     let graph = Graph::new();
-    let model = build_model(description, &graph, &mut cx).ok_or_else(|| reported(&cx))?;
-    let derived = derive(&model, &mut cx).ok_or_else(|| reported(&cx))?;
+    let model = build_model(description, &graph, &mut cx).ok_or_else(|| failure_from_diagnostics(&cx))?;
+    let derived = derive(&model, &mut cx).ok_or_else(|| failure_from_diagnostics(&cx))?;
     let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let mut out = std::io::stdout().lock();
@@ -67,23 +67,24 @@ fn run() -> Result<(), Failure> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-        let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
-        let values = |name: &str, passive: &[f64]| {
-            let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
-                Quantity::Configuration(k) => number(k),
-                Quantity::Velocity(k) => number(nq + k),
-                Quantity::Input(k) => number(nq + nv + k),
-                Quantity::Force(k) => number(nq + nv + nu + k),
+        let number_or_nan = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+        let function_values = |name: &str, passive: &[f64]| {
+            let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+                Quantity::Configuration(k) => number_or_nan(k),
+                Quantity::Velocity(k) => number_or_nan(nq + k),
+                Quantity::Input(k) => number_or_nan(nq + nv + k),
+                Quantity::Force(k) => number_or_nan(nq + nv + nu + k),
                 Quantity::PassiveForce(k) => passive.get(k).copied().unwrap_or(f64::NAN),
                 _ => f64::NAN,
             };
             let found = derived.functions.iter().find(|function| function.name == name);
-            found.map(|function| function.program.run(&symbol)).unwrap_or_default()
+            found.map(|function| function.program.run(&value_of_symbol)).unwrap_or_default()
         };
         // If the passive forces are long, the other functions call them.
-        let passive = values("__passive_forces", &[]);
+        let passive = function_values("__passive_forces", &[]);
         for name in FUNCTIONS {
-            let text: Vec<String> = values(name, &passive).iter().map(|value| format!("{value:e}")).collect();
+            let text: Vec<String> =
+                function_values(name, &passive).iter().map(|value| format!("{value:e}")).collect();
             writeln!(out, "{}", text.join(" "))?;
         }
         out.flush()?;

@@ -32,7 +32,7 @@ const REPEATS: usize = 5;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Input of `#[mechanism]`.
+/// Arguments and struct of a `#[mechanism]`.
 struct Input {
     arguments: TokenStream,
     item: TokenStream,
@@ -253,7 +253,7 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
 /// Prints the programs of one function after a pass, or after every pass.
 fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
     let (wanted, of) = (pass.to_string(), function.to_string());
-    let print = move |function: &str, pass: &str, program: &Program, _: Duration| {
+    let print_after_pass = move |function: &str, pass: &str, program: &Program, _: Duration| {
         if function == of && (pass == wanted || wanted == "all") {
             let c = program.counts;
             println!(
@@ -268,7 +268,7 @@ fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure>
     let source = read(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = checked(source, cx)?;
     let graph = Graph::new();
-    let output = pipeline::with_observer(Box::new(print), || compile(&source, &graph, cx));
+    let output = pipeline::with_observer(Box::new(print_after_pass), || compile(&source, &graph, cx));
     checked(output, cx).map(|_| ())
 }
 
@@ -294,7 +294,7 @@ struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Records the duration of a stage in one run.
+    /// Records the duration of a stage in one run; the minimum over all runs is kept.
     fn least(&mut self, stage: &str, elapsed: Duration) {
         match self.stages.iter_mut().find(|(name, _)| name == stage) {
             Some((_, least)) => *least = elapsed.min(*least),
@@ -325,17 +325,18 @@ fn time(input: &Input) -> Result<(), Failure> {
     let lowered: Duration = passes.stages.iter().map(|(_, time)| *time).sum();
     let known = ["read", "model", "derive"].map(|stage| watch.find(stage)).into_iter().sum();
     let whole = watch.find("whole expansion");
-    let line = |stage: &str, time: Duration| println!("{stage:32}{:>10.2}", time.as_secs_f64() * 1e3);
+    let print_stage_time =
+        |stage: &str, time: Duration| println!("{stage:32}{:>10.2}", time.as_secs_f64() * 1e3);
     println!("{:32}{:>10}", "stage", "ms");
-    line("read", watch.find("read"));
-    line("model", watch.find("model"));
-    line("derive", watch.find("derive"));
-    line("  expressions (the rest)", watch.find("derive").saturating_sub(lowered));
+    print_stage_time("read", watch.find("read"));
+    print_stage_time("model", watch.find("model"));
+    print_stage_time("derive", watch.find("derive"));
+    print_stage_time("  expressions (the rest)", watch.find("derive").saturating_sub(lowered));
     for (pass, time) in &passes.stages {
-        line(&format!("  {pass}"), *time);
+        print_stage_time(&format!("  {pass}"), *time);
     }
-    line("emit (the rest)", whole.saturating_sub(known));
-    line("whole expansion", whole);
+    print_stage_time("emit (the rest)", whole.saturating_sub(known));
+    print_stage_time("whole expansion", whole);
     Ok(())
 }
 
@@ -350,16 +351,16 @@ fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Resu
     let model = checked(model, cx)?;
     let sums = Rc::new(RefCell::new(Vec::<(String, Duration)>::new()));
     let noted = Rc::clone(&sums);
-    let note = move |_: &str, pass: &str, _: &Program, time: Duration| {
+    let record_pass_time = move |_: &str, pass: &str, _: &Program, time: Duration| {
         let mut sums = noted.borrow_mut();
         match sums.iter_mut().find(|(name, _)| name == pass) {
             Some((_, sum)) => *sum += time,
             None => sums.push((pass.to_string(), time)),
         }
     };
-    let output = pipeline::with_observer(Box::new(note), || {
-        let derived = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
-        watch.measure("derive", derived)
+    let output = pipeline::with_observer(Box::new(record_pass_time), || {
+        let derive_all_functions = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
+        watch.measure("derive", derive_all_functions)
     });
     checked(output, cx)?;
     for (pass, time) in sums.borrow().iter() {

@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static CHOSEN: OnceLock<Vec<usize>> = OnceLock::new();
 static REACHED: OnceLock<Option<File>> = OnceLock::new();
 static SEEN: [AtomicBool; 10_000] = [const { AtomicBool::new(false) }; 10_000];
-/// Whether this is one of them.
+/// Returns whether this mutant is the selected one.
 pub fn is(mutant: usize) -> bool {
     if !SEEN[mutant].load(Ordering::Relaxed)
         && !SEEN[mutant].swap(true, Ordering::Relaxed)
@@ -65,7 +65,7 @@ impl Mutator<'_> {
         Some(parse_quote!((if crate::mutant::is(#number) { #instead } else { #original })))
     }
 
-    /// Returns true for a limit of `machine`.
+    /// Returns whether an expression is a limit of `machine`.
     fn is_limit(&self, expr: &Expr) -> bool {
         matches!(expr, Expr::Path(path) if self.limits.iter().any(|limit| path.path.is_ident(limit)))
     }
@@ -130,7 +130,7 @@ fn limits(file: &syn::File) -> Vec<String> {
     names.concat().into_iter().filter(|name| !name.is_empty()).collect()
 }
 
-/// Returns a name that could be confused with this one.
+/// Returns a function name that could be confused with this one.
 fn other(name: &str) -> Option<&'static str> {
     Some(match name {
         "nq" => "nv",
@@ -229,7 +229,7 @@ impl VisitMut for Mutator<'_> {
         visit_mut::visit_block_mut(self, block);
     }
 
-    /// Shorthand fields are expanded, because they could not be mutated otherwise.
+    /// Expands a shorthand field, whose value could not be mutated otherwise.
     fn visit_field_value_mut(&mut self, field: &mut syn::FieldValue) {
         field.colon_token.get_or_insert_default();
         visit_mut::visit_field_value_mut(self, field);

@@ -6,11 +6,11 @@ use quote::ToTokens;
 use std::path::Path;
 use syn::spanned::Spanned;
 
-/// The arguments of a `#[mechanism]` attribute and its struct.
+/// Arguments of a `#[mechanism]` attribute and its struct.
 pub struct DeclaredStruct {
     /// Name of the struct.
     pub name: String,
-    /// Arguments of the attribute.
+    /// Arguments of the attribute `#[mechanism]`.
     pub arguments: TokenStream,
     /// The struct without the attribute.
     pub item: TokenStream,
@@ -60,7 +60,7 @@ impl DeclaredStruct {
         }
     }
 
-    /// Adds arguments of the attribute.
+    /// Appends arguments to those of the attribute.
     pub fn add(&mut self, more: TokenStream) {
         if more.is_empty() {
             return;
@@ -98,11 +98,11 @@ pub fn declarations(text: &str) -> syn::Result<Vec<DeclaredStruct>> {
 /// Returns the format of a robot file: from the ending of its name if that is unambiguous, else from its
 /// root element.
 fn format_of(path: &Path, text: &str) -> FileFormat {
-    let is = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
+    let has_extension = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
     match () {
-        () if is("urdf") => FileFormat::Urdf,
-        () if is("sdf") || is("world") => FileFormat::Sdf,
-        () if is("mjcf") || text.contains("<mujoco") => FileFormat::Mjcf,
+        () if has_extension("urdf") => FileFormat::Urdf,
+        () if has_extension("sdf") || has_extension("world") => FileFormat::Sdf,
+        () if has_extension("mjcf") || text.contains("<mujoco") => FileFormat::Mjcf,
         () if text.contains("<sdf") => FileFormat::Sdf,
         () => FileFormat::Urdf,
     }
@@ -112,11 +112,11 @@ fn format_of(path: &Path, text: &str) -> FileFormat {
 fn type_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-    let capital = |word: &str| {
+    let capitalise_word = |word: &str| {
         let (first, rest) = word.split_at(1);
         format!("{}{rest}", first.to_ascii_uppercase())
     };
-    let name: String = words.map(capital).collect();
+    let name: String = words.map(capitalise_word).collect();
     match name.starts_with(|c: char| c.is_ascii_alphabetic()) && name != "Self" {
         true => name,
         false => format!("Robot{name}"),

@@ -42,8 +42,8 @@ pub use output::{Constant, FrameSteps, Function, LinkSteps, Output, PLACEMENT, P
 /// Maximum number of products in the elimination of constraints.
 const MOST_PRODUCTS: usize = 100_000;
 
-/// Derives all functions without optional ones. Returns `None` with the error in `cx` if the mass matrix is
-/// singular.
+/// Derives all functions except the optional ones. Returns `None` with the error in `cx` if the mass matrix
+/// is singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
 }
@@ -107,7 +107,8 @@ pub fn derive_with<'g>(
             .then(|| in_speeds(conserved::conserved(model, &joints), speeds.as_deref())),
     };
     let own = (model, speeds.as_ref());
-    let all = |specialisation| functions(own, requests, passes, &joints, &extras, specialisation);
+    let functions_with_specialisation =
+        |specialisation| functions(own, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
     if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
         cx.error(model.place.clone(), "too many constraints of this mechanism are coupled").help(
@@ -116,9 +117,10 @@ pub fn derive_with<'g>(
         );
         return None;
     }
-    let functions = all(Specialisation::None);
-    let prepared =
-        requests.prepare.then(|| prepared::prepared(model.graph, all(Specialisation::ByParameters)));
+    let functions = functions_with_specialisation(Specialisation::None);
+    let prepared = requests.prepare.then(|| {
+        prepared::prepared(model.graph, functions_with_specialisation(Specialisation::ByParameters))
+    });
     let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
     constants.extend(extras.entries.map(|entries| Constant::entries(&entries)));
     if let Some(kept) = &extras.conserved {
@@ -151,7 +153,7 @@ fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) ->
     kept
 }
 
-/// Returns the constant for the option `drawing`.
+/// Returns the associated constant that the option `drawing` adds, if the option is set.
 fn drawing(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
     requests.drawing.then(|| Constant::drawing(&model.drawing)).into_iter().collect()
 }
@@ -210,8 +212,8 @@ fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
     }
 }
 
-/// Returns the first requested quantity that requires forces without accelerations: canonical momenta and
-/// second derivatives. Returns `None` if no such quantity is requested.
+/// Returns the first requested quantity that exists only if forces do not depend on accelerations: canonical
+/// momenta or second derivatives. Returns `None` if no such quantity is requested.
 fn without_momentum(requests: Requests) -> Option<&'static str> {
     let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
     let reduced = requests.routh || requests.equations == Printed::Routh;
@@ -285,7 +287,7 @@ fn cyclic<'g>(
     None
 }
 
-/// Returns true if constraints determine coordinates without inertia. Momenta do not determine the velocities
+/// Returns whether constraints determine coordinates without inertia. Momenta do not determine the velocities
 /// of such coordinates.
 fn has_massless(model: &Model<'_>) -> bool {
     model.constraints.iter().any(|c| c.determines)
@@ -475,11 +477,12 @@ fn written<'g>(
     let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
     let equations = equations::derive(model, joints, mass, speeds, &limits);
     let named = speeds.map_or(model, |speeds| &speeds.model);
-    let inertia = || equations::derive_inertia(model, joints, mass, &limits).filter(|_| speeds.is_none());
-    equations.or_else(inertia).map_or_else(Written::default, |e| equations::written(named, &e))
+    let inertia_equations =
+        || equations::derive_inertia(model, joints, mass, &limits).filter(|_| speeds.is_none());
+    equations.or_else(inertia_equations).map_or_else(Written::default, |e| equations::written(named, &e))
 }
 
-/// Lowers one step of the recursion from link to link.
+/// Lowers the outputs of one step of the recursion from link to link.
 fn part(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).run_passes(pipeline::PART)
 }

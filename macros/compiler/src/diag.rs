@@ -138,7 +138,7 @@ pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
     syn::Error::new(span, format!("{message}{HELP}{help}"))
 }
 
-/// List of the errors found so far.
+/// List of the errors that the compiler has found so far.
 #[derive(Default, Debug)]
 pub struct Diagnostics {
     errors: Vec<Diagnostic>,
@@ -147,7 +147,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Creates an empty list.
+    /// Creates an empty list of errors.
     pub fn new() -> Diagnostics {
         Diagnostics::default()
     }
@@ -186,7 +186,7 @@ impl Diagnostics {
         }
     }
 
-    /// Adds an error.
+    /// Adds an error to the list.
     pub fn add(&mut self, one: Diagnostic) {
         self.errors.push(one);
     }
@@ -196,7 +196,7 @@ impl Diagnostics {
         self.errors.append(&mut other.errors);
     }
 
-    /// Returns true if no error was reported.
+    /// Returns whether no error was reported.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
@@ -219,9 +219,9 @@ impl Diagnostics {
 
     /// Replaces the index of each list element in a message by `[]`.
     fn without_numbers(&self, message: &str) -> String {
-        let is_word = |c: char| c.is_alphanumeric() || c == '_';
-        let words = message.split_inclusive(|c| !is_word(c)).map(|word| {
-            let name = word.trim_end_matches(|c| !is_word(c));
+        let is_word_character = |c: char| c.is_alphanumeric() || c == '_';
+        let words = message.split_inclusive(|c| !is_word_character(c)).map(|word| {
+            let name = word.trim_end_matches(|c| !is_word_character(c));
             let list = name.trim_end_matches(|c: char| c.is_ascii_digit()).strip_suffix('_');
             match list.filter(|list| self.lists.iter().any(|known| known == list)) {
                 Some(list) => format!("{list}[]{}", &word[name.len()..]),

@@ -36,9 +36,9 @@ pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
 pub use syntax::second_definition;
 
-/// Runs the whole compiler: translates `#[mechanism(arguments)] item` to the generated code. Each error is
-/// reported as one `compile_error!`; the code of an invalid mechanism contains only its interface. Paths of
-/// files are relative to `folder`.
+/// Compiles `#[mechanism(arguments)] item` to the generated code. Each error is reported as one
+/// `compile_error!`; the code of an invalid mechanism contains only its interface. Paths of files are
+/// relative to `folder`.
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     // rustc already reports missing and wrong commas of the struct.
@@ -70,8 +70,9 @@ fn emit_error_type(source: &Source, mut errors: impl Iterator<Item = TokenStream
     Emitted { tokens, text: String::new() }
 }
 
-/// Compiles a struct with a derive above the attribute: the derive has already seen the elements. Returns one
-/// `compile_error!` for the derive in place of the struct, and the errors of the struct's grammar.
+/// Compiles a struct whose derives stand above the attribute, so that they have already processed the
+/// elements. Returns one `compile_error!` for the derive in place of the struct, and the errors of the
+/// struct's grammar.
 pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     let Some(source) = read(arguments, item, folder, &mut cx) else {
@@ -174,8 +175,8 @@ fn compile_for_registers<'g>(
 
 /// Rejects mechanisms with constraints or contacts, whose functions need solvers.
 fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Diagnostics) -> Option<()> {
-    let has = |id: catalogue::Id| output.functions.iter().any(|f| f.id == id);
-    let what = match (has(catalogue::Id::ConstraintJacobian), model.contacts.is_empty()) {
+    let has_function = |id: catalogue::Id| output.functions.iter().any(|f| f.id == id);
+    let what = match (has_function(catalogue::Id::ConstraintJacobian), model.contacts.is_empty()) {
         (true, _) => "constraints",
         (_, false) => "contacts",
         _ => return Some(()),
@@ -295,8 +296,8 @@ fn model_and_functions<'g>(
     good.then_some((model, output))
 }
 
-/// Checks the elements of a mechanism that are not affected by syntax errors. Elements that depend on wrong
-/// ones are not checked, because their errors would only follow from the syntax errors.
+/// Checks the elements of a mechanism that syntax errors do not affect. Elements that depend on wrong ones
+/// are not checked, because their errors would only follow from the syntax errors.
 pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.readable_part(description).filter(|_| source.imported) {
@@ -352,12 +353,12 @@ fn check_outputs(
         (DERIVATIVES, "gives the derivatives", facts.requests.derivatives),
         (BY_PARAMETERS, "gives the derivatives by parameters", facts.requests.sensitivities),
     ];
-    let derived = |name: &str| {
+    let names_of_derivatives = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         let names: Vec<String> = asked.map(|(suffix, ..)| format!("{name}{suffix}")).collect();
         names.into_iter()
     };
-    let origin = |name: &str| {
+    let find_origin_output = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         asked
             .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
@@ -370,7 +371,7 @@ fn check_outputs(
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
-        if let Some(((suffix, what, _), other)) = origin(text) {
+        if let Some(((suffix, what, _), other)) = find_origin_output(text) {
             cx.error(name.place.clone(), format!("`{text}` {what} of the output `{other}`"))
                 .help(format!("each output has a function of its name and one of its name with `{suffix}`"));
         } else if description.inertias == syntax::Inertias::None && functions.iter().all(|f| f.name != *text)
@@ -391,7 +392,7 @@ fn check_outputs(
                 format!("the name `{text}` is taken: every mechanism has this function"),
             )
             .help("choose another name for the output");
-        } else if let Some(other) = derived(text).find(|other| is_taken(other)) {
+        } else if let Some(other) = names_of_derivatives(text).find(|other| is_taken(other)) {
             cx.error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has `{other}`"),

@@ -8,7 +8,7 @@
 
 /// Time units per cycle, and operations issued per cycle.
 pub const CYCLE: u32 = 3;
-/// Latency of an addition.
+/// Latency of an addition, in the time unit of the schedule.
 pub const ADD: u32 = 3 * CYCLE;
 /// Latency of a multiplication or a fused multiply-add.
 pub const MULTIPLY: u32 = 4 * CYCLE;
@@ -16,7 +16,7 @@ pub const MULTIPLY: u32 = 4 * CYCLE;
 pub const DIVIDE: u32 = 13 * CYCLE;
 /// Latency of a negation.
 pub const NEGATE: u32 = CYCLE;
-/// Latency of a move between lanes.
+/// Latency of a move of a value between lanes.
 pub const MOVE_LANE: u32 = 2 * CYCLE;
 /// Latency of adding the upper half of a vector's lanes to the lower half: a move and an addition.
 pub const HALVE: u32 = 5 * CYCLE;
@@ -33,8 +33,8 @@ pub const MOST_PARALLELISM: f64 = 5.0;
 /// fetched on each call.
 pub const CACHED_INSTRUCTIONS: usize = 4000;
 
-/// Returns the cost of an instruction by its number of lanes, in tenths of an instruction on one lane. Eight
-/// lanes take two registers on processors without 512-bit registers.
+/// Returns the cost of an instruction with this number of lanes, in tenths of an instruction on one lane.
+/// Eight lanes take two registers on processors without 512-bit registers.
 pub fn cost_of_lanes(lanes: usize) -> usize {
     match lanes {
         0..=2 => 10,
@@ -44,11 +44,11 @@ pub fn cost_of_lanes(lanes: usize) -> usize {
 }
 /// Cost of gathering one lane of an input, in tenths of an instruction.
 pub const GATHER_COST: usize = 8;
-/// Cost of extracting a lane.
+/// Cost of extracting a lane, in tenths of an instruction.
 pub const LANE_COST: usize = 5;
-/// Cost of summing lanes, per lane.
+/// Cost of summing lanes, per lane, in tenths of an instruction.
 pub const SUM_COST: usize = 10;
-/// Cost of a library call, per lane.
+/// Cost of a library call, per lane, in tenths of an instruction.
 pub const CALL_COST: usize = 20;
 /// Cost of fetching an instruction that is not in the first-level cache.
 pub const FETCH_COST: usize = 15;

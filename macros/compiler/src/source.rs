@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct Source {
     /// Contents of the struct and of the file.
     pub mechanism: Mechanism,
-    /// Paths of all files that were read.
+    /// Paths of all files that were read for the mechanism.
     files: Vec<PathBuf>,
     /// False if the mechanism imports a file that could not be read.
     pub(crate) imported: bool,
@@ -44,7 +44,8 @@ pub fn read(
     Some(Source { mechanism, files, imported: cx.len() == before })
 }
 
-/// Merges the imported file into the description. Elements of the file precede those of the struct.
+/// Merges the mechanism of an imported file into the description. Elements of the file precede those of the
+/// struct.
 fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
     let Mechanism { description, shell, .. } = mechanism;
     // All of it: a part that is not named here does not compile.
@@ -75,8 +76,8 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     }
     for field in &fields {
         let place = description.name.place.clone();
-        let name = |text| syntax::Name { text, place: place.clone() };
-        description.parameters.extend(field.members().into_iter().map(name));
+        let name_at_place = |text| syntax::Name { text, place: place.clone() };
+        description.parameters.extend(field.members().into_iter().map(name_at_place));
         description.file_units.extend(&field.units);
     }
     shell.file_fields = fields;
@@ -109,8 +110,8 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     description.ground_frame = is_ground;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
-        let usual = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
-        description.gravity = Some(gravity.unwrap_or_else(usual));
+        let default_gravity = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
+        description.gravity = Some(gravity.unwrap_or_else(default_gravity));
     }
 }
 

@@ -54,13 +54,13 @@ fn the_runtime_may_have_another_name() {
         }
     }
     // A generic struct, without and with an error.
-    let generic = |fields: &str| {
+    let expand_generic_mechanism = |fields: &str| {
         let item = format!("struct S<T> {{ m: T, {} {fields} }}", CART.replace("mass = 1", "mass = m"));
         let emitted = expand("crate = lw, prepare".parse().unwrap(), item.parse().unwrap(), Path::new(""));
         emitted.into_tokens().unwrap().to_string().replace(' ', "")
     };
     for fields in ["", "#[output(unknown)] mistake: Scalar,"] {
-        assert!(!generic(fields).contains("::linkwork::"), "{fields}");
+        assert!(!expand_generic_mechanism(fields).contains("::linkwork::"), "{fields}");
     }
     assert!(messages("crate = 3", CART)[0].starts_with("expected a path for `crate`"));
     assert!(messages("crate = ", CART)[0].starts_with("expected a path for `crate`"));
@@ -121,19 +121,21 @@ fn functions_say_what_determines_the_motion() {
 /// The mechanism of a file is a constant, unless the struct is generic.
 #[test]
 fn a_mechanism_of_a_file_is_a_constant() {
-    let constants = |item: &str| {
+    let expand_file_mechanism = |item: &str| {
         let arguments = "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial]";
         let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
         emitted.into_tokens().unwrap().to_string().replace(' ', "")
     };
-    let plain = constants("pub struct S;");
+    let plain = expand_file_mechanism("pub struct S;");
     assert!(plain.contains("pubconstFILE:Self=") && plain.contains("pubconstfnfrom_file()->Self"), "{plain}");
-    let own = constants("pub struct S { gain: f64, #[acts(on = joint1, damping = gain)] drag: Dashpot }");
+    let own = expand_file_mechanism(
+        "pub struct S { gain: f64, #[acts(on = joint1, damping = gain)] drag: Dashpot }",
+    );
     assert!(
         !own.contains("pubconstFILE:Self=") && own.contains("pubconstfnfrom_file(gain:f64)->Self"),
         "{own}"
     );
-    let generic = constants("pub struct S<T>;");
+    let generic = expand_file_mechanism("pub struct S<T>;");
     assert!(
         !generic.contains("pubconstFILE:Self=") && generic.contains("pubfnfrom_file()->Self"),
         "{generic}"

@@ -19,7 +19,7 @@ fn tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStream, TokenS
     (attribute.parse().unwrap(), format!("pub struct {name} {{ {fields} }}").parse().unwrap())
 }
 
-/// Calls `f` with the compiled mechanism.
+/// Compiles a mechanism of the test and calls `f` with its model, facts and generated functions.
 fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, Output) -> T) -> T {
     let (attribute, item) = tokens(mechanism);
     let mut cx = Diagnostics::new();
@@ -31,16 +31,16 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
     f(&model, Facts::from_model(&model, source.mechanism.requests), output)
 }
 
-/// Returns the public functions in the inherent implementations of a type, without functions that only report
-/// that they are absent.
+/// Returns the public functions in the inherent implementations of a type, except functions that only report
+/// that a feature is absent.
 fn public(text: &str, name: &str) -> BTreeSet<String> {
     let file = syn::parse_file(text).unwrap();
     let mut found = BTreeSet::new();
     for item in generated::items(file) {
         let syn::Item::Impl(item) = item else { continue };
         let own = matches!(&*item.self_ty, syn::Type::Path(path) if path.path.is_ident(name));
-        let text = |tokens: &dyn quote::ToTokens| tokens.to_token_stream().to_string();
-        if item.trait_.is_some() || !own || text(&item.generics.where_clause).contains("absent") {
+        let token_text = |tokens: &dyn quote::ToTokens| tokens.to_token_stream().to_string();
+        if item.trait_.is_some() || !own || token_text(&item.generics.where_clause).contains("absent") {
             continue;
         }
         for member in item.items {
@@ -59,7 +59,8 @@ fn public(text: &str, name: &str) -> BTreeSet<String> {
     found
 }
 
-/// Returns the functions that the catalogue declares for such a mechanism, with those of its outputs.
+/// Returns the functions that the catalogue declares for a mechanism with these facts, and the functions of
+/// its outputs.
 fn expected(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
     let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none() && !row.is_hidden());
     let mut names: BTreeSet<String> = BTreeSet::new();
@@ -101,7 +102,7 @@ fn every_function_is_a_row_and_every_row_a_function() {
     assert_eq!(never, Vec::<&str>::new(), "no mechanism here has these");
 }
 
-/// Each absent function is listed once, with one reason.
+/// Checks that each function absent from a mechanism is listed once, with one reason.
 #[test]
 fn what_is_not_there_has_a_reason() {
     for mechanism in MECHANISMS {
@@ -129,7 +130,7 @@ fn what_is_not_there_has_a_reason() {
 #[test]
 fn a_program_that_does_not_fit_is_found() {
     let mut in_lanes = 0;
-    let limb = |k: usize| {
+    let limb_declarations = |k: usize| {
         format!(
             "#[body(mass = 1, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] thigh{k}: Body,
             #[body(mass = 1, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] shank{k}: Body,
@@ -139,7 +140,7 @@ fn a_program_that_does_not_fit_is_found() {
     };
     let trunk =
         "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,";
-    let limbs = trunk.to_string() + &(0..4).map(limb).collect::<String>();
+    let limbs = trunk.to_string() + &(0..4).map(limb_declarations).collect::<String>();
     let alike = ("gravity = -9.81 * y", "Alike", limbs.as_str());
     for mechanism in MECHANISMS.into_iter().chain([alike]) {
         compiled(mechanism, |_, _, mut output| {

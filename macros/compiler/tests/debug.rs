@@ -46,7 +46,8 @@ fn debug_builds_have_operators_for_calls() {
     }
 }
 
-/// In debug builds, batch functions evaluate one state at a time, because lanes would take too much stack.
+/// Checks that batch functions of debug builds evaluate one state at a time, because SIMD lanes would take
+/// too much stack.
 #[test]
 fn debug_builds_compute_one_state_after_another() {
     let code = code("batch, derivatives", &["one"]);

@@ -28,8 +28,13 @@ fn a_long_chain_is_read_once() {
     let (short, long) = (chain(16), chain(32));
 
     // Jacobians of frames grow linearly with the number of links.
-    let jacobians = |code: &str| code.matches("_columns(").count();
-    assert!(jacobians(&long) < 3 * jacobians(&short), "{} and {}", jacobians(&short), jacobians(&long));
+    let count_jacobians = |code: &str| code.matches("_columns(").count();
+    assert!(
+        count_jacobians(&long) < 3 * count_jacobians(&short),
+        "{} and {}",
+        count_jacobians(&short),
+        count_jacobians(&long)
+    );
 
     // The product of a number and lanes is one call, and blocks assign values instead of returning tuples.
     for code in [&short, &long] {

@@ -3,7 +3,7 @@
 use linkwork_compiler::{check, expand};
 use std::path::Path;
 
-/// Returns the generated code.
+/// Returns the code generated for a mechanism with these arguments and fields.
 fn code(arguments: &str, fields: &str) -> String {
     let item = format!("pub struct S {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -57,12 +57,13 @@ fn a_chain_leads_from_one_to_the_next() {
         #[joint(ground -> link[0], about = z)] first: Pin,
         #[joint(link[i].at(-2 * y) -> link[i + 1], about = z)] hinge: [Pin; 3],
         #[joint(link[(7 * 2) % 11].at(-2 * y) -> ground.at(x), about = z)] last: Pin,";
-    let link = |k| format!("#[body(mass = 1, com = -y, inertia = rod(1, 2, y))] link_{k}: Body,");
-    let hinge = |k| format!("#[joint(link_{k}.at(-2 * y) -> link_{}, about = z)] hinge_{k}: Pin,", k + 1);
+    let link_declaration = |k| format!("#[body(mass = 1, com = -y, inertia = rod(1, 2, y))] link_{k}: Body,");
+    let hinge_declaration =
+        |k| format!("#[joint(link_{k}.at(-2 * y) -> link_{}, about = z)] hinge_{k}: Pin,", k + 1);
     let without: String = (0..4)
-        .map(link)
+        .map(link_declaration)
         .chain(["#[joint(ground -> link_0, about = z)] first: Pin,".to_string()])
-        .chain((0..3).map(hinge))
+        .chain((0..3).map(hinge_declaration))
         .chain(["#[joint(link_3.at(-2 * y) -> ground.at(x), about = z)] last: Pin,".to_string()])
         .collect();
     assert_same_code(

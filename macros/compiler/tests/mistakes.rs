@@ -50,14 +50,14 @@ type Row = (&'static str, &'static str, &'static str);
 /// Function that inserts a source text into the arguments of the attribute or the fields.
 type Setting = fn(&str) -> (String, String);
 
-/// Arm on a hinge.
+/// Test mechanism: a single arm on a hinge.
 const ARM: &str = "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Body,
     #[joint(ground -> arm, about = z)] hinge: Pin,";
 
-/// Cart on a rail.
+/// Test mechanism: a cart that slides along a rail.
 const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
 
-/// Returns the messages of a mechanism.
+/// Returns the error messages of the compiler for a mechanism.
 fn messages(attribute: &str, fields: &str) -> Vec<String> {
     let struct_ = format!("struct Machine {{ {fields} }}");
     match (attribute.parse(), struct_.parse()) {

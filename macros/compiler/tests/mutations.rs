@@ -13,25 +13,25 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Number of cases.
+/// Number of random mutations that are tested.
 const CASES: u64 = 600;
-/// Seed of the random numbers.
+/// Seed of the random mutations.
 const SEED: u64 = 20;
-/// Maximum number of errors that one mutation may cause.
+/// Maximum number of errors that one mutation of a token may cause.
 const MAX_ERRORS: usize = 3;
 /// Maximum number of tokens of a mechanism. Larger mechanisms take long and have no other kinds of elements.
 const LARGEST: usize = 1500;
-/// Maximum time for one case in a debug build, on a busy machine.
+/// Maximum time for one mutated mechanism in a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Mechanism of the gallery.
+/// Source of a mechanism of the gallery, to which mutations are applied.
 struct Subject {
     name: String,
     arguments: TokenStream,
     item: TokenStream,
 }
 
-/// Returns the mechanisms of the gallery.
+/// Reads the mechanisms of the gallery.
 fn gallery() -> Vec<Subject> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -57,13 +57,13 @@ fn gallery() -> Vec<Subject> {
     all
 }
 
-/// Returns the number of tokens, including groups and their contents.
+/// Returns the number of tokens in a stream, including groups and their contents.
 fn count(tokens: &TokenStream) -> usize {
-    let inner = |token: TokenTree| match token {
+    let count_nested_tokens = |token: TokenTree| match token {
         TokenTree::Group(group) => 1 + count(&group.stream()),
         _ => 1,
     };
-    tokens.clone().into_iter().map(inner).sum()
+    tokens.clone().into_iter().map(count_nested_tokens).sum()
 }
 
 /// Random number generator (splitmix64).
@@ -79,7 +79,7 @@ impl Random {
     }
 }
 
-/// Mutation of one token.
+/// Kind of mutation of one token, which imitates a typing error.
 #[derive(Clone, Copy, Debug)]
 enum Slip {
     Lost,
@@ -176,11 +176,11 @@ fn class(message: &str) -> String {
 
 #[test]
 fn slips_of_the_hand_are_answered_in_few_words() {
-    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
-    let cases = number("MUTATIONS").unwrap_or(CASES);
+    let number_from_environment = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
+    let cases = number_from_environment("MUTATIONS").unwrap_or(CASES);
     let gallery = gallery();
     assert!(gallery.len() > 40, "{} mechanisms", gallery.len());
-    let mut random = Random(number("SEED").unwrap_or(SEED));
+    let mut random = Random(number_from_environment("SEED").unwrap_or(SEED));
     let mut wrong: BTreeMap<String, (usize, String)> = BTreeMap::new();
     for case in 0..cases {
         let subject = &gallery[random.index_below(gallery.len())];
@@ -220,14 +220,15 @@ fn slips_of_the_hand_are_answered_in_few_words() {
     assert!(list.is_empty(), "{} classes:\n{}", list.len(), list.join("\n\n"));
 }
 
-/// Returns the messages of the parser alone.
+/// Returns the error messages of the parser alone, before the model is built.
 fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
     read(arguments.clone(), item, Path::new(""), &mut cx);
     cx.messages()
 }
 
-/// Returns the item with a syntax error in one field: an unknown argument, or an invalid type of a parameter.
+/// Returns the mechanism with a syntax error in one field: an unknown argument, or an invalid type of a
+/// parameter.
 fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
     let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
     let field = item.fields.iter_mut().nth(at)?;

@@ -25,10 +25,10 @@ fn functions(code: &str) -> BTreeSet<String> {
 
 #[test]
 fn names_of_functions_are_taken() {
-    let empty = || "".parse().unwrap();
-    let item = |name: &str| mechanism(name).parse().unwrap();
-    assert_eq!(check(empty(), item("place"), Path::new("")), Vec::<String>::new());
-    let emitted = expand(empty(), item("place"), Path::new(""));
+    let empty_tokens = || "".parse().unwrap();
+    let mechanism_tokens = |name: &str| mechanism(name).parse().unwrap();
+    assert_eq!(check(empty_tokens(), mechanism_tokens("place"), Path::new("")), Vec::<String>::new());
+    let emitted = expand(empty_tokens(), mechanism_tokens("place"), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     // Absent functions reserve no names, because they are visible only if no other function matches.
     let is_there = |part: &&str| !part.contains("::__private::absent::");
@@ -40,14 +40,18 @@ fn names_of_functions_are_taken() {
     let by_number = ["placement_of", "velocity_of", "acceleration_of", "jacobian_of"];
     let of_others = [&["place", "place_jacobian", "outputs"][..], &by_name, &by_number].concat();
     for name in names.iter().filter(|name| !of_others.contains(&name.as_str())) {
-        let messages = check(empty(), item(name), Path::new(""));
+        let messages = check(empty_tokens(), mechanism_tokens(name), Path::new(""));
         assert!(messages.iter().any(|m| m.contains("is taken")), "{name}: {messages:?}");
     }
     for name in ["linearize", "prepare", "joint_torque_regressor", "mass_matrix_lanes", "assemble_jacobian"] {
-        assert_eq!(check(empty(), item(name), Path::new("")), Vec::<String>::new(), "{name}");
+        assert_eq!(
+            check(empty_tokens(), mechanism_tokens(name), Path::new("")),
+            Vec::<String>::new(),
+            "{name}"
+        );
     }
     // The Jacobian of such an output would have the name of another function.
-    assert!(!check(empty(), item("frame"), Path::new("")).is_empty());
+    assert!(!check(empty_tokens(), mechanism_tokens("frame"), Path::new("")).is_empty());
 }
 
 /// Passes of the program may divide constants with another sign, whose result is finite.

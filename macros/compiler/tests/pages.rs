@@ -1,5 +1,5 @@
-//! Completeness of documentation pages and test lists: they name all joints, elements and options of the
-//! compiler, and all passes of programs.
+//! Checks that documentation pages and test lists name all joints, elements and options of the compiler, and
+//! all passes of programs.
 
 use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
 use linkwork_compiler::syntax::{ElementKind, ForceKind, JointKind, Word};
@@ -64,8 +64,9 @@ fn elements_are_listed() {
 /// becomes `second_derivatives`.
 fn written(word: Word) -> String {
     let name = word.reason().trim_start_matches("AsksFor");
-    let lower = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
-    name.chars().map(lower).collect::<String>().trim_start_matches('_').to_string()
+    let snake_case_letter =
+        |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
+    name.chars().map(snake_case_letter).collect::<String>().trim_start_matches('_').to_string()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use linkwork_compiler::expand;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Returns the generated code of a chain of pins with its derivatives.
+/// Returns the code generated for a chain of revolute joints, with derivatives.
 fn chain(pins: usize) -> String {
     let mut item = "struct S {\n".to_string();
     let mut parent = "ground".to_string();
@@ -46,7 +46,8 @@ fn no_input_is_bound_that_nothing_reads() {
     assert!(bound > 50, "{bound}");
 }
 
-/// Derivatives that fill matrices of the caller and derivatives that are returned share their statements.
+/// Checks that the statements of a long function are generated once: the function that returns matrices calls
+/// the function that fills matrices of the caller.
 #[test]
 fn a_long_function_is_written_once() {
     let head = "fn inverse_dynamics_derivatives(";

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{ImplItem, Item, ItemImpl, Type};
 
-/// Error that affects no other field.
+/// Field with an error that affects no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
 const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
@@ -73,11 +73,11 @@ const MECHANISMS: [(&str, &str); 5] = [
 type Names = BTreeMap<String, Option<String>>;
 
 struct Generated {
-    /// Available names of all structs.
+    /// Names of the functions and constants that each generated struct has.
     present: Names,
     /// Absent names, with the bound that names the reason.
     absent: BTreeMap<String, String>,
-    /// Implemented traits.
+    /// Traits that the generated structs implement.
     traits: BTreeSet<String>,
 }
 
@@ -127,7 +127,7 @@ fn signature(f: &syn::ImplItemFn) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Outputs with one function of the language each, in a mechanism with elements of every kind.
+/// Output expressions with one function of the language each, for a mechanism with elements of every kind.
 const MEASURES: [(&str, &str, &str); 57] = [
     ("atan2", "atan2(sin(hinge), 2)", "Scalar"),
     ("degrees", "hinge + degrees(30)", "Scalar"),
@@ -213,9 +213,9 @@ fn an_error_keeps_the_arguments_of_every_measure() {
         assert_eq!(error, None, "{function}");
         let whole = code("", "Measured", &fields);
         let failed = code("", "Measured", &format!("{fields} {MISTAKE}"));
-        let signature = |all: &Generated| all.present.get("Measured::measure").cloned();
-        assert!(signature(&whole).is_some(), "{function}");
-        assert_eq!(signature(&failed), signature(&whole), "{function}");
+        let signature_of_measure = |all: &Generated| all.present.get("Measured::measure").cloned();
+        assert!(signature_of_measure(&whole).is_some(), "{function}");
+        assert_eq!(signature_of_measure(&failed), signature_of_measure(&whole), "{function}");
     }
 }
 
@@ -383,27 +383,28 @@ const SPED: &str = "
     #[speed(rate(plane.x) + rate(plane.y))] both: Speed,
     #[speed(rate(plane.x) - rate(plane.y))] apart: Speed,";
 
-/// Contact with one contact velocity.
+/// Test mechanism with a frictionless contact: one contact velocity.
 const SMOOTH: &str = "
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = z)] rod: Sleeve,
     #[contact(bead, ground.plane(z))] floor: Contact,";
 
-/// Contact and a constraint.
+/// Test mechanism with a contact and a holonomic constraint.
 const HELD: &str = "
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = (x, z))] plane: Stage,
     #[constraint(plane.x * plane.x + plane.y * plane.y = 1)] ring: Holonomic,
     #[contact(bead, ground.plane(z))] floor: Contact,";
 
-/// Rolling contact whose normal force depends on another contact, and a one-sided limit.
+/// Test mechanism with a rolling contact whose normal force depends on another contact, and with a one-sided
+/// limit.
 const PRESSED: &str = "
     #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
     #[joint(ground -> ball, about = z)] pose: Planar,
     #[contact(ball.sphere(1), ground.plane(y), friction = 0.3, rolling = 0.01)] floor: Contact,
     #[limit(on = pose.angle, from = -1)] stop: Limit,";
 
-/// State of first order and a constraint.
+/// Test mechanism with a first-order state and a constraint.
 const LAGGED: &str = "command: Input, lag: f64,
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = (x, z))] plane: Stage,
@@ -414,8 +415,8 @@ const LAGGED: &str = "command: Input, lag: f64,
 
 const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,";
 
-/// Returns the names of functions and constants, including those for the runtime alone: available names, and
-/// absent names by reason. Also returns the implemented traits, without those of frames and function bodies.
+/// Returns the names of all generated functions and constants, as text: available names, and absent names
+/// grouped by reason. Also lists the implemented traits, except those of frames and function bodies.
 fn names(arguments: &str, name: &str, fields: &str) -> String {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));

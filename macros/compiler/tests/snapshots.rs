@@ -21,7 +21,8 @@ const CART_POLE: &str = "
     #[joint(cart -> pole, about = z)] hinge: Pin,
     #[acts(on = rail)] push: Force,";
 
-/// Joints of every chart, a limit, a contact, and outputs that depend on the motion.
+/// Test mechanism with joints of every coordinate chart, a limit, a contact, and outputs that depend on the
+/// motion.
 const BUOY: &str = "k: f64,
     #[body(mass = 2, inertia = sphere(2, 0.3))] hull: Body,
     #[body(mass = 1, inertia = sphere(1, 0.2))] eye: Body,
@@ -35,14 +36,14 @@ const BUOY: &str = "k: f64,
     #[output(contact_force(floor))] push: Vector,
     #[output(hull, resolved_in = ground)] diagram: FreeBody,";
 
-/// Rod whose end slides on the ground.
+/// Test mechanism: a rod whose end slides on the ground.
 const SLIDING: &str = "friction: f64,
     #[body(mass = 2, inertia = rod(2, 1, x))] rod: Body,
     #[joint(ground -> rod, about = z)] pose: Planar,
     #[constraint(slips(rod.at(-0.5 * x).sphere(0.01), ground.plane(y)), friction = friction, speed = 0.001)]
     floor: Slipping,";
 
-/// Forces that depend on time, without inputs.
+/// Test mechanism with forces that depend on time, without inputs.
 const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[joint(ground -> ball, about = z)] pose: Planar,
     #[acts(on = ball, value = sin(t) * ground.x)] wind: Force,
@@ -53,7 +54,7 @@ const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[output(contact_force(floor))] push: Vector,
     #[output(ball, resolved_in = ground)] diagram: FreeBody,";
 
-/// Sleigh with a motor force that depends on its velocity.
+/// Test mechanism: a sleigh with a motor force that depends on its velocity.
 const GOVERNED: &str = "command: Input,
     #[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] sleigh: Body,
     #[joint(ground -> sleigh, about = z)] pose: Planar,
@@ -73,7 +74,7 @@ const MEASURED: &str = "command: Input, lag: f64,
     #[output(rotation(ball / ground))] turn: Matrix,
     #[output(dot(a(ball / ground / ground), ground.x))] felt: Scalar,";
 
-/// Declared generalized speeds and a ball joint.
+/// Test mechanism with declared generalized speeds and a ball joint.
 const SPEEDS: &str = "
     #[body(mass = 2)] cart: Body,
     #[body(mass = 1, com = x, inertia = rod(1, 2, x))] arm: Body,
@@ -266,7 +267,8 @@ fn is_passed_on(function: &syn::ImplItemFn) -> bool {
     body.starts_with(&format!("{{ Self :: {} (", function.sig.ident))
 }
 
-/// Returns the code without documentation, frames and functions that only report their absence.
+/// Returns the generated code without documentation, frames, and functions that only report that a feature is
+/// absent.
 fn shown(text: &str, functions: &[&str]) -> String {
     let mut file = syn::parse_file(text).unwrap();
     file.items = generated::items(file.clone());
@@ -315,13 +317,16 @@ fn difference(name: &str, text: &str) -> Option<String> {
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
     let lines = text.lines().count().max(expected.lines().count());
-    let padded = |text: &'static str| std::iter::repeat(text);
-    let both = text.lines().chain(padded("(no more)")).zip(expected.lines().chain(padded("(no more)")));
+    let pad_lines_with = |text: &'static str| std::iter::repeat(text);
+    let both = text
+        .lines()
+        .chain(pad_lines_with("(no more)"))
+        .zip(expected.lines().chain(pad_lines_with("(no more)")));
     let (k, (now, before)) = both.take(lines).enumerate().find(|(_, (now, before))| now != before)?;
     Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
 }
 
-/// Defines one test for each mechanism, with its name.
+/// Defines one snapshot test of generated code for each named mechanism.
 macro_rules! snapshots {
     ($($name:ident)+) => {
         const TESTS: &[&str] = &[$(stringify!($name)),+];

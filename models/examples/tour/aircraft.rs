@@ -97,7 +97,7 @@ fn elements(declaration: &str) -> String {
 }
 
 fn row(name: &str, mode: &Mode) -> Vec<String> {
-    let eigenvalue = |re: f64, im: f64| {
+    let format_eigenvalue = |re: f64, im: f64| {
         let wave = if im == 0.0 { String::new() } else { format!(" ± {im:.4}i") };
         format!("{re:.5}{wave}").replace('-', "−")
     };
@@ -105,8 +105,8 @@ fn row(name: &str, mode: &Mode) -> Vec<String> {
     let time = mode.time_to_half().or(mode.time_to_double());
     vec![
         name.into(),
-        eigenvalue(mode.exponent.re, mode.exponent.im),
-        published.map_or("–".into(), |(_, re, im)| eigenvalue(*re, *im)),
+        format_eigenvalue(mode.exponent.re, mode.exponent.im),
+        published.map_or("–".into(), |(_, re, im)| format_eigenvalue(*re, *im)),
         mode.period().map_or("–".into(), figure),
         mode.period().map_or("–".into(), |_| figure(mode.damping_ratio())),
         time.map_or("–".into(), figure),

@@ -60,7 +60,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         ("unknown load", draw(LOAD, false)?),
         ("unknown load, observed", draw(LOAD, true)?),
     ];
-    let row = |(name, run): &(&str, Run)| {
+    let table_row_of_run = |(name, run): &(&str, Run)| {
         let weighed = weigh(run);
         let last = run.error.last().copied().unwrap_or(f64::NAN);
         vec![
@@ -74,7 +74,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     };
     let table = Table {
         head: vec!["", "rms error, mm", "largest, mm", "at rest, mm", "load weighed", "control step"],
-        rows: cases.iter().map(row).collect(),
+        rows: cases.iter().map(table_row_of_run).collect(),
     };
     let [exact, loaded, observed] = &cases.each_ref().map(|(_, run)| run);
     let checks = vec![
@@ -85,29 +85,29 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         Check::new("largest torque / limit of the joint", observed.strain(), 1.0),
         Check::new("median time of a control step, µs", 1e-3 * median(&observed.cost), 1e6 * PERIOD),
     ];
-    let call = |(name, times): (&str, [f64; 2])| {
+    let table_row_of_timing = |(name, times): (&str, [f64; 2])| {
         [vec![name.to_string()], times.map(|ns| format!("{ns:.0} ns")).to_vec()].concat()
     };
     let calls = Table {
         head: vec!["generated function", "median", "least"],
-        rows: timings(&observed.samples).map(call).into(),
+        rows: timings(&observed.samples).map(table_row_of_timing).into(),
     };
     let scene = scene(observed);
-    let curve = |chart: Chart, (name, run): &(&str, Run)| {
+    let add_error_curve = |chart: Chart, (name, run): &(&str, Run)| {
         chart.curve(*name, run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| (s.t, 1e3 * e)))
     };
-    let torque = |chart: Chart, k: usize| {
+    let add_torque_curve = |chart: Chart, k: usize| {
         let points = observed.samples.iter().step_by(10).map(|s| (s.t, s.u[k]));
         chart.curve(format!("joint {}", k + 1), points)
     };
     let pictures = vec![
         Picture::over_time("Tracking error of the fingertips", "error, mm", |chart| {
-            cases.iter().fold(chart.logarithmic(), curve).instant(DRAWING, "at rest")
+            cases.iter().fold(chart.logarithmic(), add_error_curve).instant(DRAWING, "at rest")
         })?,
         Picture::over_time(
             "Torques of the first four motors, unknown load, observed",
             "torque, N·m",
-            |chart| (0..4).fold(chart, torque),
+            |chart| (0..4).fold(chart, add_torque_curve),
         )?,
     ];
     Ok(Section {
@@ -151,8 +151,8 @@ fn hand(q: &Seven) -> IsometryMatrix3<f64> {
 /// Returns the small rotation from one frame to another, rad: half of the sum of the cross products of their
 /// axes.
 fn turn(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>) -> Vector3<f64> {
-    let axis = |frame: &IsometryMatrix3<f64>, k| frame.rotation.matrix().column(k).into_owned();
-    (0..3).map(|k| axis(from, k).cross(&axis(to, k))).sum::<Vector3<f64>>() / 2.0
+    let axis_of_frame = |frame: &IsometryMatrix3<f64>, k| frame.rotation.matrix().column(k).into_owned();
+    (0..3).map(|k| axis_of_frame(from, k).cross(&axis_of_frame(to, k))).sum::<Vector3<f64>>() / 2.0
 }
 
 impl Controller {
@@ -172,10 +172,10 @@ impl Controller {
         // Desired linear and angular acceleration of the hand.
         let offset = self.home.translation.vector + at - hand.translation.vector;
         let turn = turn(&hand, &self.home);
-        let stack = |a: Vector3<f64>, b: Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
-        let wanted = stack(acceleration, Vector3::zeros())
-            + DAMPING * (stack(velocity, Vector3::zeros()) - twist)
-            + STIFFNESS * stack(offset, turn);
+        let stack_vectors = |a: Vector3<f64>, b: Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
+        let wanted = stack_vectors(acceleration, Vector3::zeros())
+            + DAMPING * (stack_vectors(velocity, Vector3::zeros()) - twist)
+            + STIFFNESS * stack_vectors(offset, turn);
         let drift = arm.frame_acceleration(tip, q, v, &Seven::zeros());
 
         // Joint accelerations with this hand acceleration; the redundant degree of freedom keeps the elbow
@@ -215,8 +215,9 @@ fn draw(load: f64, observing: bool) -> Result<Run, Error> {
         .sample_every(PERIOD);
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
     let home = hand(&HOME.into()).translation.vector;
-    let error = |s: &Sample<f64, 7, 7, 7>| (hand(&s.q).translation.vector - home - eight(s.t)[0]).norm();
-    Ok(Run { error: samples.iter().map(error).collect(), felt: controller.felt, samples, cost })
+    let tracking_error =
+        |s: &Sample<f64, 7, 7, 7>| (hand(&s.q).translation.vector - home - eight(s.t)[0]).norm();
+    Ok(Run { error: samples.iter().map(tracking_error).collect(), felt: controller.felt, samples, cost })
 }
 
 impl Run {
@@ -230,8 +231,11 @@ impl Run {
 
     /// Returns the largest torque of any motor relative to its rating.
     fn strain(&self) -> f64 {
-        let rated = |k: usize| if k < 4 { 87.0 } else { 12.0 };
-        self.samples.iter().flat_map(|s| (0..7).map(move |k| s.u[k].abs() / rated(k))).fold(0.0, f64::max)
+        let rated_torque = |k: usize| if k < 4 { 87.0 } else { 12.0 };
+        self.samples
+            .iter()
+            .flat_map(|s| (0..7).map(move |k| s.u[k].abs() / rated_torque(k)))
+            .fold(0.0, f64::max)
     }
 }
 
@@ -255,32 +259,32 @@ fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     let arm = PandaArm;
     let states: Vec<(Seven, Seven, Seven)> =
         samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
-    let time = |f: &dyn Fn(&Seven, &Seven, &Seven) -> f64| {
-        let batch = || {
+    let time_per_call = |f: &dyn Fn(&Seven, &Seven, &Seven) -> f64| {
+        let time_batch = || {
             let start = Instant::now();
             for (q, v, a) in &states {
                 black_box(f(black_box(q), black_box(v), black_box(a)));
             }
             start.elapsed().as_nanos() as f64 / states.len() as f64
         };
-        let times: Vec<f64> = (0..400).map(|_| batch()).collect();
+        let times: Vec<f64> = (0..400).map(|_| time_batch()).collect();
         [median(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
     };
     let tip = frame!(PandaArm, "panda_hand_tcp");
     [
-        ("inverse_dynamics", time(&|q, v, a| black_box(arm.inverse_dynamics(q, v, a))[0])),
-        ("forward_dynamics", time(&|q, v, a| black_box(arm.forward_dynamics(q, v, a))[0])),
-        ("mass_matrix", time(&|q, _, _| black_box(arm.mass_matrix(q))[0])),
-        ("frame_jacobian", time(&|q, _, _| black_box(arm.frame_jacobian(tip, q))[0])),
+        ("inverse_dynamics", time_per_call(&|q, v, a| black_box(arm.inverse_dynamics(q, v, a))[0])),
+        ("forward_dynamics", time_per_call(&|q, v, a| black_box(arm.forward_dynamics(q, v, a))[0])),
+        ("mass_matrix", time_per_call(&|q, _, _| black_box(arm.mass_matrix(q))[0])),
+        ("frame_jacobian", time_per_call(&|q, _, _| black_box(arm.frame_jacobian(tip, q))[0])),
     ]
 }
 
 fn scene(run: &Run) -> Scene {
-    let index = |name: &str| PandaArm::frame_index(name).unwrap_or(0);
-    let joints: [usize; 7] = std::array::from_fn(|k| index(&format!("panda_link{}", k + 1)));
-    let (flange, palm) = (index("panda_link8"), index("panda_hand"));
-    let tip = index("panda_hand_tcp");
-    let frame = |s: &Sample<f64, 7, 7, 7>| {
+    let frame_index_of_name = |name: &str| PandaArm::frame_index(name).unwrap_or(0);
+    let joints: [usize; 7] = std::array::from_fn(|k| frame_index_of_name(&format!("panda_link{}", k + 1)));
+    let (flange, palm) = (frame_index_of_name("panda_link8"), frame_index_of_name("panda_hand"));
+    let tip = frame_index_of_name("panda_hand_tcp");
+    let points_of_frame = |s: &Sample<f64, 7, 7, 7>| {
         let at = PandaArm.frame_placements(&s.q);
         let mut points: Vec<Point> = vec![[0.0; 3]];
         // Origins of the links, then the ends of each joint's housing.
@@ -323,7 +327,7 @@ fn scene(run: &Run) -> Scene {
         rate: RATE,
         speed: 1.0,
         parts,
-        frames: run.samples.iter().step_by(every).map(frame).collect(),
+        frames: run.samples.iter().step_by(every).map(points_of_frame).collect(),
         still: 4.4,
         captions: vec![(0, "drawing".into()), ((DRAWING * RATE) as usize, "at rest: load weighed".into())],
         guides: vec![guide.collect()],

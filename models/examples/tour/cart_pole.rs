@@ -49,7 +49,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
     let caught = controller.caught.unwrap_or(f64::NAN);
 
-    let largest = |from: f64, f: &dyn Fn(&State) -> f64| {
+    let largest_magnitude_since = |from: f64, f: &dyn Fn(&State) -> f64| {
         samples.iter().filter(|s| s.t >= from).map(|s| f(&s.q).abs()).fold(0.0, f64::max)
     };
     let strongest = forces.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
@@ -59,18 +59,22 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             vec!["gains for x, θ and their rates".into(), list(&gains)],
             vec!["caught upright after".into(), format!("{caught:.2} s")],
             vec!["strongest push".into(), format!("{strongest:.1} N")],
-            vec!["track used".into(), format!("±{:.2} m", largest(0.0, &|q| q[0]))],
+            vec!["track used".into(), format!("±{:.2} m", largest_magnitude_since(0.0, &|q| q[0]))],
             vec![
                 format!("tilt after a shove of {SHOVING} N for {:.1} s", SHOVE.end - SHOVE.start),
-                format!("{:.1}°", largest(SHOVE.start, &|q| upright(q[1])).to_degrees()),
+                format!("{:.1}°", largest_magnitude_since(SHOVE.start, &|q| upright(q[1])).to_degrees()),
             ],
         ],
     };
     let checks = vec![
         Check::new("caught upright, s", caught, SHOVE.start - 1.0),
-        Check::new("track used, m", largest(0.0, &|q| q[0]), 1.0),
-        Check::new("tilt at the end, rad", largest(DURATION - 0.5, &|q| upright(q[1])), 5e-3),
-        Check::new("cart's distance from the middle at the end, m", largest(DURATION - 0.5, &|q| q[0]), 0.02),
+        Check::new("track used, m", largest_magnitude_since(0.0, &|q| q[0]), 1.0),
+        Check::new("tilt at the end, rad", largest_magnitude_since(DURATION - 0.5, &|q| upright(q[1])), 5e-3),
+        Check::new(
+            "cart's distance from the middle at the end, m",
+            largest_magnitude_since(DURATION - 0.5, &|q| q[0]),
+            0.02,
+        ),
     ];
     // The upright position is a multiple of a full turn; the reached one is drawn as zero.
     let turns = samples.last().map_or(0.0, |s| (s.q[1] / TAU).round() * TAU);
@@ -147,7 +151,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         let [x, y, z] = point(body, at);
         [x, -z, y]
     };
-    let frame = |s: &Sample<f64, 2, 2, 1>| {
+    let points_of_frame = |s: &Sample<f64, 2, 2, 1>| {
         let cart = CART_POLE.frame_placement(frame!(CartPole, "cart"), &s.q);
         let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
         let mut points = vec![to_z_up(&pole, [0.0; 3]), to_z_up(&pole, [0.0, CART_POLE.pole_length, 0.0])];
@@ -172,7 +176,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         rate: RATE,
         speed: 1.0,
         parts,
-        frames: samples.iter().map(frame).collect(),
+        frames: samples.iter().map(points_of_frame).collect(),
         still: 4.6,
         captions: vec![
             (0, "pumping energy".into()),

@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 /// Returns the complete page.
 pub fn html(sections: &[Section]) -> String {
-    let checks = || sections.iter().flat_map(|s| &s.checks);
-    let (held, total) = (checks().filter(|check| check.holds()).count(), checks().count());
+    let all_checks = || sections.iter().flat_map(|s| &s.checks);
+    let (held, total) = (all_checks().filter(|check| check.holds()).count(), all_checks().count());
     let mut body = String::new();
     for (k, section) in sections.iter().enumerate() {
         write_section(&mut body, k + 1, section);

@@ -31,7 +31,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         ("implicit midpoint", "10 ms", swing(ImplicitMidpoint::step(0.01))?),
         ("Dormand–Prince", "adaptive", swing(DormandPrince::new())?),
     ];
-    let row = |(name, step, run): &(&str, &str, Run)| {
+    let table_row_of_method = |(name, step, run): &(&str, &str, Run)| {
         vec![
             name.to_string(),
             step.to_string(),
@@ -42,7 +42,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     };
     let table = Table {
         head: vec!["integrator", "step", "energy error / mgl", "angle error, rad", "computing time"],
-        rows: methods.iter().map(row).collect(),
+        rows: methods.iter().map(table_row_of_method).collect(),
     };
     let [rk4, midpoint, adaptive] = &methods;
     let growth = {
@@ -60,12 +60,14 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         ),
     ];
     let energy = Picture::over_time("Energy error of the pendulum", "|E − E₀| / mgl", |chart| {
-        let add = |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.energy));
-        methods.iter().fold(chart.logarithmic(), add)
+        let add_energy_curve =
+            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.energy));
+        methods.iter().fold(chart.logarithmic(), add_energy_curve)
     })?;
     let phase = Picture::over_time("Angle against the exact solution", "|θ − θ exact|, rad", |chart| {
-        let add = |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.angle));
-        methods.iter().fold(chart.logarithmic(), add)
+        let add_angle_curve =
+            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.angle));
+        methods.iter().fold(chart.logarithmic(), add_angle_curve)
     })?;
     Ok(Section {
         title: format!("A pendulum swings for {DURATION} s"),
@@ -85,11 +87,11 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 fn swing(method: impl Method<f64>) -> Result<Run, Error> {
-    let energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
+    let total_energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
         PENDULUM.kinetic_energy(q, v) + PENDULUM.potential_energy(q)
     };
     let scale = PENDULUM.mass * PENDULUM.g * PENDULUM.length;
-    let e0 = energy(&[START].into(), &[0.0].into());
+    let e0 = total_energy(&[START].into(), &[0.0].into());
     let start = Instant::now();
     let mut samples = Vec::new();
     for sample in
@@ -99,16 +101,19 @@ fn swing(method: impl Method<f64>) -> Result<Run, Error> {
     }
     let cost = start.elapsed().as_secs_f64() * 1e3;
 
-    let windows = |error: &dyn Fn(&Sample<f64, 1, 1, 0>) -> f64| {
-        let window = |samples: &[Sample<f64, 1, 1, 0>]| {
+    let worst_errors_in_windows = |error: &dyn Fn(&Sample<f64, 1, 1, 0>) -> f64| {
+        let worst_error_in_window = |samples: &[Sample<f64, 1, 1, 0>]| {
             let worst = samples.iter().map(error).fold(0.0, f64::max);
             [samples.last().map_or(0.0, |s| s.t), worst]
         };
-        samples[1..].chunks((WINDOW / INTERVAL).round() as usize).map(window).collect::<Vec<_>>()
+        samples[1..]
+            .chunks((WINDOW / INTERVAL).round() as usize)
+            .map(worst_error_in_window)
+            .collect::<Vec<_>>()
     };
     Ok(Run {
-        energy: windows(&|s| (energy(&s.q, &s.v) - e0).abs() / scale),
-        angle: windows(&|s| (s.q[0] - exact(s.t)).abs()),
+        energy: worst_errors_in_windows(&|s| (total_energy(&s.q, &s.v) - e0).abs() / scale),
+        angle: worst_errors_in_windows(&|s| (s.q[0] - exact(s.t)).abs()),
         cost,
     })
 }

@@ -36,9 +36,9 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             fly(spin, DormandPrince::new().tolerance(1e-13, 1e-13))?,
         ),
     ];
-    let worst = |errors: &[[f64; 2]]| errors.iter().map(|e| e[1]).fold(0.0, f64::max);
-    let row = |(name, step, samples): &(&str, &str, Vec<Sample12>)| {
-        let errors = [parabola(samples), drift(samples)].map(|e| figure(worst(&e)));
+    let worst_error = |errors: &[[f64; 2]]| errors.iter().map(|e| e[1]).fold(0.0, f64::max);
+    let table_row_of_method = |(name, step, samples): &(&str, &str, Vec<Sample12>)| {
+        let errors = [parabola(samples), drift(samples)].map(|e| figure(worst_error(&e)));
         [vec![name.to_string(), step.to_string()], errors.to_vec()].concat()
     };
     let table = Table {
@@ -48,21 +48,22 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             "centre of mass off parabola, m",
             "angular momentum, relative drift",
         ],
-        rows: runs.iter().map(row).collect(),
+        rows: runs.iter().map(table_row_of_method).collect(),
     };
     let [_, _, (_, _, samples)] = &runs;
-    let rates = |k: usize| samples.iter().map(|s| [s.t, s.v[3 + k]]).collect::<Vec<_>>();
-    let fastest = rates(1).iter().map(|r| r[1].abs()).fold(0.0, f64::max);
+    let angular_rate_samples = |k: usize| samples.iter().map(|s| [s.t, s.v[3 + k]]).collect::<Vec<_>>();
+    let fastest = angular_rate_samples(1).iter().map(|r| r[1].abs()).fold(0.0, f64::max);
     let checks = vec![
-        Check::new("centre of mass off its parabola, m", worst(&parabola(samples)), 1e-11),
-        Check::new("angular momentum about it, relative drift", worst(&drift(samples)), 1e-11),
+        Check::new("centre of mass off its parabola, m", worst_error(&parabola(samples)), 1e-11),
+        Check::new("angular momentum about it, relative drift", worst_error(&drift(samples)), 1e-11),
         Check::new("trunk against level at landing, rad", landing, 1e-6),
         Check::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
     ];
     let pictures = vec![
         Picture::over_time("Angular velocity of the trunk", "angular velocity, rad/s", |chart| {
-            let add = |chart: Chart, (k, name): (usize, &str)| chart.curve(name, pairs(&rates(k)));
-            let chart = ["roll", "pitch", "yaw"].into_iter().enumerate().fold(chart, add);
+            let add_rate_curve =
+                |chart: Chart, (k, name): (usize, &str)| chart.curve(name, pairs(&angular_rate_samples(k)));
+            let chart = ["roll", "pitch", "yaw"].into_iter().enumerate().fold(chart, add_rate_curve);
             chart.instant(TUCKING[0] * FLIGHT, "tuck").instant(OPENING[0] * FLIGHT, "open")
         })?,
         Picture::over_time("Conservation (Dormand–Prince)", "deviation", |chart| {
@@ -93,7 +94,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
 /// Returns the desired joint angles at a time.
 fn posture(t: f64) -> SVector<f64, 12> {
     let part = t / FLIGHT;
-    let smooth = |[from, to]: [f64; 2], part: f64| {
+    let smooth_step_between = |[from, to]: [f64; 2], part: f64| {
         let s = ((part - from) / (to - from)).clamp(0.0, 1.0);
         s * s * (3.0 - 2.0 * s)
     };
@@ -101,7 +102,7 @@ fn posture(t: f64) -> SVector<f64, 12> {
         let (leg, joint) = (k / 3, k % 3);
         // The left hind leg is delayed.
         let late = if leg == 2 { 0.04 } else { 0.0 };
-        let tuck = smooth(TUCKING, part - late) - smooth(OPENING, part - late);
+        let tuck = smooth_step_between(TUCKING, part - late) - smooth_step_between(OPENING, part - late);
         let bend = if leg < 2 { 1.0 } else { -1.0 };
         match joint {
             0 => 0.0,
@@ -143,13 +144,13 @@ fn fly(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Er
 /// Returns the angular velocity at take-off for which the trunk is level again at the end, and the remaining
 /// tilt.
 fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
-    let tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
+    let final_tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
         let samples = fly(spin, Rk4::step(PERIOD))?;
         let (first, last) = samples.first().zip(samples.last()).ok_or("no samples")?;
         Ok(Solo12.difference(&first.q, &last.q).fixed_rows::<3>(3).into_owned())
     };
     let mut spin = Vector3::new(0.0, -5.0, 0.0);
-    let mut error = tilt(spin)?;
+    let mut error = final_tilt(spin)?;
     for _ in 0..12 {
         if error.norm() < 1e-9 {
             break;
@@ -158,11 +159,11 @@ fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
         for k in 0..3 {
             let mut other = spin;
             other[k] += 1e-4;
-            slope.set_column(k, &((tilt(other)? - error) / 1e-4));
+            slope.set_column(k, &((final_tilt(other)? - error) / 1e-4));
         }
         let step = slope.try_inverse().ok_or("a spin that changes nothing")? * error;
         spin -= step * (0.5 / step.norm()).min(1.0);
-        error = tilt(spin)?;
+        error = final_tilt(spin)?;
     }
     Ok((spin, error.norm()))
 }
@@ -170,31 +171,36 @@ fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
 /// Returns the distance of the centre of mass from its free-fall parabola over time, m.
 fn parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
     let start = Solo12.center_of_mass(&samples[0].q);
-    let fall = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
-    samples.iter().skip(1).map(|s| [s.t, (Solo12.center_of_mass(&s.q) - fall(s.t)).norm()]).collect()
+    let free_fall_position = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
+    samples
+        .iter()
+        .skip(1)
+        .map(|s| [s.t, (Solo12.center_of_mass(&s.q) - free_fall_position(s.t)).norm()])
+        .collect()
 }
 
 /// Returns the relative change of the angular momentum about the centre of mass over time.
 fn drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
-    let angular = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
-    let start = angular(&samples[0]);
-    samples.iter().skip(1).map(|s| [s.t, (angular(s) - start).norm() / start.norm()]).collect()
+    let angular_momentum = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
+    let start = angular_momentum(&samples[0]);
+    samples.iter().skip(1).map(|s| [s.t, (angular_momentum(s) - start).norm() / start.norm()]).collect()
 }
 
 fn scene(samples: &[Sample12]) -> Scene {
-    let index = |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
+    let frame_index_of_link =
+        |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
     let legs = ["FL", "FR", "HL", "HR"];
-    let frame = |s: &Sample12| {
+    let points_of_frame = |s: &Sample12| {
         let at = Solo12.frame_placements(&s.q);
         let trunk = Solo12.frame_placement(frame!(Solo12, "base_link"), &s.q);
         let mut points: Vec<Point> = corners(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();
         for leg in legs {
             for link in ["SHOULDER", "UPPER_LEG", "LOWER_LEG", "FOOT"] {
-                points.push(point(&at[index(leg, link)], [0.0; 3]));
+                points.push(point(&at[frame_index_of_link(leg, link)], [0.0; 3]));
             }
             // Axle of the shoulder, from inside the trunk.
             let inwards = if leg.ends_with('L') { -0.05 } else { 0.05 };
-            points.push(point(&at[index(leg, "SHOULDER")], [0.0, inwards, 0.0]));
+            points.push(point(&at[frame_index_of_link(leg, "SHOULDER")], [0.0, inwards, 0.0]));
         }
         points.push(Solo12.center_of_mass(&s.q).into());
         points
@@ -212,7 +218,7 @@ fn scene(samples: &[Sample12]) -> Scene {
         ]);
     }
     let start = Solo12.center_of_mass(&samples[0].q);
-    let fall = |k: usize| {
+    let free_fall_position = |k: usize| {
         let t = FLIGHT * k as f64 / 60.0;
         (start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0)).into()
     };
@@ -222,14 +228,14 @@ fn scene(samples: &[Sample12]) -> Scene {
         rate: RATE,
         speed: 0.25,
         parts,
-        frames: samples.iter().map(frame).collect(),
+        frames: samples.iter().map(points_of_frame).collect(),
         still: 0.75,
         captions: vec![
             (0, "take-off".into()),
             (sample_index(TUCKING[0]), "tucking: spins faster".into()),
             (sample_index(OPENING[0]), "opening: spins slower".into()),
         ],
-        guides: vec![(0..=60).map(fall).collect()],
+        guides: vec![(0..=60).map(free_fall_position).collect()],
         trail: Some((28, 400)),
         view: View {
             target: [TAKE_OFF[0] * FLIGHT / 2.0, 0.0, 0.66],

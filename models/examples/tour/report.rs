@@ -92,8 +92,11 @@ pub fn figure(x: f64) -> String {
 /// Returns the declaration of a mechanism without its documentation, from the text of its file.
 pub fn declaration(file: &str, name: &str) -> String {
     let lines: Vec<&str> = file.lines().filter(|line| !line.trim_start().starts_with("///")).collect();
-    let starts = |line: &&str, word: &str| line.starts_with(&format!("pub struct {name}{word}"));
-    let Some(head) = lines.iter().position(|l| [" ", ";", "<"].iter().any(|word| starts(l, word))) else {
+    let starts_struct_declaration =
+        |line: &&str, word: &str| line.starts_with(&format!("pub struct {name}{word}"));
+    let Some(head) =
+        lines.iter().position(|l| [" ", ";", "<"].iter().any(|word| starts_struct_declaration(l, word)))
+    else {
         return String::new();
     };
     let first = lines[..head].iter().rposition(|l| l.starts_with("#[mechanism")).unwrap_or(head);
@@ -144,12 +147,12 @@ fn write_wrapped(out: &mut String, text: &str) {
 }
 
 fn write_table(out: &mut String, table: &Table) {
-    let width = |k: usize| {
+    let column_width = |k: usize| {
         let cells = table.rows.iter().filter_map(|row| row.get(k)).map(|cell| cell.chars().count());
         cells.chain(table.head.get(k).map(|head| head.chars().count())).max().unwrap_or(0)
     };
     let columns = table.rows.first().map_or(0, Vec::len);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let widths: Vec<usize> = (0..columns).map(column_width).collect();
     let head: Vec<String> = table.head.iter().map(ToString::to_string).collect();
     for row in std::iter::once(&head).filter(|head| !head.is_empty()).chain(&table.rows) {
         out.push_str("     ");

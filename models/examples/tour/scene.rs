@@ -118,12 +118,12 @@ impl Part {
 }
 
 fn join(lists: &[Vec<Point>]) -> String {
-    let list = |points: &Vec<Point>| {
+    let join_coordinates = |points: &Vec<Point>| {
         let numbers: Vec<String> =
             points.iter().flatten().map(|x| format!("{}", (x * 1e5).round() as i64)).collect();
         format!("[{}]", numbers.join(","))
     };
-    lists.iter().map(list).collect::<Vec<_>>().join(",")
+    lists.iter().map(join_coordinates).collect::<Vec<_>>().join(",")
 }
 
 /// Returns a point of a body in ground coordinates.
@@ -133,9 +133,9 @@ pub fn point(body: &IsometryMatrix3<f64>, at: Point) -> Point {
 
 /// Returns the eight corners of a box with the given half sizes about a point of a body.
 pub fn corners(body: &IsometryMatrix3<f64>, at: Point, half: Point) -> [Point; 8] {
-    let signs = |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 2.0 * bit as f64 - 1.0);
+    let signs_of_corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 2.0 * bit as f64 - 1.0);
     std::array::from_fn(|k| {
-        let s = signs(k);
+        let s = signs_of_corner(k);
         point(body, [0, 1, 2].map(|i| at[i] + s[i] * half[i]))
     })
 }

@@ -83,9 +83,12 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         simulated.curve("closed form, fastest", level(fastest))
     })?;
 
-    let vertical = |s: &Sample<f64, 4, 3, 0>| (rotation(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
-    let momentum =
-        samples.iter().map(|s| (vertical(s) / vertical(&samples[0]) - 1.0).abs()).fold(0.0, f64::max);
+    let vertical_angular_momentum =
+        |s: &Sample<f64, 4, 3, 0>| (rotation(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
+    let momentum = samples
+        .iter()
+        .map(|s| (vertical_angular_momentum(s) / vertical_angular_momentum(&samples[0]) - 1.0).abs())
+        .fold(0.0, f64::max);
     let slowed = samples.iter().map(|s| (s.v[2] / SPIN - 1.0).abs()).fold(0.0, f64::max);
     checks.push(Check::new("angular momentum about the vertical, drift", momentum, 1e-9));
     checks.push(Check::new("spin about the axis, drift", slowed, 1e-9));
@@ -129,17 +132,17 @@ fn precession(s: &Sample<f64, 4, 3, 0>) -> f64 {
 const CORNERS: usize = 20;
 
 fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
-    let ring = |body: &IsometryMatrix3<f64>, radius: f64, z: f64| {
+    let points_of_ring = |body: &IsometryMatrix3<f64>, radius: f64, z: f64| {
         (0..CORNERS)
             .map(|k| TAU * k as f64 / CORNERS as f64)
             .map(|a| point(body, [radius * a.cos(), radius * a.sin(), z]))
             .collect::<Vec<Point>>()
     };
-    let frame = |s: &Sample<f64, 4, 3, 0>| {
+    let points_of_frame = |s: &Sample<f64, 4, 3, 0>| {
         let body = TOP.frame_placement(frame!(HeavyTop<f64>, "top"), &s.q);
         let mut points = vec![[0.0; 3], point(&body, [0.0, 0.0, 0.07]), point(&body, [0.0, 0.0, 0.105])];
-        points.extend(ring(&body, 0.042, 0.052));
-        points.extend(ring(&body, 0.016, 0.07));
+        points.extend(points_of_ring(&body, 0.042, 0.052));
+        points.extend(points_of_ring(&body, 0.016, 0.07));
         points
     };
     let mut parts = vec![Part::Rod(1, 2, 0.003, Tone::Dark), Part::Ball(2, 0.0045, Tone::Accent)];
@@ -155,7 +158,7 @@ fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
         rate: RATE,
         speed: 0.25,
         parts,
-        frames: samples.iter().map(frame).collect(),
+        frames: samples.iter().map(points_of_frame).collect(),
         still: 1.2,
         captions: Vec::new(),
         guides: Vec::new(),

@@ -63,13 +63,20 @@ fn a_glider_glides_by_its_polar() {
         close(down / speed, drag / lift.hypot(drag), 1e-9);
         close(0.5 * density * speed * speed * area * lift.hypot(drag), mass * g, 1e-9);
     }
-    let path = |lift: f64| sink(&GLIDER, &glide(&GLIDER, lift)).1 / sink(&GLIDER, &glide(&GLIDER, lift)).0;
+    let glide_angle_sine =
+        |lift: f64| sink(&GLIDER, &glide(&GLIDER, lift)).1 / sink(&GLIDER, &glide(&GLIDER, lift)).0;
     let ratio = 1.0 / (2.0 * (cd_0 * cd_induced).sqrt());
-    close(path(best).asin().tan(), 1.0 / ratio, 1e-9);
-    assert!(path(0.97 * best) > path(best) && path(1.03 * best) > path(best));
+    close(glide_angle_sine(best).asin().tan(), 1.0 / ratio, 1e-9);
+    assert!(
+        glide_angle_sine(0.97 * best) > glide_angle_sine(best)
+            && glide_angle_sine(1.03 * best) > glide_angle_sine(best)
+    );
     let slowest = 3.0_f64.sqrt() * best;
-    let down = |lift| sink(&GLIDER, &glide(&GLIDER, lift)).1;
-    assert!(down(0.97 * slowest) > down(slowest) && down(1.03 * slowest) > down(slowest));
+    let sink_rate_at_lift = |lift| sink(&GLIDER, &glide(&GLIDER, lift)).1;
+    assert!(
+        sink_rate_at_lift(0.97 * slowest) > sink_rate_at_lift(slowest)
+            && sink_rate_at_lift(1.03 * slowest) > sink_rate_at_lift(slowest)
+    );
 }
 
 fn modes(glider: &Glider, lift: f64) -> FlightModes {
@@ -77,9 +84,9 @@ fn modes(glider: &Glider, lift: f64) -> FlightModes {
     FlightModes::from_system(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
 
-/// With a constant angle of attack, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`. About the glide
-/// at `tan γ = −C_D / C_L` the trace is `−3 (g / V) C_D / C_L`, a third of which is due to the slope of the
-/// path.
+/// Checks period and damping of a glider's phugoid. With a constant angle of attack, `V̇ = −k_D V² − g sin γ`
+/// and `V γ̇ = k_L V² − g cos γ`. About the glide at `tan γ = −C_D / C_L` the trace is
+/// `−3 (g / V) C_D / C_L`, a third of which is due to the slope of the path.
 #[test]
 fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
@@ -181,7 +188,7 @@ fn at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
 fn a_satellite_turns_by_its_wheels() {
     let (q, v) = at_rest();
     // Rest-to-rest manoeuvre: acceleration in one direction, then in the opposite one.
-    let turn = |torques: [f64; 3], q, v, duration: f64| {
+    let apply_wheel_torques = |torques: [f64; 3], q, v, duration: f64| {
         let path = simulate(&SATELLITE)
             .from(q, v)
             .inputs(|_, _, _| torques.into())
@@ -191,17 +198,18 @@ fn a_satellite_turns_by_its_wheels() {
             .unwrap();
         (path.q, path.v)
     };
-    let (q, v) = turn([0.1, 0.0, 0.0], q, v, 20.0);
-    let (q, v) = turn([-0.1, 0.0, 0.0], q, v, 20.0);
+    let (q, v) = apply_wheel_torques([0.1, 0.0, 0.0], q, v, 20.0);
+    let (q, v) = apply_wheel_torques([-0.1, 0.0, 0.0], q, v, 20.0);
     assert!(v.norm() < 1e-8, "{v}");
     let hull = 2.0 * q[0].atan2(q[3]);
     close(hull, -SATELLITE.wheel / (SATELLITE.ixx + 2.0 * SATELLITE.wheel) * q[4], 1e-8);
 
     // With all wheels at once, and while tumbling, the angular momentum is constant.
     let v = SVector::from([0.1, -0.2, 0.15, 80.0, -50.0, 20.0]);
-    let seen = |q: &_, v: &_| Outputs::outputs(&SATELLITE, 0.0, q, v, &SVector::zeros(), &SVector::zeros());
-    let (later, faster) = turn([0.05, 0.1, -0.02], q, v, 15.0);
-    let (before, after) = (seen(&q, &v), seen(&later, &faster));
+    let outputs_of_state =
+        |q: &_, v: &_| Outputs::outputs(&SATELLITE, 0.0, q, v, &SVector::zeros(), &SVector::zeros());
+    let (later, faster) = apply_wheel_torques([0.05, 0.1, -0.02], q, v, 15.0);
+    let (before, after) = (outputs_of_state(&q, &v), outputs_of_state(&later, &faster));
     assert!((before - after).norm() < 1e-7 * before.norm(), "{before} {after}");
     assert!((faster - v).norm() > 10.0);
 }

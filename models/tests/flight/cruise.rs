@@ -43,8 +43,8 @@ fn a_transport_cruises() {
     assert_eq!(felt.outputs()[3].name, "felt");
 }
 
-/// The matrices equal those of an independent computation from Etkin's derivatives to 1e-9, and his printed
-/// matrices (ft and s) to their digits.
+/// Checks the state-space matrices of a transport aircraft. They equal an independent computation from
+/// Etkin's derivatives to 1e-9, and Etkin's printed matrices (ft and s) to their digits.
 #[test]
 fn a_transport_has_the_matrices_of_etkin_and_reid() {
     let system = system(&TRANSPORT);
@@ -93,7 +93,8 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
     close(system.b()[(4, column)], pitch / iyy, 1e-12);
 }
 
-/// The modes have the published eigenvalues, and those of an independent computation.
+/// Checks that the modes of a transport aircraft have the published eigenvalues of Etkin and Reid, and those
+/// of an independent computation.
 #[test]
 fn a_transport_has_the_modes_of_etkin_and_reid() {
     let modes = FlightModes::from_system(&system(&TRANSPORT)).unwrap();
@@ -113,7 +114,8 @@ fn a_transport_has_the_modes_of_etkin_and_reid() {
     assert_eq!(modes.named_modes().len(), 5);
 }
 
-/// Without its `α̇` derivatives the short period has seven eighths of its damping.
+/// Checks that without the derivatives with respect to `α̇` the short period has seven eighths of its damping
+/// ratio.
 #[test]
 fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
     let damping =
@@ -123,7 +125,8 @@ fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
     assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
 }
 
-/// The dimensionless derivatives from dimensional ones equal the declared derivatives.
+/// Checks that dimensionless derivatives, computed from the dimensional derivatives of an aircraft, equal the
+/// declared ones.
 #[test]
 fn derivatives_without_dimension_are_those_declared() {
     let craft = TRANSPORT;
@@ -192,16 +195,18 @@ fn an_airliner_has_the_modes_of_cook() {
     let base = CruisingAircraft { g: 32.2 * feet, cruise: speed, product: 0.0, ..TRANSPORT };
     let CruisingAircraft { mass, ixx, izz, density, area, span, .. } = base;
     let load = 0.5 * density * speed * speed * area;
-    let by_slip = |derivative: f64, inertia: f64| derivative / feet * speed * inertia / (load * span);
-    let by_rate = |derivative: f64, inertia: f64| derivative * 2.0 * speed * inertia / (load * span * span);
+    let derivative_by_sideslip =
+        |derivative: f64, inertia: f64| derivative / feet * speed * inertia / (load * span);
+    let derivative_by_rate =
+        |derivative: f64, inertia: f64| derivative * 2.0 * speed * inertia / (load * span * span);
     let craft = CruisingAircraft {
         cy_beta: -0.1008 * mass * speed / load,
-        cl_beta: by_slip(-0.00579, ixx),
-        cl_p: by_rate(-1.232, ixx),
-        cl_r: by_rate(0.397, ixx),
-        cn_beta: by_slip(0.00278, izz),
-        cn_p: by_rate(-0.0346, izz),
-        cn_r: by_rate(-0.257, izz),
+        cl_beta: derivative_by_sideslip(-0.00579, ixx),
+        cl_p: derivative_by_rate(-1.232, ixx),
+        cl_r: derivative_by_rate(0.397, ixx),
+        cn_beta: derivative_by_sideslip(0.00278, izz),
+        cn_p: derivative_by_rate(-0.0346, izz),
+        cn_r: derivative_by_rate(-0.257, izz),
         ..base
     };
     let modes = FlightModes::from_system(&system(&craft)).unwrap();

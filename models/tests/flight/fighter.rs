@@ -25,8 +25,8 @@ fn moving(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) ->
     SVector::from([across * alpha.cos(), speed * beta.sin(), across * alpha.sin(), p, q, r, power])
 }
 
-/// The rates of all states equal those of the book in a state far from any trim (Stevens, Lewis and Johnson,
-/// table 3.5-2).
+/// Checks that the time derivatives of all states of the F-16 model equal the published ones, in a state far
+/// from any trim (Stevens, Lewis and Johnson, table 3.5-2).
 #[test]
 fn all_rates_are_those_of_the_book() {
     let fighter = Fighter { place: 0.4, ..Fighter::F16 };
@@ -225,15 +225,16 @@ fn linear_motion_is_that_of_the_book() {
     }
 }
 
-/// With an aft centre of mass the fighter has two real pitch modes, one of which is unstable; with a forward
-/// one it has a short period. The engine is a separate mode with a lag of a second.
+/// Checks the modes of a fighter aircraft. With an aft centre of mass it has two real pitch modes, one of
+/// them unstable; with a forward centre of mass it has a short period. The engine is a separate mode with a
+/// lag of one second.
 #[test]
 fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
-    let modes = |place| {
+    let modes_with_center_of_mass = |place| {
         let fighter = Fighter { place, ..Fighter::F16 };
         FlightModes::from_system(&linear(&fighter, &level(&fighter, 502.0))).unwrap()
     };
-    let (stable, unstable) = (modes(0.3), modes(0.38));
+    let (stable, unstable) = (modes_with_center_of_mass(0.3), modes_with_center_of_mass(0.38));
     assert!(stable.short_period.is_some_and(|mode| mode.exponent.re < -1.0));
     assert!(stable.others.iter().all(|mode| mode.exponent.re < 0.0));
     let engine =

@@ -3,7 +3,7 @@ use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::Aircraft;
 
-/// Light aircraft with linear aerodynamics.
+/// Parameters of a light aircraft with linear aerodynamics.
 const A: Aircraft = Aircraft {
     g: 9.81,
     mass: 1050.0,
@@ -30,7 +30,8 @@ fn state(turn: UnitQuaternion<f64>, v: Vector3<f64>, w: Vector3<f64>) -> (SVecto
     ([0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into(), [v.x, v.y, v.z, w.x, w.y, w.z].into())
 }
 
-/// In trimmed level flight, lift, thrust and elevator from a calculation by hand give zero accelerations.
+/// Checks that the accelerations are zero in trimmed level flight, with angle of attack, thrust and elevator
+/// calculated by hand.
 #[test]
 fn level_flight() {
     let (alpha, weight) = (0.06_f64, A.mass * A.g);
@@ -56,7 +57,7 @@ fn level_flight() {
     assert_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
 }
 
-/// In a level turn of a glider without drag, the velocity is constant in body axes.
+/// Checks that a glider without drag has a constant velocity in body axes in a level turn.
 #[test]
 fn level_turn() {
     let smooth = Aircraft { cd_0: 0.0, cd_induced: 0.0, ..A };

@@ -11,17 +11,17 @@ fn place(theta: f64) -> SVector<f64, 7> {
     [reach * theta.sin(), 0.0, -reach * theta.cos(), 0.0, 0.0, 0.0, 1.0].into()
 }
 
-/// Large oscillations have the period of an elliptic integral; small ones have the frequency
-/// `√(5 g / (7 (R − r)))`.
+/// Checks that large oscillations of the ball have the period given by an elliptic integral, and small ones
+/// the frequency `√(5 g / (7 (R − r)))`.
 #[test]
 fn swings_like_a_longer_pendulum() -> Result<(), Error> {
     assert_eq!((BallInBowl::NC, BallInBowl::NS), (3, 3));
     for theta in [1.1_f64, 1e-3] {
-        let speed = |v: &SVector<f64, 6>| v[4];
+        let angular_speed = |v: &SVector<f64, 6>| v[4];
         let end = simulate(&B)
             .from(place(theta), [0.0; 6])
             .method(precisely())
-            .until_crossing(Crossing::Rising, |_, _, v| -speed(v))
+            .until_crossing(Crossing::Rising, |_, _, v| -angular_speed(v))
             .duration(10.0)
             .finish()?;
         let length = 1.4 * (B.bowl - B.radius);

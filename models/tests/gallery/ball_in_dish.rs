@@ -34,11 +34,12 @@ fn circles_level() -> Result<(), Error> {
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert_close(v[1], rate * u, 1e-13);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
-        let index = |name| BallInDish::CONSTRAINTS.iter().position(|c| *c == name).expect("it is one");
+        let constraint_index =
+            |name| BallInDish::CONSTRAINTS.iter().position(|c| *c == name).expect("it is one");
         let normal = B.mass * (rate * rate * rho * c + B.g * s);
-        assert_close(lambda[index("contact.normal")], normal, 1e-12);
+        assert_close(lambda[constraint_index("contact.normal")], normal, 1e-12);
         for name in ["contact.foot_first", "contact.foot_second"] {
-            assert_close(lambda[index(name)], 0.0, 1e-12);
+            assert_close(lambda[constraint_index(name)], 0.0, 1e-12);
         }
         let time = 1.0;
         let end = simulate(&B).from(q, v).method(precisely()).duration(time).finish()?;
@@ -79,12 +80,12 @@ fn accelerations() {
 #[test]
 fn keeps_its_energy() -> Result<(), Error> {
     let (q, v) = state(0.2, -0.1, [0.4, 0.7], 30.0);
-    let energy = |q: &_, v: &_| B.kinetic_energy(q, v) + B.potential_energy(q);
+    let total_energy = |q: &_, v: &_| B.kinetic_energy(q, v) + B.potential_energy(q);
     let run = simulate(&B).from(q, v).method(precisely()).duration(3.0).sample_every(0.25);
     let (mut lowest, mut highest) = (q[4], q[4]);
     for sample in run {
         let Sample { q: now, v: then, .. } = sample?;
-        assert_close(energy(&now, &then), energy(&q, &v), 1e-10);
+        assert_close(total_energy(&now, &then), total_energy(&q, &v), 1e-10);
         assert!(B.constraint_residuals(&now).amax() < 1e-13);
         let turn = UnitQuaternion::from_quaternion([now[5], now[6], now[7], now[8]].into());
         assert!((turn.norm() - 1.0).abs() < 1e-12);

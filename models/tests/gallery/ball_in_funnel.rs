@@ -43,7 +43,7 @@ fn circles_level() -> Result<(), Error> {
 #[test]
 fn keeps_its_integrals() -> Result<(), Error> {
     let (s, c) = B.half_angle.sin_cos();
-    let integrals = |q: &SVector<f64, 7>, v: &SVector<f64, 6>| {
+    let integrals_of_motion = |q: &SVector<f64, 7>, v: &SVector<f64, 6>| {
         let turn = UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into());
         let velocity = turn * Vector3::new(v[0], v[1], v[2]);
         let w = turn * Vector3::new(v[3], v[4], v[5]);
@@ -60,7 +60,7 @@ fn keeps_its_integrals() -> Result<(), Error> {
     for sample in run {
         let Sample { q: now, v: then, .. } = sample?;
         lowest = lowest.min(now[2]);
-        assert_near(integrals(&now, &then), integrals(&q, &v), 1e-9);
+        assert_near(integrals_of_motion(&now, &then), integrals_of_motion(&q, &v), 1e-9);
     }
     assert!(lowest < 0.8 * q[2], "it sank to {lowest} only");
     Ok(())

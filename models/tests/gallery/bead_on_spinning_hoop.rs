@@ -33,14 +33,14 @@ fn oscillation_about_the_tilted_equilibrium() -> Result<(), Error> {
 
 #[test]
 fn jacobis_integral_is_conserved() -> Result<(), Error> {
-    let jacobi = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
+    let jacobi_integral = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
         let speed2 = v[0] * v[0] - (H.spin * q[0].sin()).powi(2);
         H.mass * H.radius * (H.radius * speed2 / 2.0 - H.g * q[0].cos())
     };
-    let start = jacobi(&[0.2].into(), &[0.5].into());
+    let start = jacobi_integral(&[0.2].into(), &[0.5].into());
     for sample in simulate(&H).from([0.2], [0.5]).method(precisely()).duration(3.0).sample_every(0.5) {
         let Sample { q, v, .. } = sample?;
-        assert_close(jacobi(&q, &v), start, 1e-10);
+        assert_close(jacobi_integral(&q, &v), start, 1e-10);
     }
     Ok(())
 }

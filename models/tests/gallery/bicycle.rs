@@ -28,8 +28,9 @@ fn linear(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
     let linear = bicycle.linearize(&q, &v, &SVector::zeros(), &[LEAN, STEER, WHEEL]).expect("regular");
     let position =
         |k| linear.coordinates.iter().position(|i| *i == k).expect("lean and steer are independent");
-    let speed = |k| 7 + linear.speeds.iter().position(|i| *i == k).expect("their rates are independent");
-    let rows = [position(LEAN), position(STEER), speed(LEAN), speed(STEER)];
+    let row_of_speed =
+        |k| 7 + linear.speeds.iter().position(|i| *i == k).expect("their rates are independent");
+    let rows = [position(LEAN), position(STEER), row_of_speed(LEAN), row_of_speed(STEER)];
     let (.., by_force) = bicycle.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
     let inverse = Matrix2::from_fn(|i, j| by_force[([LEAN, STEER][i], [LEAN, STEER][j])]);
     (Matrix4::from_fn(|i, j| linear.a[(rows[i], rows[j])]), inverse)
@@ -42,16 +43,16 @@ fn matrices_are_the_published_ones() {
     let c1 = Matrix2::new(0.0, 33.866_413_914_924_94, -0.850_356_414_569_784_4, 1.685_403_973_975_596_7);
     let k0 = Matrix2::new(-80.95, -2.599_516_852_498_716, -2.599_516_852_498_716, -0.803_294_884_586_176_9);
     let k2 = Matrix2::new(0.0, 76.597_345_895_732_22, 0.0, 2.654_315_237_946_04);
-    let close = |found: Matrix2<f64>, expected: Matrix2<f64>| {
+    let assert_close_matrices = |found: Matrix2<f64>, expected: Matrix2<f64>| {
         let worst = (found - expected).amax();
         assert!(worst <= 1e-11 * expected.amax().max(1.0), "{found} for {expected}");
     };
     for speed in [0.0, 1.0, 4.6] {
         let (a, inverse) = linear(speed);
         let mass = inverse.try_inverse().expect("regular");
-        close(mass, m);
-        close(-mass * a.fixed_view::<2, 2>(2, 0), k0 * 9.81 + k2 * (speed * speed));
-        close(-mass * a.fixed_view::<2, 2>(2, 2), c1 * speed + Matrix2::zeros());
+        assert_close_matrices(mass, m);
+        assert_close_matrices(-mass * a.fixed_view::<2, 2>(2, 0), k0 * 9.81 + k2 * (speed * speed));
+        assert_close_matrices(-mass * a.fixed_view::<2, 2>(2, 2), c1 * speed + Matrix2::zeros());
     }
 }
 
@@ -172,7 +173,7 @@ fn eigenvalues_are_the_published_ones() {
 
 #[test]
 fn weave_and_capsize_speeds() {
-    let growth = |speed: f64, weaving: bool| {
+    let largest_growth_rate = |speed: f64, weaving: bool| {
         let exponents = linear(speed).0.complex_eigenvalues();
         let of = exponents.iter().filter(|e| (e.im.abs() > 1e-6) == weaving).map(|e| e.re);
         of.fold(f64::NEG_INFINITY, f64::max)
@@ -181,10 +182,14 @@ fn weave_and_capsize_speeds() {
         [(true, (4.0, 5.0), 4.292_382_536_341_11), (false, (5.0, 7.0), 6.024_262_015_388_37)]
     {
         let (mut below, mut above) = between;
-        let sign = growth(below, weaving).signum();
+        let sign = largest_growth_rate(below, weaving).signum();
         for _ in 0..50 {
             let middle = (below + above) / 2.0;
-            if growth(middle, weaving).signum() == sign { below = middle } else { above = middle }
+            if largest_growth_rate(middle, weaving).signum() == sign {
+                below = middle
+            } else {
+                above = middle
+            }
         }
         assert_close(below, published, 1e-11);
     }

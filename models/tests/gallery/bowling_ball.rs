@@ -35,14 +35,14 @@ fn accelerations_follow_the_slip() {
 fn slides_and_then_rolls() -> Result<(), Error> {
     let speed = 5.0;
     let time = 2.0 * speed / (7.0 * B.friction * B.g);
-    let run = |t: f64| {
+    let roll_for_duration = |t: f64| {
         let v = [speed, 0.0, 0.0, 0.0, 0.0, 0.0];
         simulate(&B).from(place(), v).method(precisely()).duration(t).finish()
     };
-    let half = run(time / 2.0)?;
+    let half = roll_for_duration(time / 2.0)?;
     assert_close(half.q[0], speed * time / 2.0 - B.friction * B.g * time * time / 8.0, 1e-6);
     assert_close(half.v[4], 2.5 * B.friction * B.g * time / 2.0 / B.radius, 1e-6);
-    let end = run(1.5 * time)?;
+    let end = roll_for_duration(1.5 * time)?;
     let pose = UnitQuaternion::from_quaternion([end.q[3], end.q[4], end.q[5], end.q[6]].into());
     let velocity = pose * Vector3::new(end.v[0], end.v[1], end.v[2]);
     // The angular momentum about the lane is constant, so that this is exact.
@@ -54,7 +54,7 @@ fn slides_and_then_rolls() -> Result<(), Error> {
     Ok(())
 }
 
-/// With spin transverse to its path the ball moves along a parabola while it slides.
+/// Checks that a bowling ball with spin transverse to its path moves along a parabola while it slides.
 #[test]
 fn hooks() -> Result<(), Error> {
     let v = SVector::from([4.0, 0.0, 0.0, 30.0, 0.0, 0.0]);

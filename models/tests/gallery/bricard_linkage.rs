@@ -4,7 +4,7 @@ use linkwork_models::BricardLinkage;
 
 const B: BricardLinkage = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
 
-/// The rods start at the corners of a cube of one metre, as in the benchmark.
+/// Checks that the rods of the linkage initially lie along edges of a cube of one metre, as in the benchmark.
 #[test]
 fn starts_along_the_edges_of_a_cube() {
     let q = B.neutral();
@@ -30,8 +30,8 @@ fn one_condition_follows_from_the_others() {
     assert_eq!(rank, 4);
 }
 
-/// Released from the cube, the linkage swings for ten seconds and passes configurations with all rods in one
-/// plane.
+/// Checks that the linkage, released from the cube, conserves its energy for ten seconds and passes
+/// configurations with all rods in one plane.
 #[test]
 fn swings() -> Result<(), Error> {
     let start = B.potential_energy(&B.neutral());

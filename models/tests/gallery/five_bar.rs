@@ -28,8 +28,8 @@ fn closed_form(left: f64, right: f64) -> [Vector2<f64>; 3] {
 
 fn state(left: f64, right: f64) -> SVector<f64, 4> {
     let [first, second, tool] = closed_form(left, right);
-    let angle = |from: Vector2<f64>| (tool.y - from.y).atan2(tool.x - from.x);
-    [left, angle(first) - left, right, angle(second) - right].into()
+    let angle_to_tool = |from: Vector2<f64>| (tool.y - from.y).atan2(tool.x - from.x);
+    [left, angle_to_tool(first) - left, right, angle_to_tool(second) - right].into()
 }
 
 /// Returns the Jacobian of the tool with respect to the crank angles.
@@ -66,10 +66,10 @@ fn statics_and_reduced_inertia() {
     let zero = SVector::zeros();
     let [first, second, at] = closed_form(left, right);
     // Velocities of elbows and tool per crank rate.
-    let elbow = |angle: f64| R.crank * Vector2::new(-angle.sin(), angle.cos());
+    let velocity_of_elbow = |angle: f64| R.crank * Vector2::new(-angle.sin(), angle.cos());
     let elbows = [
-        Matrix2::from_columns(&[elbow(left), Vector2::zeros()]),
-        Matrix2::from_columns(&[Vector2::zeros(), elbow(right)]),
+        Matrix2::from_columns(&[velocity_of_elbow(left), Vector2::zeros()]),
+        Matrix2::from_columns(&[Vector2::zeros(), velocity_of_elbow(right)]),
     ];
     let mut inertia = tool.transpose() * tool * R.tool_mass;
     let mut weight = tool.row(1) * R.tool_mass;

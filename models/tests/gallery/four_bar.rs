@@ -2,7 +2,7 @@ use crate::testing::{assert_close, precisely};
 use linkwork::prelude::*;
 use linkwork_models::FourBar;
 
-/// Crank-rocker linkage by Grashof's criterion.
+/// Parameters of a four-bar linkage that is a crank-rocker by Grashof's criterion.
 const L: FourBar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
 
 /// Returns the configuration in the open assembly mode with a given crank angle.
@@ -59,11 +59,11 @@ fn order_of_the_integrator() -> Result<(), Error> {
     let (q, v) = start();
     let exact = simulate(&L).from(q, v).method(precisely()).duration(1.0).finish()?;
     assert_close(energy(&exact.q, &exact.v), energy(&q, &v), 1e-10);
-    let errors = |h: f64| -> Result<[f64; 2], Error> {
+    let errors_with_step = |h: f64| -> Result<[f64; 2], Error> {
         let end = simulate(&L).from(q, v).method(Rk4::step(h)).duration(1.0).finish()?;
         Ok([(end.q - exact.q).norm(), energy(&end.q, &end.v) - energy(&q, &v)])
     };
-    let (coarse, fine) = (errors(4e-4)?, errors(2e-4)?);
+    let (coarse, fine) = (errors_with_step(4e-4)?, errors_with_step(2e-4)?);
     for (coarse, fine) in coarse.into_iter().zip(fine) {
         let ratio = coarse / fine;
         assert!((14.0..18.0).contains(&ratio), "{coarse:e} / {fine:e} = {ratio}");

@@ -14,8 +14,8 @@ fn newtons_and_eulers_equations() {
     assert_near(found.fixed_rows::<3>(3).into_owned(), w.cross(&(inertia * w)), 1e-14);
 }
 
-/// With a slight wobble about the intermediate axis, the body is upside down after half a period and returns
-/// after a whole one.
+/// Checks the flip of a rigid body that spins about its intermediate axis with a slight wobble. After half a
+/// period it is upside down, and after a whole period it returns.
 #[test]
 fn turns_over() -> Result<(), Error> {
     // No spin about x at the start, so that L² > 2 E I₂.

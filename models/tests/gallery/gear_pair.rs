@@ -19,7 +19,7 @@ fn reduced_inertia_and_tooth_force() {
     assert_near(force, [-ratio / 0.05 * 3e-3 * expected].into(), 1e-13);
 }
 
-/// The assembly moves any angles to the nearest ones at which the teeth mesh.
+/// Checks that assembly moves the wheels to the nearest angles at which the teeth mesh.
 #[test]
 fn meshes() {
     let q = G.assemble(&[1.0, 0.3].into(), &[0]).expect("the wheel can follow");

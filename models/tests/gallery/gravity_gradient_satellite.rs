@@ -33,7 +33,8 @@ fn pitch_oscillation() -> Result<(), Error> {
     pitch(S, TAU / frequency, |t| (frequency * t).cos())
 }
 
-/// With its long axis forward the satellite is unstable and turns over.
+/// Checks that a satellite with its long axis in the direction of flight is unstable, and that its pitch
+/// grows exponentially.
 #[test]
 fn stands_with_the_long_axis_up_alone() -> Result<(), Error> {
     let growth = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
@@ -60,7 +61,7 @@ fn pitch(
     let start = UnitQuaternion::from_euler_angles(0.0, 0.0, 1e-3);
     let v = start.inverse() * Vector3::new(0.0, 1.0, 0.0);
     // The pitch angle is that between x and the direction up.
-    let pitch = |q: &SVector<f64, 7>| {
+    let pitch_angle = |q: &SVector<f64, 7>| {
         let x = UnitQuaternion::new_unchecked([q[3], q[4], q[5], q[6]].into()) * Vector3::x();
         (q[0] * x.y - q[1] * x.x) / q[0].hypot(q[1])
     };
@@ -70,7 +71,7 @@ fn pitch(
         .duration(duration);
     for sample in run.sample_every(duration / 8.0) {
         let Sample { t, q, .. } = sample?;
-        let off = pitch(&q) / 1e-3 - expected(t);
+        let off = pitch_angle(&q) / 1e-3 - expected(t);
         // For large pitch the error is of the third power.
         assert!(off.abs() < 1e-5 * (1.0 + expected(t).abs().powi(3)), "{off} at {t}");
     }

@@ -24,15 +24,15 @@ fn steady_whirl_below_and_above_the_critical_speed() -> Result<(), Error> {
         let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * zeta * ratio);
         let radius = R.eccentricity * ratio * ratio / real.hypot(imaginary);
         let lag = imaginary.atan2(real);
-        let position = |t: f64| {
+        let whirl_position = |t: f64| {
             let angle = spin * t - lag;
             radius * SVector::from([angle.cos(), angle.sin()])
         };
         let rate = spin * radius * SVector::from([lag.sin(), lag.cos()]);
-        let run = simulate(&rotor).from(position(0.0), rate).method(precisely());
+        let run = simulate(&rotor).from(whirl_position(0.0), rate).method(precisely());
         for sample in run.duration(0.3).sample_every(0.05) {
             let Sample { t, q, .. } = sample?;
-            assert_near(q / radius, position(t) / radius, 1e-7);
+            assert_near(q / radius, whirl_position(t) / radius, 1e-7);
             // Far above the critical speed the centre of mass is nearly at rest.
             let unbalance = R.eccentricity * SVector::from([(spin * t).cos(), (spin * t).sin()]);
             let moves = (q + unbalance).norm() > 0.01 * R.eccentricity;

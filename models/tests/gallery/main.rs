@@ -1,5 +1,5 @@
-//! Every mechanism of the gallery against the closed-form solution of its documentation, or against published
-//! values. The tests are one crate, so that the mechanisms are compiled once.
+//! Tests of every gallery mechanism against the closed-form solution of its documentation, or against
+//! published values. They are one crate, so that the mechanisms are compiled once.
 
 mod aircraft;
 mod andrews_squeezer;

@@ -11,11 +11,12 @@ fn closed_form<const N: usize>(
 ) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
     let sums = SMatrix::<f64, N, N>::from_fn(|i, j| if i >= j { 1.0 } else { 0.0 });
     let (phi, rate) = (sums * q, sums * v);
-    let coupling = |i: usize, j: usize| m[i.max(j)..].iter().sum::<f64>() * l[i] * l[j];
-    let mass = SMatrix::<f64, N, N>::from_fn(|i, j| coupling(i, j) * (phi[i] - phi[j]).cos());
+    let mass_coupling = |i: usize, j: usize| m[i.max(j)..].iter().sum::<f64>() * l[i] * l[j];
+    let mass = SMatrix::<f64, N, N>::from_fn(|i, j| mass_coupling(i, j) * (phi[i] - phi[j]).cos());
     let bias = SVector::<f64, N>::from_fn(|i, _| {
-        let turning: f64 = (0..N).map(|j| coupling(i, j) * (phi[i] - phi[j]).sin() * rate[j] * rate[j]).sum();
-        turning + coupling(i, i) / l[i] * g * phi[i].sin()
+        let turning: f64 =
+            (0..N).map(|j| mass_coupling(i, j) * (phi[i] - phi[j]).sin() * rate[j] * rate[j]).sum();
+        turning + mass_coupling(i, i) / l[i] * g * phi[i].sin()
     });
     (sums.transpose() * mass * sums, sums.transpose() * bias)
 }

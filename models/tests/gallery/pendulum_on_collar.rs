@@ -38,15 +38,15 @@ fn steady_turning() {
 
 #[test]
 fn angular_momentum_and_energy_are_conserved() -> Result<(), Error> {
-    let energy = |s: &Sample<f64, 3, 3, 0>| P.kinetic_energy(&s.q, &s.v) + P.potential_energy(&s.q);
-    let turning = |s: &Sample<f64, 3, 3, 0>| P.generalized_momentum(&s.q, &s.v)[1];
+    let total_energy = |s: &Sample<f64, 3, 3, 0>| P.kinetic_energy(&s.q, &s.v) + P.potential_energy(&s.q);
+    let angular_momentum = |s: &Sample<f64, 3, 3, 0>| P.generalized_momentum(&s.q, &s.v)[1];
     let mut start = None;
     let run = simulate(&P).from([0.0, 0.0, 0.9], [0.1, 8.0, -1.0]).method(precisely());
     for sample in run.duration(2.0).sample_every(0.2) {
         let sample = sample?;
-        let (e, l) = *start.get_or_insert((energy(&sample), turning(&sample)));
-        assert_close(energy(&sample), e, 1e-9);
-        assert_close(turning(&sample), l, 1e-9);
+        let (e, l) = *start.get_or_insert((total_energy(&sample), angular_momentum(&sample)));
+        assert_close(total_energy(&sample), e, 1e-9);
+        assert_close(angular_momentum(&sample), l, 1e-9);
     }
     Ok(())
 }

@@ -26,19 +26,19 @@ fn the_point_that_touches_is_at_rest() {
     assert_near(projected, v, 1e-14);
 }
 
-/// Spun backwards with a tilt of half a degree, the rattleback reverses to forward rotation; spun forwards,
-/// it keeps its direction.
+/// Checks that a rattleback that is spun backwards with a tilt of half a degree reverses its spin, and that
+/// one spun forwards keeps its direction.
 #[test]
 fn turns_back() -> Result<(), Error> {
     let tilt = 0.5_f64.to_radians();
     for (spin, turns_back) in [(-5.0, true), (5.0, false)] {
         let turn = UnitQuaternion::from_euler_angles(tilt, tilt, 0.0);
         let (q, v) = state(turn, Vector3::new(0.0, 0.0, spin));
-        let energy = |q: &_, v: &_| R.kinetic_energy(q, v) + R.potential_energy(q);
+        let total_energy = |q: &_, v: &_| R.kinetic_energy(q, v) + R.potential_energy(q);
         let end = simulate(&R).from(q, v).method(precisely()).duration(6.0).finish()?;
         assert_eq!(end.v[5] / spin < -0.5, turns_back, "{} to {}", spin, end.v[5]);
         assert_eq!(end.v[5] / spin > 0.5, !turns_back, "{} to {}", spin, end.v[5]);
-        assert_close(energy(&end.q, &end.v), energy(&q, &v), 1e-10);
+        assert_close(total_energy(&end.q, &end.v), total_energy(&q, &v), 1e-10);
         assert!(R.constraint_residuals(&end.q).amax() < 1e-14);
         assert!(R.constraint_rates(&end.q, &end.v).amax() < 1e-13);
     }

@@ -5,7 +5,7 @@ use linkwork_models::RollingCone;
 
 const C: RollingCone = RollingCone { g: 9.81, mass: 0.4, height: 0.2, half_angle: 0.35, slope: 0.3 };
 
-/// Returns the inertia for the precession, `d²T/dθ̇²`.
+/// Returns the moment of inertia of the rolling cone for precession, `d²T/dθ̇²`.
 fn inertia(c: &RollingCone) -> f64 {
     3.0 / 20.0 * c.mass * c.height * c.height * (1.0 + 5.0 * c.half_angle.cos().powi(2))
 }
@@ -50,16 +50,16 @@ fn swings_about_its_apex() -> Result<(), Error> {
         assert!((end.q - q).amax() < 1e-7, "{} {}", end.q, q);
         let half = simulate(&C).from(q, v).method(precisely()).duration(2.0 * quarter).finish()?;
         let mirrored = state(&C, -theta, 0.0).0;
-        let axis = |q: &SVector<f64, 7>| {
+        let cone_axis = |q: &SVector<f64, 7>| {
             UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into()) * Vector3::z()
         };
-        assert!((axis(&half.q) - axis(&mirrored)).amax() < 1e-7);
+        assert!((cone_axis(&half.q) - cone_axis(&mirrored)).amax() < 1e-7);
     }
     Ok(())
 }
 
-/// On a level plane, Euler's equation about the apex holds: the moment of the normal force balances that of
-/// the weight and changes the angular momentum.
+/// Checks Euler's equation about the apex of a cone that rolls on a level plane: the moments of normal force
+/// and weight together change the angular momentum.
 #[test]
 fn presses_on_a_line() {
     let c = RollingCone { slope: 0.0, ..C };

@@ -32,8 +32,8 @@ fn accelerations() {
     assert_near(found.fixed_rows::<3>(3).into_owned(), [heading, rates[0], roll].into(), 1e-13);
 }
 
-/// Below the critical speed one exponent is positive; above it small leans oscillate. The other exponents are
-/// zero.
+/// Checks the stability of a rolling disk. Below the critical speed one exponent is positive; above it small
+/// leans oscillate. The other exponents are zero.
 #[test]
 fn stability_of_rolling_straight() {
     let critical = (D.g * D.radius / 3.0).sqrt();

@@ -50,15 +50,20 @@ fn reduced_inertia() {
     let courses = closed_form(theta);
     let [rod, x, y, piston] = courses;
     let masses = [m_rod * l * l / 12.0, m_rod, m_rod, m_piston];
-    let sum = |f: fn(&Course) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
-    let inertia = m_crank * r * r / 3.0 + sum(|c| c[1] * c[1]);
+    let sum_over_masses =
+        |f: fn(&Course) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
+    let inertia = m_crank * r * r / 3.0 + sum_over_masses(|c| c[1] * c[1]);
     let lift = g * (m_crank * r / 2.0 * theta.cos() + m_rod * y[1]);
-    let expected = (torque - sum(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
+    let expected = (torque - sum_over_masses(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
 
     let (q, v) = state(theta, rate);
     assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
-    let acceleration = |c: &Course| c[1] * expected + c[2] * rate * rate;
-    assert_near(a, [expected, acceleration(&rod) - expected, acceleration(&piston)].into(), 1e-12);
+    let acceleration_of_course = |c: &Course| c[1] * expected + c[2] * rate * rate;
+    assert_near(
+        a,
+        [expected, acceleration_of_course(&rod) - expected, acceleration_of_course(&piston)].into(),
+        1e-12,
+    );
     assert_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);
 }

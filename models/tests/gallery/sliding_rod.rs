@@ -39,7 +39,8 @@ fn slides_under_its_normal_force() {
     }
 }
 
-/// On a rough floor, a pushed rod slides if it is steep and jams if it is flat; a pulled rod always slides.
+/// Checks that a pushed rod on a rough floor slides if it is steep and jams if it is flat, while a pulled rod
+/// always slides.
 #[test]
 fn jams() {
     let rough = SlidingRod { friction: 1.8, ..R };
@@ -61,14 +62,17 @@ fn jams() {
     // The simulation therefore stops there with an error, for every method.
     let (q, v) = state(0.8, -1.0, 0.0);
     assert!(pressed(&rough, 0.8, -1.0) <= 0.0);
-    let stops = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {
+    let is_jammed_by_floor = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {
         Err(Error::Constraint { reason, .. }) => {
             reason == ConstraintError::Jammed { constraint: "floor.normal" }
         }
         _ => false,
     };
-    let run = || simulate(&rough).from(q, v).duration(0.1);
-    assert!(stops(run().finish()) && stops(run().method(Rk4::step(1e-3)).finish()));
-    assert!(stops(run().method(ImplicitMidpoint::step(1e-3)).finish()));
-    assert!(stops(run().method(Rosenbrock::step(1e-3)).finish()));
+    let simulate_rough_rod = || simulate(&rough).from(q, v).duration(0.1);
+    assert!(
+        is_jammed_by_floor(simulate_rough_rod().finish())
+            && is_jammed_by_floor(simulate_rough_rod().method(Rk4::step(1e-3)).finish())
+    );
+    assert!(is_jammed_by_floor(simulate_rough_rod().method(ImplicitMidpoint::step(1e-3)).finish()));
+    assert!(is_jammed_by_floor(simulate_rough_rod().method(Rosenbrock::step(1e-3)).finish()));
 }

@@ -23,7 +23,7 @@ fn on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
     Vector3::new(radius * c, radius * s, 0.0)
 }
 
-/// Returns a pose without symmetry.
+/// Returns a pose of the platform without symmetry.
 fn pose() -> Isometry3<f64> {
     Isometry3::from_parts(
         Vector3::new(0.1, -0.05, 0.9).into(),
@@ -79,15 +79,15 @@ fn forces_by_virtual_work() {
     for (k, (leg, (_, head))) in legs(&pose).into_iter().zip(LEGS).enumerate() {
         let arm = pose.rotation * on_circle(P.platform_radius, head);
         let (length, n) = (leg.norm(), leg.normalize());
-        let row = |f: Vector3<f64>| {
+        let wrench_row = |f: Vector3<f64>| {
             let torque = arm.cross(&f);
             Vector6::new(f.x, f.y, f.z, torque.x, torque.y, torque.z)
         };
-        lengths.set_column(k, &row(n));
+        lengths.set_column(k, &wrench_row(n));
         // A point at a fixed distance along the leg rises with the head's motion across the leg. A point at a
         // fixed distance from the head rises with the head, minus that amount.
         let across = (Vector3::z() - n * n.z) * (P.leg / 2.0 / length);
-        weight += row(across) * P.leg_mass + row(Vector3::z() - across) * P.leg_mass;
+        weight += wrench_row(across) * P.leg_mass + wrench_row(Vector3::z() - across) * P.leg_mass;
     }
     let forces = lengths.lu().solve(&(weight * P.g)).expect("not singular");
     let (q, still) = (configuration(&pose), SVector::zeros());
@@ -105,9 +105,9 @@ fn energy_is_conserved() -> Result<(), Error> {
     let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
     v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
     let v = P.project_velocity(&q, &v).expect("regular");
-    let energy = |q: &_, v: &_| P.kinetic_energy(q, v) + P.potential_energy(q);
+    let total_energy = |q: &_, v: &_| P.kinetic_energy(q, v) + P.potential_energy(q);
     let end = simulate(&P).from(q, v).method(Rk4::step(1e-3)).duration(0.2).finish()?;
-    let change = energy(&end.q, &end.v) - energy(&q, &v);
+    let change = total_energy(&end.q, &end.v) - total_energy(&q, &v);
     assert!(change.abs() < 1e-8 * P.kinetic_energy(&end.q, &end.v), "{change}");
     assert!(P.constraint_residuals(&end.q).amax() < 1e-14);
     Ok(())

@@ -1,12 +1,12 @@
-//! Shared functions of the mechanisms' tests.
+//! Assertions and other functions that tests of several mechanisms use.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, Translation3, Vector3};
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Checks a generated matrix against the closed form: the tolerance is relative to the largest entry, or
-/// absolute below one.
+/// Checks a generated matrix against its closed form. The tolerance is relative to the largest entry, but
+/// absolute if this is below one.
 #[track_caller]
 pub fn assert_near<const R: usize, const C: usize>(
     found: SMatrix<f64, R, C>,
@@ -17,14 +17,15 @@ pub fn assert_near<const R: usize, const C: usize>(
     assert!(error <= tolerance, "error {error:e}: found {found} expected {expected}");
 }
 
-/// Checks a generated number against the closed form: the tolerance is relative to it, or absolute below one.
+/// Checks a generated number against its closed form. The tolerance is relative to the number, but absolute
+/// if this is below one.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "error {error:e}: found {found}, expected {expected}");
 }
 
-/// Returns an integrator with nearly full precision.
+/// Returns a Dormand–Prince integrator with a tolerance of 1e-12.
 pub fn precisely() -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e-12, 1e-12)
 }
@@ -39,7 +40,7 @@ pub fn elliptic(k2: f64) -> f64 {
     FRAC_PI_2 / a
 }
 
-/// Returns a rotation about z and a displacement along it: one half of a Denavit–Hartenberg step.
+/// Returns the pose of a rotation about z and a displacement along z: one half of a Denavit–Hartenberg step.
 pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
     placed(Vector3::z(), angle, d)
 }

@@ -7,10 +7,10 @@ const S: TunedSuspension =
 
 #[test]
 fn equations_of_motion() {
-    let matrix = |a, b, c| SMatrix::<f64, 2, 2>::new(a, b, b, c);
-    assert_near(S.mass_matrix(&SVector::zeros()), matrix(10.5, -0.5, 1.3), 1e-14);
+    let symmetric_matrix = |a, b, c| SMatrix::<f64, 2, 2>::new(a, b, b, c);
+    assert_near(S.mass_matrix(&SVector::zeros()), symmetric_matrix(10.5, -0.5, 1.3), 1e-14);
     let (q, v) = (SVector::from([0.02, -0.05]), SVector::from([0.7, 0.3]));
-    let bias = matrix(1020.0, -120.0, 120.0) * q + matrix(3.0, -3.0, 3.0) * v;
+    let bias = symmetric_matrix(1020.0, -120.0, 120.0) * q + symmetric_matrix(3.0, -3.0, 3.0) * v;
     assert_near(S.bias_forces(&q, &v), bias, 1e-13);
     let energy = 450.0 * q[0] * q[0] + 60.0 * (q[0] - q[1]).powi(2);
     assert_close(S.potential_energy(&q), energy, 1e-14);

@@ -20,8 +20,8 @@ fn newtons_law() {
     assert_close(P.potential_energy(&q), -1.5 / r.norm(), 1e-14);
 }
 
-/// From the pericentre, the relative motion is an ellipse with a = 1 and e = 0.6, while the centre of mass
-/// drifts.
+/// Checks that two gravitating bodies that start at the pericentre move relative to each other on an ellipse
+/// with a = 1 and e = 0.6, while their centre of mass drifts.
 #[test]
 fn ellipse() -> Result<(), Error> {
     let (mu, a, e) = (2.0_f64, 1.0, 0.6);

@@ -1,4 +1,4 @@
-//! Results for systems read from standard input, for comparison with python-control
+//! Example that computes results for systems read from standard input, for comparison with python-control
 //! (`benches/peers/run control`). Each system is a line `n m p`, then the entries of A, B, C, D by rows.
 //! Prints one line per result, then the time in seconds of each kind of result.
 
@@ -20,18 +20,18 @@ fn pairs(all: &[Complex<f64>]) -> Vec<f64> {
     all.iter().flat_map(|x| [x.re, x.im]).collect()
 }
 
-/// Computes the result with this name.
+/// Computes the named result of a system, such as `poles`, `zeros` or `care`.
 fn result(name: &str, s: &StateSpace) -> Numbers {
     let (n, m) = s.b().shape();
-    let cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
+    let unit_cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
     Ok(match name {
         "poles" => pairs(&s.poles()?),
         "zeros" => pairs(&s.zeros()?),
         "lyap" => flat(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
-        "care" => flat(&riccati(s.a(), s.b(), &cost())?.x),
+        "care" => flat(&riccati(s.a(), s.b(), &unit_cost())?.x),
         "dare" => {
             let held = s.discretize(0.1, Hold::Zero)?;
-            flat(&discrete_riccati(held.a(), held.b(), &cost())?.x)
+            flat(&discrete_riccati(held.a(), held.b(), &unit_cost())?.x)
         }
         "gram" => flat(&s.controllability_gramian()?),
         "h2" => vec![

@@ -1,4 +1,4 @@
-//! Connections of systems.
+//! Series, parallel and feedback connections of linear systems.
 
 use crate::matrices::solve;
 use crate::{Error, Port, Signal, StateSpace};
@@ -20,11 +20,11 @@ impl StateSpace {
     /// Returns the common period of two systems. A system without states and without a period is compatible
     /// with every period.
     fn common_period(&self, other: &Self) -> Result<Option<f64>, Error> {
-        let constant = |s: &Self| s.order() == 0 && s.period.is_none();
+        let is_static_gain = |s: &Self| s.order() == 0 && s.period.is_none();
         let alike = match (self.period, other.period) {
             (Some(one), Some(other)) => (one - other).abs() <= 1e-12 * one,
             (None, None) => true,
-            _ => constant(self) || constant(other),
+            _ => is_static_gain(self) || is_static_gain(other),
         };
         if !alike {
             return Err(Error::Time { periods: [self.period, other.period] });
@@ -215,7 +215,7 @@ impl StateSpace {
         self.select([output.into()], [input.into()])
     }
 
-    /// Replaces the outputs by the states.
+    /// Returns the system with its states as outputs, instead of its own outputs.
     pub fn with_states_as_outputs(&self) -> Self {
         let n = self.order();
         Self {
@@ -226,7 +226,7 @@ impl StateSpace {
         }
     }
 
-    /// Reports an error for a system with more than one input or output.
+    /// Checks that a system has a single input and a single output; otherwise returns an error.
     pub(crate) fn check_single(&self) -> Result<(), Error> {
         for (what, signals) in [("input", &self.inputs), ("output", &self.outputs)] {
             if signals.len() != 1 {

@@ -11,9 +11,9 @@ struct Pencil {
 }
 
 impl Pencil {
-    /// Returns finite eigenvalues as `σ + 1 / μ`, where `μ` are the eigenvalues of `(M − σ E)⁻¹ E`. Infinite
-    /// eigenvalues may be returned as large ones. For a pencil that is singular for all `s`, the list is
-    /// empty.
+    /// Returns the finite eigenvalues of the pencil `M − s E` as `σ + 1 / μ`, where `μ` are the eigenvalues
+    /// of `(M − σ E)⁻¹ E`. Infinite eigenvalues may be returned as large ones. If the pencil is singular for
+    /// all `s`, the list is empty.
     fn eigenvalues(&self, shift: f64) -> Vec<C> {
         let inverse = solve("the pencil", &(&self.m - &self.e * shift), &self.e);
         let found = inverse.and_then(|inverse| eigenvalues(&inverse)).unwrap_or_default();

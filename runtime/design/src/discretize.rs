@@ -1,10 +1,10 @@
-//! Discretisation of continuous systems, and its inverse.
+//! Discretisation of continuous linear systems, and its inverse.
 
 use crate::matrices::{C, exponential, logarithm, solve};
 use crate::{Error, StateSpace, ZerosPolesGain};
 use nalgebra::DMatrix;
 
-/// Method of discretisation.
+/// Method by which a continuous system is discretised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Hold {
@@ -164,26 +164,27 @@ impl ZerosPolesGain {
         if numerator > denominator {
             return Err(Error::Improper { numerator, denominator });
         }
-        let map = |roots: &[C]| roots.iter().map(|s| (s * period).exp()).collect::<Vec<_>>();
-        let mut zeros = map(&self.zeros);
+        let map_roots_to_z_plane = |roots: &[C]| roots.iter().map(|s| (s * period).exp()).collect::<Vec<_>>();
+        let mut zeros = map_roots_to_z_plane(&self.zeros);
         let excess = (denominator - numerator).saturating_sub(1);
         zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
         // A factor `s − r` has the value `−r` at `s = 0`; its image at `z = 1` has the value
         // `1 − e^{r h}`. Their ratio tends to `h` for small `r`.
-        let ratio = |root: &C| match root.norm() {
+        let gain_ratio_of_root = |root: &C| match root.norm() {
             0.0 => C::new(period, 0.0),
             _ => exponential_less_one(root * period) / root,
         };
-        let all = || self.zeros.iter().chain(&self.poles);
-        if all().any(|root| exponential_less_one(root * period).norm() < 1e-12 * (root * period).norm()) {
+        let all_roots = || self.zeros.iter().chain(&self.poles);
+        if all_roots().any(|root| exponential_less_one(root * period).norm() < 1e-12 * (root * period).norm())
+        {
             return Err(Error::Singular { what: "the gain of the matched system at rest" });
         }
         let mut gain = C::new(self.gain * (-(excess as f64)).exp2(), 0.0);
         for k in 0..denominator {
-            gain *= ratio(&self.poles[k]);
-            gain /= self.zeros.get(k).map_or(C::new(1.0, 0.0), ratio);
+            gain *= gain_ratio_of_root(&self.poles[k]);
+            gain /= self.zeros.get(k).map_or(C::new(1.0, 0.0), gain_ratio_of_root);
         }
-        Ok(Self { zeros, poles: map(&self.poles), gain: gain.re, period: Some(period) })
+        Ok(Self { zeros, poles: map_roots_to_z_plane(&self.poles), gain: gain.re, period: Some(period) })
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 use std::fmt;
 
-/// Count with a noun, in the singular for one.
+/// Number of objects with their noun, printed as in `one unknown` or `3 unknowns`.
 struct Counted(usize, &'static str);
 
 impl fmt::Display for Counted {
@@ -21,122 +21,123 @@ impl fmt::Display for Counted {
 pub enum Error {
     /// A matrix whose shape does not fit the other matrices.
     Shape {
-        /// Name of the matrix.
+        /// Name of the matrix with the wrong shape.
         matrix: &'static str,
-        /// Expected rows and columns.
+        /// Expected numbers of rows and columns of the matrix.
         expected: (usize, usize),
-        /// Actual rows and columns.
+        /// Actual numbers of rows and columns of the matrix.
         found: (usize, usize),
     },
     /// A matrix, polynomial or list with an infinite or NaN entry.
     NotFinite {
-        /// Name of the matrix, polynomial or list.
+        /// Name of the matrix, polynomial or list that is not finite.
         what: &'static str,
     },
-    /// A signal name that does not exist.
+    /// Error: a name of a state, input or output that does not exist.
     Unknown {
         /// Kind of the signal: state, input or output.
         kind: &'static str,
-        /// Requested name.
+        /// Requested name of the signal.
         name: String,
-        /// Existing names.
+        /// Existing names of signals of this kind.
         known: Vec<String>,
     },
-    /// A signal name that is requested twice.
+    /// Error: a name of a state, input or output that is requested twice.
     Repeated {
         /// Kind of the signal: state, input or output.
         kind: &'static str,
-        /// Repeated name.
+        /// Name of the signal that is requested twice.
         name: String,
     },
     /// A number of signals or values that differs from the expected number.
     Count {
-        /// Name of the counted objects.
+        /// Name of the counted objects, such as inputs.
         what: &'static str,
-        /// Expected number.
+        /// Expected number of objects.
         expected: usize,
-        /// Actual number.
+        /// Actual number of objects.
         found: usize,
     },
     /// A sampling period that is not positive and finite, s.
     Period {
-        /// Rejected value, s.
+        /// Rejected sampling period, s.
         period: f64,
     },
-    /// Systems of different periods, or a discrete system where a continuous one is expected, or the reverse.
+    /// Error: systems with different sampling periods, or a discrete system where a continuous one is
+    /// expected, or the reverse.
     Time {
         /// The two periods, s; `None` for a continuous system, zero for an arbitrary period.
         periods: [Option<f64>; 2],
     },
     /// More zeros than poles: neither a state-space system nor a response exists.
     Improper {
-        /// Degree of the numerator.
+        /// Degree of the numerator of the improper transfer function.
         numerator: usize,
-        /// Degree of the denominator.
+        /// Degree of the denominator of the improper transfer function.
         denominator: usize,
     },
     /// An unstable system, for a result that exists only for stable systems.
     Unstable {
-        /// Pole that is not stable.
+        /// Unstable pole of the system.
         pole: Complex<f64>,
     },
     /// An unstable mode that no input controls: no regulator exists.
     Unstabilizable {
-        /// Eigenvalue of the mode.
+        /// Eigenvalue of the unstable mode that no input controls.
         mode: Complex<f64>,
     },
     /// A mode that must be observable and appears in no output (or cost): no estimator, or no optimal
     /// regulator, exists.
     Undetectable {
-        /// Eigenvalue of the mode.
+        /// Eigenvalue of the mode that appears in no output or cost.
         mode: Complex<f64>,
     },
     /// A complex pole without its conjugate, or a pole that is not finite.
     Unpaired {
-        /// The rejected pole.
+        /// Pole that is not finite or lacks its conjugate.
         pole: Complex<f64>,
     },
-    /// A singular matrix or equation.
+    /// Error: a singular matrix or equation.
     Singular {
-        /// Name of the matrix or equation.
+        /// Name of the singular matrix or equation.
         what: &'static str,
     },
     /// A matrix that is not symmetric and positive (semi)definite, as required.
     Indefinite {
-        /// Name of the matrix.
+        /// Name of the matrix that is not symmetric and positive (semi)definite.
         matrix: &'static str,
     },
     /// A connection that has an algebraic loop without a solution: `I + D₁ D₂` is singular.
     AlgebraicLoop,
-    /// An iteration that did not converge.
+    /// Error: an iteration that did not converge.
     NotConverged {
-        /// Name of the iteration.
+        /// Name of the iteration that did not converge.
         what: &'static str,
     },
-    /// An infinite result.
+    /// Error: an infinite result.
     Infinite {
-        /// Name of the result.
+        /// Name of the result that is infinite.
         what: &'static str,
     },
-    /// A value outside its meaningful range.
+    /// Error: a value outside its meaningful range.
     Range {
-        /// Name of the value.
+        /// Name of the value that is out of range.
         what: &'static str,
-        /// Rejected value.
+        /// Rejected value, which is out of range.
         value: f64,
     },
     /// The state of a mechanism violates its constraints, or the constraints lose rank there.
     Constraint(linkwork::ConstraintError),
     /// No state near the guess satisfies all conditions of a steady state.
     NoSteadyState {
-        /// Condition that is violated most: an acceleration (with two primes), a constraint (its velocity
-        /// with one prime) or an output.
+        /// Condition of the steady state that is violated most: an acceleration (marked with two primes), the
+        /// velocity of a constraint (one prime), a constraint, or an output.
         condition: String,
         /// Residual of that condition, in its own unit.
         residual: f64,
-        /// Number of conditions.
+        /// Number of conditions of the steady state.
         conditions: usize,
-        /// Number of unknowns.
+        /// Number of unknowns of the steady state.
         unknowns: usize,
         /// State of minimum violation: the configuration, then the other unknowns.
         place: Vec<(String, f64)>,
@@ -151,20 +152,20 @@ pub enum Error {
     },
     /// Linearisation about a state that is not steady.
     NotSteady {
-        /// Quantity that should be zero: an acceleration (two primes), a rate (one prime), or the violated
-        /// condition of a trim.
+        /// Quantity that is not zero although the state should be steady: an acceleration (marked with two
+        /// primes), a time derivative (one prime), or the violated condition of a trim.
         what: String,
         /// Value of that quantity, m/s², rad/s² or rad/s, or the residual of the condition.
         rate: f64,
     },
     /// A motion without a second-order form: forces depend on a coordinate that has no independent velocity.
     NoSecondOrderForm {
-        /// Name of the coordinate.
+        /// Name of the coordinate that has no independent velocity.
         coordinate: String,
     },
     /// An equilibrium whose stability cannot be decided by energy.
     NoPotential {
-        /// Reason.
+        /// Reason why energy cannot decide the stability of the equilibrium.
         why: &'static str,
     },
     /// A failure to draw a picture, with the message of the drawing library.
@@ -253,7 +254,7 @@ impl From<linkwork::ConstraintError> for Error {
     }
 }
 
-/// List of names with values.
+/// List of names with their values, printed in an error message.
 struct Listed<'a>(&'a [(String, f64)]);
 
 impl fmt::Display for Listed<'_> {
@@ -268,12 +269,12 @@ impl fmt::Display for Listed<'_> {
 
 /// Returns the known name of minimum edit distance, if at most a third of the characters differ.
 fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a String> {
-    let distance = |other: &String| edits(name, other);
-    let best = known.iter().min_by_key(|other| distance(other))?;
-    (distance(best) <= name.chars().count().div_ceil(3)).then_some(best)
+    let edit_distance_to = |other: &String| edits(name, other);
+    let best = known.iter().min_by_key(|other| edit_distance_to(other))?;
+    (edit_distance_to(best) <= name.chars().count().div_ceil(3)).then_some(best)
 }
 
-/// Returns the Levenshtein distance.
+/// Returns the Levenshtein distance of two names.
 fn edits(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut row: Vec<usize> = (0..=other.len()).collect();

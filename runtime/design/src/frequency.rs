@@ -91,16 +91,16 @@ impl FrequencyMap {
     }
 }
 
-/// Triangular factorisation of a Hessenberg matrix.
+/// Triangular factorisation of a Hessenberg matrix `M`.
 struct Factors {
     u: CMatrix,
-    /// For each `k`: whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then
-    /// subtracted from row `k + 1`.
+    /// Elimination step for each `k`: whether rows `k` and `k + 1` are swapped, and the multiple of row `k`
+    /// that is then subtracted from row `k + 1`.
     steps: Vec<(bool, C)>,
 }
 
 impl Factors {
-    /// Solves `M X = R` in place.
+    /// Solves `M X = R` with the factorised matrix `M`; `X` replaces `R`.
     fn solve(&self, x: &mut CMatrix) {
         let n = self.u.nrows();
         for (k, (swapped, factor)) in self.steps.iter().enumerate() {
@@ -120,7 +120,7 @@ impl Factors {
         }
     }
 
-    /// Solves `y M = r` for a row vector in place.
+    /// Solves `y M = r` with the factorised matrix `M`; the row vector `y` replaces `r`.
     fn solve_left(&self, y: &mut CMatrix) {
         for j in 0..self.u.ncols() {
             let sum: C = (0..j).map(|k| y[k] * self.u[(k, j)]).sum();
@@ -136,7 +136,7 @@ impl Factors {
     }
 }
 
-/// Response at one complex frequency.
+/// Frequency response at one complex frequency.
 #[derive(Clone, Copy)]
 pub(crate) struct Sample {
     pub value: C,
@@ -154,21 +154,21 @@ pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
     }
 }
 
-/// Response of one channel over frequencies.
+/// Frequency response of one channel, from an input to an output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
-    /// Frequencies, rad/s.
+    /// Frequencies of the response, rad/s.
     pub frequencies: Vec<f64>,
-    /// Response at each frequency.
+    /// Complex response at each frequency.
     pub values: Vec<C>,
-    /// Name and unit of the input.
+    /// Name and unit of the input signal.
     pub input: crate::Signal,
-    /// Name and unit of the output.
+    /// Name and unit of the output signal.
     pub output: crate::Signal,
 }
 
 impl FrequencyResponse {
-    /// Returns the magnitudes.
+    /// Returns the magnitude of the response at each frequency.
     pub fn magnitudes(&self) -> Vec<f64> {
         self.values.iter().map(|x| x.norm()).collect()
     }
@@ -178,11 +178,12 @@ impl FrequencyResponse {
         self.values.iter().map(|x| 20.0 * x.norm().log10()).collect()
     }
 
-    /// Returns the phases in degrees, unwrapped from one frequency to the next; the first is within ±180.
+    /// Returns the phase of the response at each frequency, degrees. Phases are unwrapped from one frequency
+    /// to the next; the first is within ±180.
     pub fn degrees(&self) -> Vec<f64> {
         let mut turns = 0.0;
         let mut last: Option<f64> = None;
-        let next = |x: &C| {
+        let unwrapped_phase = |x: &C| {
             let phase = x.arg().to_degrees();
             if let Some(last) = last {
                 turns -= ((phase - last) / 360.0).round();
@@ -190,7 +191,7 @@ impl FrequencyResponse {
             last = Some(phase);
             phase + 360.0 * turns
         };
-        self.values.iter().map(next).collect()
+        self.values.iter().map(unwrapped_phase).collect()
     }
 
     /// Returns the largest of the computed magnitudes and its frequency, rad/s.
@@ -263,8 +264,8 @@ impl StateSpace {
     ) -> Result<FrequencyResponse, Error> {
         let channel = self.channel(output, input)?;
         let map = channel.frequency_map()?;
-        let value = |w: &f64| Ok(map.response(*w)?[(0, 0)]);
-        let values = frequencies.iter().map(value).collect::<Result<Vec<_>, Error>>()?;
+        let response_at_frequency = |w: &f64| Ok(map.response(*w)?[(0, 0)]);
+        let values = frequencies.iter().map(response_at_frequency).collect::<Result<Vec<_>, Error>>()?;
         let (input, output) = (channel.inputs[0].clone(), channel.outputs[0].clone());
         Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values, input, output })
     }

@@ -1,4 +1,4 @@
-//! Stability margins of a feedback loop.
+//! Stability margins of a feedback loop: gain margins, phase margins and the distance from −1.
 
 use crate::frequency::{FrequencyMap, Sample, boundary};
 use crate::matrices::C;
@@ -9,26 +9,26 @@ use crate::{Error, PeakGain, StateSpace, TransferFunction};
 /// the stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
-    /// Gain factor; values below one are reductions.
+    /// Gain factor that brings the loop to the stability boundary; values below one are reductions.
     pub factor: f64,
-    /// Frequency, rad/s.
+    /// Frequency of the gain margin, rad/s.
     pub frequency: f64,
 }
 
 impl GainMargin {
-    /// Returns the factor in decibels.
+    /// Returns the gain factor in decibels.
     pub fn decibels(&self) -> f64 {
         20.0 * self.factor.log10()
     }
 }
 
-/// Frequency at which a loop's magnitude is one, with the phase lag that brings the loop to the stability
-/// boundary.
+/// Phase margin: frequency at which the loop's magnitude is one, and phase lag that brings the loop to the
+/// stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseMargin {
     /// Phase lag in degrees, within ±180; negative values are phase leads.
     pub degrees: f64,
-    /// Frequency, rad/s.
+    /// Frequency of the phase margin, rad/s.
     pub frequency: f64,
 }
 
@@ -49,37 +49,38 @@ pub struct StabilityMargin {
     pub frequency: f64,
 }
 
-/// All margins of a loop under negative feedback.
+/// All stability margins of a loop under negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// Margins at all frequencies where the phase crosses 180°, in ascending order. The frequency zero and
-    /// the Nyquist frequency are included if the response is real and negative there. A response that is real
-    /// at all frequencies, such as that of `1 / s²`, has no crossings.
+    /// Gain margins at all frequencies where the phase crosses 180°, in ascending order of frequency. The
+    /// frequency zero and the Nyquist frequency are included if the response is real and negative there. A
+    /// response that is real at all frequencies, such as that of `1 / s²`, has no crossings.
     pub gain: Vec<GainMargin>,
-    /// Margins at all frequencies where the magnitude crosses one, in ascending order. A magnitude that is
-    /// one at all frequencies, as for an all-pass, or that is tangent to one has no crossings.
+    /// Phase margins at all frequencies where the magnitude crosses one, in ascending order of frequency. A
+    /// magnitude that is one at all frequencies, as for an all-pass, or that is tangent to one has no
+    /// crossings.
     pub phase: Vec<PhaseMargin>,
-    /// Minimum distance from −1.
+    /// Minimum distance of the open-loop response from −1.
     pub stability: StabilityMargin,
 }
 
 impl Margins {
-    /// Returns the gain margin nearest to one.
+    /// Returns the gain margin whose factor is nearest to one.
     pub fn nearest_gain(&self) -> Option<GainMargin> {
         self.gain.iter().copied().min_by(|a, b| a.factor.ln().abs().total_cmp(&b.factor.ln().abs()))
     }
 
-    /// Returns the smallest factor above one that leads to the stability boundary.
+    /// Returns the gain margin with the smallest factor above one.
     pub fn gain_increase(&self) -> Option<GainMargin> {
         self.gain.iter().copied().filter(|m| m.factor > 1.0).min_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// Returns the largest factor below one that leads to the stability boundary.
+    /// Returns the gain margin with the largest factor below one.
     pub fn gain_reduction(&self) -> Option<GainMargin> {
         self.gain.iter().copied().filter(|m| m.factor < 1.0).max_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// Returns the phase margin nearest to zero.
+    /// Returns the phase margin whose lag is nearest to zero.
     pub fn nearest_phase(&self) -> Option<PhaseMargin> {
         self.phase.iter().copied().min_by(|a, b| a.degrees.abs().total_cmp(&b.degrees.abs()))
     }
@@ -118,7 +119,7 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
 /// Maximum relative rounding error of a response value that counts as reliable.
 const CERTAIN: f64 = 0.05;
 
-/// Response of an open loop.
+/// Open loop whose stability margins are computed, with its sampling period.
 struct Loop {
     map: FrequencyMap,
     period: Option<f64>,
@@ -135,7 +136,7 @@ impl Loop {
     /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
     /// rounding decides the sign are skipped.
     fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
-        let value = |w: f64| self.sample(w).map_or(f64::NAN, |sample| f(sample.value));
+        let value_at_frequency = |w: f64| self.sample(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
@@ -144,7 +145,7 @@ impl Loop {
                 continue;
             }
             if let Some((last, _)) = before.filter(|(_, there)| there * here < 0.0) {
-                found.push(root_between(value, last, *w));
+                found.push(root_between(value_at_frequency, last, *w));
             }
             before = Some((*w, here));
         }
@@ -175,7 +176,7 @@ impl StateSpace {
         let open = Loop { map: self.frequency_map()?, period: self.period };
         let (grid, samples): (Vec<f64>, Vec<Sample>) =
             self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample(w)?))).unzip();
-        let crosses = |frequency: f64| {
+        let gain_margin_at_crossing = |frequency: f64| {
             let Sample { value, error, .. } = open.sample(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
             // rounding error.
@@ -186,7 +187,7 @@ impl StateSpace {
         let ends = [0.0, self.highest_frequency()];
         let crossings = open.crossings(&grid, &samples, |x| x.im);
         let all = ends[..1].iter().chain(&crossings).chain(&ends[1..]);
-        let gain = all.filter(|w| w.is_finite()).filter_map(|w| crosses(*w)).collect();
+        let gain = all.filter(|w| w.is_finite()).filter_map(|w| gain_margin_at_crossing(*w)).collect();
         let phase = open.crossings(&grid, &samples, |x| x.norm() - 1.0).into_iter();
         let phase = phase.filter_map(|frequency| {
             let degrees = (-open.sample(frequency)?.value).arg().to_degrees();
@@ -195,8 +196,8 @@ impl StateSpace {
         Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
     }
 
-    /// Returns frequencies, in ascending order, that separate all frequencies at which the response is real
-    /// or has magnitude one.
+    /// Returns frequencies, in ascending order, that separate all frequencies at which the open-loop response
+    /// is real or has magnitude one.
     fn margin_grid(&self) -> Result<Vec<f64>, Error> {
         let mut points = self.root_frequencies()?;
         points.extend(self.level_frequencies(1.0)?);
@@ -224,16 +225,19 @@ impl StateSpace {
         let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
         // Near its minimum, the distance determines the frequency to half of the digits only. The sign
         // change of its derivative is more accurate.
-        let distance = |w: f64| open.sample(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
-        let slope = |w: f64| open.sample(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
+        let distance_to_critical_point =
+            |w: f64| open.sample(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
+        let slope_of_squared_distance =
+            |w: f64| open.sample(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
         let sharper = reach.into_iter().find_map(|reach| {
             let (low, high) = (frequency - reach, frequency + reach);
-            (slope(low) < 0.0 && slope(high) > 0.0).then(|| root_between(slope, low, high))
+            (slope_of_squared_distance(low) < 0.0 && slope_of_squared_distance(high) > 0.0)
+                .then(|| root_between(slope_of_squared_distance, low, high))
         });
-        let better = sharper.filter(|w| distance(*w) <= gain * (1.0 + 1e-12));
+        let better = sharper.filter(|w| distance_to_critical_point(*w) <= gain * (1.0 + 1e-12));
         Ok(better.map_or(StabilityMargin { distance: gain, frequency }, |frequency| StabilityMargin {
-            distance: distance(frequency),
+            distance: distance_to_critical_point(frequency),
             frequency,
         }))
     }

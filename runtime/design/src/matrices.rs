@@ -43,7 +43,7 @@ pub(crate) fn check(
     if m.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Error::NotFinite { what: matrix }) }
 }
 
-/// Reports an error for a matrix that is not square or not finite, otherwise returns the number of its rows.
+/// Returns the number of rows of a matrix, or an error if the matrix is not square or not finite.
 pub(crate) fn check_square(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
     check(matrix, m, m.nrows(), m.nrows())?;
     Ok(m.nrows())
@@ -54,17 +54,17 @@ pub(crate) fn complex(m: &DMatrix<f64>) -> CMatrix {
     m.map(|x| C::new(x, 0.0))
 }
 
-/// Returns the one-norm: the maximum sum of magnitudes of a column.
+/// Returns the one-norm of a matrix: the maximum over columns of the sum of magnitudes.
 pub(crate) fn norm_one(m: &DMatrix<f64>) -> f64 {
     m.column_iter().map(|c| c.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
 }
 
-/// Returns the symmetric part.
+/// Returns the symmetric part of a matrix.
 pub(crate) fn symmetric(m: &DMatrix<f64>) -> DMatrix<f64> {
     (m + m.transpose()) * 0.5
 }
 
-/// Solves `M X = R` for `X`.
+/// Solves the linear system `M X = R` for `X`.
 pub(crate) fn solve(
     what: &'static str,
     m: &DMatrix<f64>,

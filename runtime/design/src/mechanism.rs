@@ -49,9 +49,9 @@ fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
 
 /// Returns signals with names and units. The unit is empty for dimensionless and undetermined quantities.
 pub(crate) fn signals(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
-    let said = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
-    let unit = |k: usize| units.get(k).copied().map_or("", said);
-    names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit(k))).collect()
+    let printed_unit = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
+    let unit_of_signal = |k: usize| units.get(k).copied().map_or("", printed_unit);
+    names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit_of_signal(k))).collect()
 }
 
 /// Returns the displacement signal of a velocity signal, with the unit integrated over time.
@@ -93,14 +93,14 @@ where
     displacements::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
 }
 
-/// Returns the names of the accelerations: those of the displacements with two primes, or with one prime for
-/// rates of states of first order.
+/// Returns the names of the accelerations: the velocity names with two primes, or with one prime for
+/// first-order states.
 pub(crate) fn acceleration_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<String>
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    let primes = |k: usize| if k + M::FIRST_ORDER >= NV { "'" } else { "''" };
-    M::VELOCITIES.iter().enumerate().map(|(k, name)| format!("{name}{}", primes(k))).collect()
+    let derivative_marks = |k: usize| if k + M::FIRST_ORDER >= NV { "'" } else { "''" };
+    M::VELOCITIES.iter().enumerate().map(|(k, name)| format!("{name}{}", derivative_marks(k))).collect()
 }
 
 /// Returns the names and units of the inputs of a mechanism.

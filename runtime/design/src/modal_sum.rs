@@ -12,7 +12,7 @@ use std::collections::BinaryHeap;
 const MAX_COUPLING: f64 = 1e4;
 /// Maximum number of terms in the series of a group of modes.
 const MAX_TERMS: usize = 300;
-/// Maximum number of intervals of one search.
+/// Maximum number of intervals that one search for extrema or crossings visits.
 const MAX_INTERVALS: usize = 2_000_000;
 /// Magnitude of eigenvalues below which modes of sampled systems are below rounding error after
 /// `FIRST_SAMPLES`.
@@ -25,7 +25,7 @@ const FAILED: Error = Error::NotConverged { what: "the separation of the modes" 
 /// Mode, or group of modes whose eigenvalues nearly coincide: `e^{λ t} P(t)`.
 struct Term {
     exponent: C,
-    /// Coefficients of `P`, lowest power first.
+    /// Coefficients of the polynomial `P` in the term `e^{λ t} P(t)`, lowest power first.
     coefficients: Vec<C>,
 }
 
@@ -61,7 +61,7 @@ impl Term {
         Err(FAILED)
     }
 
-    /// Evaluates the polynomial at an instant.
+    /// Evaluates the polynomial factor of the term at an instant.
     fn polynomial(&self, t: f64) -> C {
         self.coefficients.iter().rev().fold(C::new(0.0, 0.0), |sum, c| sum * t + c)
     }
@@ -74,14 +74,15 @@ impl Term {
 
     /// Returns an upper bound of the magnitude at all instants.
     fn largest(&self) -> f64 {
-        let power = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
-        self.coefficients.iter().enumerate().map(power).sum()
+        let bound_of_term = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
+        self.coefficients.iter().enumerate().map(bound_of_term).sum()
     }
 
     fn derivative(&self) -> Self {
-        let next = |k: usize| self.coefficients.get(k + 1).map_or(C::new(0.0, 0.0), |c| c * (k + 1) as f64);
+        let next_coefficient =
+            |k: usize| self.coefficients.get(k + 1).map_or(C::new(0.0, 0.0), |c| c * (k + 1) as f64);
         let own = self.coefficients.iter().enumerate();
-        let coefficients = own.map(|(k, c)| self.exponent * c + next(k)).collect();
+        let coefficients = own.map(|(k, c)| self.exponent * c + next_coefficient(k)).collect();
         Self { exponent: self.exponent, coefficients }
     }
 }
@@ -123,7 +124,7 @@ fn coupling(t: &CMatrix, k: usize) -> CMatrix {
 
 /// Real sum of modes: `c e^{A t} x` for a stable matrix, or `c Aᵏ x`, where time counts samples.
 pub(crate) struct ModalSum {
-    /// Each term with its first three derivatives.
+    /// Terms of the sum, each with its first three derivatives.
     terms: Vec<[Term; 4]>,
     /// Whether time counts samples, so that only integer instants exist.
     sampled: bool,
@@ -133,14 +134,15 @@ pub(crate) struct ModalSum {
     end: f64,
 }
 
-/// Time interval with bounds of the sum.
+/// Time interval of a search, with bounds of the modal sum on it.
 struct Interval {
     from: f64,
     to: f64,
     low: f64,
     high: f64,
     middle: f64,
-    /// Whether the sum or its derivative is monotone, so that at most one local extremum is inside.
+    /// Whether the sum or its derivative is monotone on the interval, so that at most one local extremum is
+    /// inside.
     simple: bool,
 }
 
@@ -189,8 +191,8 @@ impl ModalSum {
                     break found;
                 }
                 let center = rest.t.diagonal().rows(0, k).sum() / k as f64;
-                let distance = |j: &usize| (rest.t[(*j, *j)] - center).norm();
-                let nearest = (k..m).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+                let distance_to_center = |j: &usize| (rest.t[(*j, *j)] - center).norm();
+                let nearest = (k..m).min_by(|i, j| distance_to_center(i).total_cmp(&distance_to_center(j)));
                 rest.raise(nearest.unwrap_or(k), k);
                 k += 1;
             };
@@ -209,8 +211,8 @@ impl ModalSum {
     fn of_terms(terms: Vec<Term>, sampled: bool) -> Self {
         let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::largest).sum::<f64>().max(1.0);
         // A term decays beyond the last maximum of its powers.
-        let decays = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
-        let mut end = terms.iter().map(decays).fold(0.0, f64::max);
+        let decay_time_of_term = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
+        let mut end = terms.iter().map(decay_time_of_term).fold(0.0, f64::max);
         while terms.iter().map(|term| term.bound(end, end)).sum::<f64>() > noise {
             end *= 1.5;
         }
@@ -230,11 +232,11 @@ impl ModalSum {
 
     /// Returns the derivative of this order at an instant.
     fn derivative(&self, order: usize, t: f64) -> f64 {
-        let real = |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].polynomial(t)).re;
-        self.terms.iter().map(real).sum()
+        let real_part_of_term = |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].polynomial(t)).re;
+        self.terms.iter().map(real_part_of_term).sum()
     }
 
-    /// Returns the sum at an instant.
+    /// Returns the value of the modal sum at an instant.
     pub fn value(&self, t: f64) -> f64 {
         self.derivative(0, t)
     }
@@ -275,7 +277,7 @@ impl ModalSum {
             || if self.sampled { length <= 1.0 } else { length <= 8.0 * f64::EPSILON * interval.to }
     }
 
-    /// Divides an interval in two.
+    /// Divides a time interval into two halves, with bounds of the sum on each.
     fn halves(&self, interval: &Interval) -> [Interval; 2] {
         let middle = interval.from + 0.5 * (interval.to - interval.from);
         let middle = if self.sampled { middle.floor() } else { middle };
@@ -285,10 +287,10 @@ impl ModalSum {
     /// Divides a final interval at a local extremum of the sum, so that the sum is monotone on each piece.
     fn pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
         let (from, to) = (interval.from, interval.to);
-        let slope = |t: f64| self.derivative(1, t);
+        let first_derivative = |t: f64| self.derivative(1, t);
         let mut ends = vec![from];
-        if slope(from) * slope(to) < 0.0 {
-            let turn = root_between(slope, from, to);
+        if first_derivative(from) * first_derivative(to) < 0.0 {
+            let turn = root_between(first_derivative, from, to);
             if self.sampled {
                 ends.extend([turn.floor(), turn.ceil()]);
             } else {
@@ -299,8 +301,8 @@ impl ModalSum {
         ends.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| (pair[0], pair[1])).collect()
     }
 
-    /// Returns the time at which a function of the sum changes its sign on a monotone piece. For a sampled
-    /// sum it is the sample on the side that is not negative.
+    /// Returns the time at which a function of the modal sum changes its sign on an interval where it is
+    /// monotone. For a sampled sum this is the sample on the nonnegative side.
     fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         if !self.sampled {
             return root_between(|t| f(self.value(t)), from, to);
@@ -383,10 +385,11 @@ impl ModalSum {
     pub fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let mut best = (from, sign * self.value(from));
         let mut reached = best.1;
-        let bound = |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
+        let bound_of_interval =
+            |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
         let mut open = BinaryHeap::new();
         let whole = self.interval(from, self.end.max(from));
-        open.push(Ranked(bound(&whole), whole));
+        open.push(Ranked(bound_of_interval(&whole), whole));
         let mut count = 0;
         while let Some(Ranked(most, interval)) = open.pop() {
             if most <= best.1 + 2.0 * self.noise || most < reached {
@@ -404,7 +407,7 @@ impl ModalSum {
                     if !self.sampled {
                         reached = reached.max(sign * half.middle);
                     }
-                    open.push(Ranked(bound(&half), half));
+                    open.push(Ranked(bound_of_interval(&half), half));
                 }
             }
             count_interval(&mut count)?;

@@ -1,4 +1,4 @@
-//! Modes of linear systems.
+//! Modes of linear systems: eigenvalues, mode shapes, participation factors and damping.
 
 use crate::matrices::{C, CMatrix, Schur, balanced, complex};
 use crate::{Error, Signal, StateSpace};
@@ -19,9 +19,9 @@ pub struct Mode {
     /// Mode shape: the component of each state in the eigenvector, normalised to unit length with a real
     /// largest entry. Only components with the same unit are comparable.
     pub shape: Vec<C>,
-    /// Participation factor of each state, dimensionless: the magnitudes of `wₖ vₖ` of the left and right
-    /// eigenvectors, normalised to a sum of one (Pérez-Arriaga, Verghese and Schweppe, *Selective modal
-    /// analysis*, 1982).
+    /// Participation factor of each state in the mode, dimensionless: the magnitudes of `wₖ vₖ` of the left
+    /// and right eigenvectors, normalised to a sum of one (Pérez-Arriaga, Verghese and Schweppe, *Selective
+    /// modal analysis*, 1982).
     pub participation: Vec<f64>,
     /// Condition number of the eigenvalue, `1 / |wᴴ v|` of the unit left and right eigenvectors in balanced
     /// units: one for a symmetric matrix, infinite for a defective one.
@@ -30,7 +30,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Returns the natural frequency `|s|`, rad/s.
+    /// Returns the natural frequency `|s|` of the mode, rad/s.
     pub fn frequency(&self) -> f64 {
         self.exponent.norm()
     }
@@ -40,8 +40,8 @@ impl Mode {
         self.exponent.im
     }
 
-    /// Returns the damping ratio `−Re s / |s|`: one for a stable real pole, negative for a growing mode, one
-    /// for a zero pole.
+    /// Returns the damping ratio of the mode, `−Re s / |s|`: one for a stable real pole, negative for a
+    /// growing mode, one for a zero pole.
     pub fn damping_ratio(&self) -> f64 {
         let size = self.exponent.norm();
         if size == 0.0 { 1.0 } else { -self.exponent.re / size }
@@ -73,13 +73,13 @@ impl Mode {
         Some(self.time_to_half()? / self.period()?)
     }
 
-    /// Returns whether the pole is stable.
+    /// Returns whether the mode is stable: its eigenvalue in continuous time has a negative real part.
     pub fn is_stable(&self) -> bool {
         self.exponent.re < 0.0
     }
 
-    /// Returns whether the eigenvalue is defective: the motion has terms `t eˢᵗ`. Shape and participation are
-    /// then those of one of several coinciding eigenvectors.
+    /// Returns whether the eigenvalue is defective: the motion has terms `t eˢᵗ`. Mode shape and
+    /// participation factors then belong to one of several coinciding eigenvectors.
     pub fn is_defective(&self) -> bool {
         self.condition > DEFECTIVE
     }
@@ -97,13 +97,14 @@ impl Mode {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
 
-    /// Returns the unit of a state, if it has one.
+    /// Returns the unit of a state; `None` if it has no unit.
     pub(crate) fn unit_of(&self, state: &str) -> Option<&str> {
         let found = self.states.iter().find(|s| s.name == state)?;
         Some(found.unit.as_str()).filter(|unit| !unit.is_empty())
     }
 
-    /// Returns the participation factor of a state, between zero and one; `None` for an unknown name.
+    /// Returns the participation factor of a named state in the mode, between zero and one; `None` for an
+    /// unknown name.
     pub fn participation_of(&self, state: &str) -> Option<f64> {
         let k = self.states.iter().position(|s| s.name == state)?;
         self.participation.get(k).copied()
@@ -137,8 +138,8 @@ impl fmt::Display for Mode {
         if let Some(time) = self.time_to_double() {
             write!(f, ", doubles in {time:.4} s")?;
         }
-        let part = |(name, part): &(&str, f64)| format!("{name} {:.0} %", 100.0 * part);
-        let parts: Vec<_> = self.participants().iter().take(3).map(part).collect();
+        let format_participation = |(name, part): &(&str, f64)| format!("{name} {:.0} %", 100.0 * part);
+        let parts: Vec<_> = self.participants().iter().take(3).map(format_participation).collect();
         write!(f, ": {}", parts.join(", "))
     }
 }
@@ -169,13 +170,17 @@ impl StateSpace {
         let mut taken = vec![false; n];
         let mut modes = Vec::new();
         for pole in self.poles()?.into_iter().filter(|p| p.im >= 0.0) {
-            let distance = |k: &usize| (schur.t[(*k, *k)] - pole).norm();
-            let nearest = (0..n).filter(|k| !taken[*k]).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+            let distance_to_pole = |k: &usize| (schur.t[(*k, *k)] - pole).norm();
+            let nearest = (0..n)
+                .filter(|k| !taken[*k])
+                .min_by(|i, j| distance_to_pole(i).total_cmp(&distance_to_pole(j)));
             let Some(k) = nearest else { break };
             taken[k] = true;
             if pole.im > 0.0 {
-                let other = |k: &usize| (schur.t[(*k, *k)] - pole.conj()).norm();
-                let pair = (0..n).filter(|k| !taken[*k]).min_by(|i, j| other(i).total_cmp(&other(j)));
+                let distance_to_conjugate_pole = |k: &usize| (schur.t[(*k, *k)] - pole.conj()).norm();
+                let pair = (0..n)
+                    .filter(|k| !taken[*k])
+                    .min_by(|i, j| distance_to_conjugate_pole(i).total_cmp(&distance_to_conjugate_pole(j)));
                 pair.into_iter().for_each(|k| taken[k] = true);
             }
             modes.push(self.mode(pole, &schur.right_eigenvector(k), &schur.left_eigenvector(k), &d));

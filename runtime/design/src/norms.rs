@@ -4,10 +4,10 @@ use crate::frequency::{FrequencyMap, boundary};
 use crate::matrices::complex;
 use crate::{Error, StateSpace};
 
-/// Maximum gain over all frequencies.
+/// Peak gain: maximum gain of a system over all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakGain {
-    /// Largest singular value of the response.
+    /// Largest singular value of the response at the peak.
     pub gain: f64,
     /// Frequency of the peak, rad/s; infinite if the gain is the limit for high frequencies.
     pub frequency: f64,
@@ -48,7 +48,7 @@ impl StateSpace {
     /// which may be unstable.
     pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
-        let gain = |w: f64| {
+        let gain_at_frequency = |w: f64| {
             let response = if w.is_finite() { map.response(w) } else { Ok(complex(&self.d)) };
             match response {
                 Ok(m) if m.is_empty() => 0.0,
@@ -62,11 +62,11 @@ impl StateSpace {
             }
         };
         let top = self.highest_frequency();
-        let mut best = PeakGain { gain: gain(top), frequency: top };
+        let mut best = PeakGain { gain: gain_at_frequency(top), frequency: top };
         let mut improve = |frequencies: &mut dyn Iterator<Item = f64>| {
             let before = best.gain;
             for w in frequencies {
-                let gain = gain(w);
+                let gain = gain_at_frequency(w);
                 // Smaller differences are rounding errors.
                 if extreme.is_beyond(gain, extreme.beyond(best.gain, 1e-14)) {
                     best = PeakGain { gain, frequency: w };

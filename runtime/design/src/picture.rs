@@ -36,20 +36,21 @@ fn title(response: &FrequencyResponse) -> String {
 ///
 /// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
-    let points = |values: Vec<f64>| -> Vec<(f64, f64)> {
+    let points_on_log_axis = |values: Vec<f64>| -> Vec<(f64, f64)> {
         let points = response.frequencies.iter().copied().zip(values);
         points.filter(|(w, _)| *w > 0.0).map(|(w, y)| (w.log10(), y)).collect()
     };
-    let panel = |heading: String, y: &str, values: Vec<f64>| Panel {
+    let bode_panel = |heading: String, y: &str, values: Vec<f64>| Panel {
         title: heading,
         x: "frequency, rad/s".into(),
         y: y.into(),
         logarithmic: true,
-        curves: vec![Curve { name: String::new(), points: points(values) }],
+        curves: vec![Curve { name: String::new(), points: points_on_log_axis(values) }],
         ..Panel::default()
     };
-    let above = panel(format!("Bode diagram, {}", title(response)), "magnitude, dB", response.decibels());
-    panel::draw(&[above, panel(String::new(), "phase, deg", response.degrees())], (720, 560))
+    let above =
+        bode_panel(format!("Bode diagram, {}", title(response)), "magnitude, dB", response.decibels());
+    panel::draw(&[above, bode_panel(String::new(), "phase, deg", response.degrees())], (720, 560))
 }
 
 /// Draws a Nyquist diagram: the response in the complex plane, its mirror image for negative frequencies, and
@@ -68,7 +69,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);
     let reach = (-10.0 * typical, 10.0 * typical);
     let smooth = smooth(&response.values);
-    let curve = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
+    let nyquist_points = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
     let panel = Panel {
         title: format!("Nyquist diagram, {}", title(response)),
         x: "real part".into(),
@@ -76,8 +77,8 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
         equal: true,
         window: Some([reach, reach]),
         curves: vec![
-            Curve { name: "ω > 0".into(), points: curve(1.0) },
-            Curve { name: "ω < 0".into(), points: curve(-1.0) },
+            Curve { name: "ω > 0".into(), points: nyquist_points(1.0) },
+            Curve { name: "ω < 0".into(), points: nyquist_points(-1.0) },
         ],
         marks: vec![(Mark::Cross, -1.0, 0.0)],
         mark_names: vec![(Mark::Cross, "−1")],
@@ -183,12 +184,12 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
 pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     let all = [locus.poles.clone(), locus.zeros.clone()].concat();
     let far = 2.0 * reach(&all);
-    let curve = |branch: &Vec<C>| Curve {
+    let curve_of_branch = |branch: &Vec<C>| Curve {
         name: String::new(),
         points: branch.iter().take_while(|x| x.norm() <= far).map(|x| (x.re, x.im)).collect(),
     };
     let panel = Panel {
-        curves: locus.branches.iter().map(curve).collect(),
+        curves: locus.branches.iter().map(curve_of_branch).collect(),
         lines: vec![border(locus.period, reach(&all))],
         marks: marks(Mark::Cross, &locus.poles).chain(marks(Mark::Circle, &locus.zeros)).collect(),
         mark_names: MARKS.into(),
@@ -197,7 +198,7 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
-/// Unit, with the output signals of that unit and their indices.
+/// Unit of a panel, and the output signals that have this unit, with their indices.
 type OfUnit<'a> = (&'a str, Vec<(&'a crate::Signal, usize)>);
 
 /// Draws outputs over time, in one panel per unit.
@@ -213,14 +214,14 @@ pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
             None => panels.push((&signal.unit, vec![(signal, k)])),
         }
     }
-    let panel = |(place, (unit, signals)): (usize, &OfUnit<'_>)| {
+    let panel_of_unit = |(place, (unit, signals)): (usize, &OfUnit<'_>)| {
         // A single curve is named at the axis.
         let (y, alone) = match signals.as_slice() {
             [(signal, _)] => (signal.to_string(), true),
             _ if unit.is_empty() => ("value".to_owned(), false),
             _ => ((*unit).to_owned(), false),
         };
-        let curve = |(signal, k): &(&crate::Signal, usize)| Curve {
+        let curve_of_signal = |(signal, k): &(&crate::Signal, usize)| Curve {
             name: if alone { String::new() } else { signal.name.clone() },
             points: response.times.iter().copied().zip(response.outputs.row(*k).iter().copied()).collect(),
         };
@@ -228,11 +229,11 @@ pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
             title: if place == 0 { heading.into() } else { String::new() },
             x: "time, s".into(),
             y,
-            curves: signals.iter().map(curve).collect(),
+            curves: signals.iter().map(curve_of_signal).collect(),
             ..Panel::default()
         }
     };
-    let panels: Vec<Panel> = panels.iter().enumerate().map(panel).collect();
+    let panels: Vec<Panel> = panels.iter().enumerate().map(panel_of_unit).collect();
     let height = 60 + 240 * u32::try_from(panels.len()).unwrap_or(1);
     panel::draw(&panels, (720, height))
 }

@@ -1,19 +1,19 @@
-//! Pole placement.
+//! Pole placement by state feedback.
 
 use crate::matrices::{eigenvalues, is_fixed, solve, sylvester};
 use crate::{Error, StateSpace};
 use nalgebra::{Complex, DMatrix};
 
-/// Returns a real matrix with these eigenvalues and one eigenvector per distinct eigenvalue. Conjugate pairs
-/// are blocks of two rows.
+/// Returns a real matrix with the given eigenvalues and one eigenvector per distinct eigenvalue. A conjugate
+/// pair is a block of two rows.
 fn canonical(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
     let n = poles.len();
     let mut upper: Vec<_> = poles.iter().filter(|pole| pole.im >= 0.0).copied().collect();
-    let paired = |pole: &Complex<f64>| {
-        let count = |wanted: Complex<f64>| poles.iter().filter(|other| **other == wanted).count();
-        count(*pole) == count(pole.conj())
+    let has_matching_conjugate = |pole: &Complex<f64>| {
+        let count_equal_poles = |wanted: Complex<f64>| poles.iter().filter(|other| **other == wanted).count();
+        count_equal_poles(*pole) == count_equal_poles(pole.conj())
     };
-    if let Some(pole) = poles.iter().find(|pole| !pole.is_finite() || !paired(pole)) {
+    if let Some(pole) = poles.iter().find(|pole| !pole.is_finite() || !has_matching_conjugate(pole)) {
         return Err(Error::Unpaired { pole: *pole });
     }
     upper.sort_by(|x, y| x.re.total_cmp(&y.re).then(x.im.total_cmp(&y.im)));
@@ -53,19 +53,21 @@ fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
     for pole in wanted {
-        let distance = |i: &usize| found.get(*i).map_or(f64::INFINITY, |other| (other - pole).norm());
-        let Some(best) = (0..found.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))) else {
+        let distance_to_pole = |i: &usize| found.get(*i).map_or(f64::INFINITY, |other| (other - pole).norm());
+        let Some(best) = (0..found.len()).min_by(|i, j| distance_to_pole(i).total_cmp(&distance_to_pole(j)))
+        else {
             return f64::INFINITY;
         };
         let times = wanted.iter().filter(|other| *other == pole).count();
         let excused = 1e-10_f64.powf(1.0 / times as f64) * size.max(f64::MIN_POSITIVE);
-        worst = worst.max(distance(&best) / excused);
+        worst = worst.max(distance_to_pole(&best) / excused);
         found.swap_remove(best);
     }
     worst
 }
 
-/// Number of attempts with several inputs, since many gains then give the same poles; the best one counts.
+/// Number of random attempts at pole placement with several inputs, where many gains give the same poles. The
+/// best attempt is returned.
 const ATTEMPTS: usize = 16;
 
 impl StateSpace {

@@ -20,7 +20,7 @@ impl Polynomial {
         Self { coefficients: all.into_iter().skip_while(|c| *c == 0.0).collect() }
     }
 
-    /// Creates a constant polynomial.
+    /// Creates the polynomial of degree zero with this value.
     pub fn constant(value: f64) -> Self {
         Self::new([value])
     }
@@ -41,17 +41,17 @@ impl Polynomial {
         Self::new(product.into_iter().map(|c| c.re))
     }
 
-    /// Returns the coefficients, highest power first.
+    /// Returns the coefficients of the polynomial, highest power first.
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// Returns the highest power; zero for constants.
+    /// Returns the degree of the polynomial; zero for constants.
     pub fn degree(&self) -> usize {
         self.coefficients.len().saturating_sub(1)
     }
 
-    /// Returns whether this is the zero polynomial.
+    /// Returns whether all coefficients of the polynomial are zero.
     pub fn is_zero(&self) -> bool {
         self.coefficients.is_empty()
     }
@@ -84,7 +84,7 @@ impl Polynomial {
         Self::new(self.coefficients.iter().map(|c| c * factor))
     }
 
-    /// Returns the derivative.
+    /// Returns the derivative of the polynomial.
     pub fn derivative(&self) -> Self {
         let n = self.degree();
         let terms = self.coefficients.iter().take(n).enumerate();
@@ -112,7 +112,7 @@ impl Polynomial {
         Ok(roots)
     }
 
-    /// Formats the polynomial in this variable, such as `s² + 2 s + 3`.
+    /// Formats the polynomial with the name of its variable, such as `s² + 2 s + 3`.
     pub fn written_in(&self, variable: &str) -> String {
         if self.is_zero() {
             return "0".into();

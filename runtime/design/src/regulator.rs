@@ -13,7 +13,7 @@ pub struct Noise {
     pub outputs: DMatrix<f64>,
 }
 
-/// Stationary Kalman filter.
+/// Stationary Kalman filter of a linear system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kalman {
     /// Gain `L` of `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`, or of the prediction `x̂⁺` of a discrete filter.
@@ -22,7 +22,7 @@ pub struct Kalman {
     pub correction: DMatrix<f64>,
     /// Covariance of the estimation error (for a discrete filter before the correction).
     pub covariance: DMatrix<f64>,
-    /// Eigenvalues of `A − L C`.
+    /// Poles of the filter: the eigenvalues of `A − L C`.
     pub poles: Vec<nalgebra::Complex<f64>>,
 }
 

@@ -3,18 +3,18 @@
 use crate::{Error, Hold, Port, Signal, StateSpace};
 use nalgebra::{DMatrix, DVector};
 
-/// Motion at equally spaced instants.
+/// Time response of a linear system at equally spaced instants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// Instants, s.
+    /// Instants of the response, s.
     pub times: Vec<f64>,
-    /// Outputs: one row per output, one column per instant.
+    /// Output signals: one row per output, one column per instant.
     pub outputs: DMatrix<f64>,
-    /// States: one row per state, one column per instant.
+    /// State trajectory: one row per state, one column per instant.
     pub states: DMatrix<f64>,
-    /// Names and units of the outputs.
+    /// Names and units of the output signals.
     pub output_signals: Vec<Signal>,
-    /// Names and units of the states.
+    /// Names and units of the state variables.
     pub state_signals: Vec<Signal>,
 }
 

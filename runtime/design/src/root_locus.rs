@@ -7,19 +7,19 @@ use nalgebra::DMatrix;
 /// Closed-loop poles under negative feedback with the gains `k`, ordered by branch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootLocus {
-    /// Gains, in ascending order.
+    /// Gains of the root locus, in ascending order.
     pub gains: Vec<f64>,
-    /// Branches, one per pole: its position at every gain.
+    /// Branches of the root locus: for each branch, the closed-loop pole at every gain.
     pub branches: Vec<Vec<C>>,
     /// Poles of the open loop, at which branches begin.
     pub poles: Vec<C>,
     /// Zeros of the open loop, at which branches end.
     pub zeros: Vec<C>,
-    /// Period of a discrete system, s.
+    /// Sampling period of a discrete system, s.
     pub period: Option<f64>,
 }
 
-/// Orders poles so that each is near the previous pole of its branch.
+/// Orders closed-loop poles by branch: each is matched with a near pole of the previous gain.
 fn follow(before: &[C], mut now: Vec<C>) -> Vec<C> {
     let mut order = vec![C::new(0.0, 0.0); before.len()];
     let mut free: Vec<usize> = (0..before.len()).collect();

@@ -1,12 +1,12 @@
-//! Routh's table, with its singular cases.
+//! Routh's table of a polynomial, with its singular cases.
 
 use crate::matrices::C;
 use crate::{Error, Polynomial};
 
-/// Kind of a row of Routh's table.
+/// Kind of a row of Routh's table: regular or singular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Special {
-    /// Row without a singularity.
+    /// Row of Routh's table without a singularity.
     Regular,
     /// The row began with zeros but was not zero. The row, shifted to its first nonzero entry and multiplied
     /// by the sign of the shift, was added, which avoids the ε method (Benidir and Picinbono, *Extended table
@@ -17,16 +17,16 @@ pub enum Special {
     ZeroRow,
 }
 
-/// Routh's table of a polynomial.
+/// Routh's table of a polynomial, with the root counts that it gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Routh {
     /// Rows of the table, after the replacement of singular rows.
     pub rows: Vec<Vec<f64>>,
-    /// Kind of each row.
+    /// Kind of each row of the table: regular, leading zero or zero row.
     pub special: Vec<Special>,
     /// Number of roots with positive real part, which is the number of sign changes in the first column.
     pub right: usize,
-    /// Number of roots on the imaginary axis.
+    /// Number of roots of the polynomial on the imaginary axis.
     pub imaginary: usize,
 }
 
@@ -84,8 +84,8 @@ impl Polynomial {
                 what = Special::ZeroRow;
                 symmetric_from.get_or_insert(k);
                 let degree = n - k + 1;
-                let slope = |(j, x): (usize, &f64)| x * degree.saturating_sub(2 * j) as f64;
-                row = above.iter().enumerate().map(slope).take(length).collect();
+                let derivative_coefficient = |(j, x): (usize, &f64)| x * degree.saturating_sub(2 * j) as f64;
+                row = above.iter().enumerate().map(derivative_coefficient).take(length).collect();
             }
             if row[0] == 0.0 {
                 what = if what == Special::Regular { Special::LeadingZero } else { what };
@@ -97,22 +97,22 @@ impl Polynomial {
             rows.push(row);
             special.push(what);
         }
-        let changes = |from: usize| {
+        let count_sign_changes = |from: usize| {
             let first: Vec<f64> = rows.iter().skip(from).map(|r| r[0]).collect();
             first.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
         };
-        let right = changes(0);
+        let right = count_sign_changes(0);
         // The factor with symmetric roots has equal numbers of roots in both half-planes; the others are on
         // the axis.
-        let imaginary = symmetric_from.map_or(0, |k| (n + 1 - k) - 2 * changes(k - 1));
+        let imaginary = symmetric_from.map_or(0, |k| (n + 1 - k) - 2 * count_sign_changes(k - 1));
         Ok(Routh { rows, special, right, imaginary })
     }
 }
 
 fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
-    let entry = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
-    let ratio = entry(two, 0) / entry(one, 0);
-    let terms = (0..length).map(|j| (entry(two, j + 1), ratio * entry(one, j + 1)));
+    let entry_or_zero = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
+    let ratio = entry_or_zero(two, 0) / entry_or_zero(one, 0);
+    let terms = (0..length).map(|j| (entry_or_zero(two, j + 1), ratio * entry_or_zero(one, j + 1)));
     terms.map(|(a, b)| (a - b, a.abs().max(b.abs()))).unzip()
 }
 
@@ -123,12 +123,12 @@ impl Routh {
     }
 }
 
-/// Open interval of gains.
+/// Open interval of feedback gains for which a loop is stable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainRange {
-    /// Lower end; may be minus infinity.
+    /// Lower end of the gain interval; may be minus infinity.
     pub low: f64,
-    /// Upper end; may be infinity.
+    /// Upper end of the gain interval; may be infinity.
     pub high: f64,
 }
 
@@ -182,13 +182,13 @@ impl Polynomial {
     /// Returns candidates that include all gains at which a root is on the imaginary axis or at infinity.
     /// Additional candidates do no harm.
     fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
-        let mirrored = |p: &Self| {
+        let mirrored_polynomial = |p: &Self| {
             let n = p.degree();
             let signs = p.coefficients().iter().enumerate();
             Self::new(signs.map(|(k, c)| if (n - k).is_multiple_of(2) { *c } else { -c }))
         };
         // A root at s = iω makes p(s) / q(s) real: a root of the odd part of p(s) q(−s).
-        let odd = &(self * &mirrored(other)) - &(&mirrored(self) * other);
+        let odd = &(self * &mirrored_polynomial(other)) - &(&mirrored_polynomial(self) * other);
         let mut points = vec![0.0];
         points.extend(odd.roots()?.into_iter().map(|r| r.im).filter(|w| *w > 0.0));
         let mut found = Vec::new();

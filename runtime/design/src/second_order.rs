@@ -13,13 +13,13 @@ pub struct SecondOrderForm {
     pub mass: DMatrix<f64>,
     /// Damping matrix `D`, which dissipates energy if it is positive definite.
     pub damping: DMatrix<f64>,
-    /// Gyroscopic matrix `G`, which does no work.
+    /// Gyroscopic matrix `G`, skew-symmetric, whose forces do no work.
     pub gyroscopic: DMatrix<f64>,
     /// Stiffness matrix `K`, which derives from a potential.
     pub stiffness: DMatrix<f64>,
     /// Circulatory matrix `N`, which has no potential: follower forces, internal damping of rotors.
     pub circulatory: DMatrix<f64>,
-    /// Input matrix `B`.
+    /// Input matrix `B` of the second-order form.
     pub input: DMatrix<f64>,
     coordinates: Vec<Signal>,
     inputs: Vec<Signal>,

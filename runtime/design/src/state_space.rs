@@ -8,9 +8,9 @@ use std::fmt;
 /// Name and unit of a state, input or output.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signal {
-    /// Name of the state, input or output.
+    /// Name of the signal: a state, input or output.
     pub name: String,
-    /// Unit; empty if unspecified.
+    /// Unit of the signal; empty if unspecified.
     pub unit: String,
 }
 
@@ -49,9 +49,9 @@ impl fmt::Display for Signal {
 /// Reference to an input or output, by index or by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port<'a> {
-    /// Index, counted from zero.
+    /// Reference to an input or output by its index, counted from zero.
     At(usize),
-    /// By name of the input or output.
+    /// Reference to an input or output by its name.
     Named(&'a str),
 }
 
@@ -171,22 +171,22 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// Returns the state matrix `A`.
+    /// Returns the state matrix `A` of the system.
     pub fn a(&self) -> &DMatrix<f64> {
         &self.a
     }
 
-    /// Returns the input matrix `B`.
+    /// Returns the input matrix `B` of the system.
     pub fn b(&self) -> &DMatrix<f64> {
         &self.b
     }
 
-    /// Returns the output matrix `C`.
+    /// Returns the output matrix `C` of the system.
     pub fn c(&self) -> &DMatrix<f64> {
         &self.c
     }
 
-    /// Returns the feedthrough matrix `D`.
+    /// Returns the feedthrough matrix `D` of the system.
     pub fn d(&self) -> &DMatrix<f64> {
         &self.d
     }
@@ -211,7 +211,7 @@ impl StateSpace {
         self.period
     }
 
-    /// Returns the number of states.
+    /// Returns the order of the system: its number of states.
     pub fn order(&self) -> usize {
         self.a.nrows()
     }
@@ -238,9 +238,12 @@ impl StateSpace {
     /// Returns the pole with the largest real part (largest magnitude for a discrete system), if it is not
     /// stable.
     pub(crate) fn unstable_pole(&self) -> Result<Option<C>, Error> {
-        let excess = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
-        let worst = self.poles()?.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)));
-        Ok(worst.filter(|p| excess(p) >= 0.0))
+        let excess_over_stability = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
+        let worst = self
+            .poles()?
+            .into_iter()
+            .max_by(|a, b| excess_over_stability(a).total_cmp(&excess_over_stability(b)));
+        Ok(worst.filter(|p| excess_over_stability(p) >= 0.0))
     }
 
     /// Reports an unstable pole of the system as an error.
@@ -336,12 +339,19 @@ fn place(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Result<usize
 impl fmt::Display for StateSpace {
     /// Writes the equations, the names of all signals and the matrices.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |signals: &[Signal]| signals.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(", ");
+        let join_signal_names =
+            |signals: &[Signal]| signals.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(", ");
         match self.period {
             Some(period) => writeln!(f, "x⁺ = A x + B u, y = C x + D u, every {period} s")?,
             None => writeln!(f, "ẋ = A x + B u, y = C x + D u")?,
         }
-        writeln!(f, "x: {}\nu: {}\ny: {}", list(&self.states), list(&self.inputs), list(&self.outputs))?;
+        writeln!(
+            f,
+            "x: {}\nu: {}\ny: {}",
+            join_signal_names(&self.states),
+            join_signal_names(&self.inputs),
+            join_signal_names(&self.outputs)
+        )?;
         let matrices = [("A", &self.a), ("B", &self.b), ("C", &self.c), ("D", &self.d)];
         for (name, matrix) in matrices.into_iter().filter(|(_, m)| !m.is_empty()) {
             write!(f, "{name} ={matrix}")?;

@@ -69,7 +69,7 @@ type MultipliersOf<M, const NQ: usize, const NV: usize> =
 type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> Measured;
 
-/// A quantity of configuration, velocity and inputs.
+/// Scalar function of mechanism, configuration, velocity and inputs.
 type Quantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
     Box<dyn Fn(&M, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>) -> f64 + 'm>;
 
@@ -94,7 +94,7 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     /// Accelerations with their required values; `None` for accelerations without a condition.
     accelerations: Vec<(String, Option<f64>)>,
     conditions: Vec<(String, f64)>,
-    /// Quantities that are no outputs, with their values.
+    /// Conditions on quantities that are not outputs: name, required value and function.
     quantities: Vec<(String, f64, Quantity<'m, M, NQ, NV, NU>)>,
     constraints: Option<(ConstraintsOf<M, NQ, NV>, MultipliersOf<M, NQ, NV>)>,
     outputs: Option<OutputsOf<M, NQ, NV, NU>>,
@@ -106,23 +106,23 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
-    /// Configuration, m and rad.
+    /// Configuration of the steady state, m and rad.
     pub q: SVector<f64, NQ>,
-    /// Velocity, m/s and rad/s.
+    /// Velocity of the steady state, m/s and rad/s.
     pub v: SVector<f64, NV>,
-    /// Inputs, in their declared units.
+    /// Inputs of the steady state, in their declared units.
     pub u: SVector<f64, NU>,
     /// Acceleration `v̇`, m/s² and rad/s². Zero up to rounding, except for entries whose value was specified
     /// or that were left without a condition.
     pub acceleration: SVector<f64, NV>,
-    /// Values of the parameters, in the order in which they were declared.
+    /// Values of the mechanism's parameters, in the order of their declaration.
     pub parameters: Vec<f64>,
     /// Forces that lock the [held](Trim::hold) coordinates: name, and generalized force, N or N·m.
     pub holding: Vec<(String, f64)>,
     /// Multipliers of the constraints: name, and force or torque (N, N·m) along the constraint's velocity.
     /// For redundant constraints, the multipliers of minimum norm.
     pub multipliers: Vec<(&'static str, f64)>,
-    /// Number of iterations.
+    /// Number of iterations until the steady state was found.
     pub iterations: usize,
     /// Largest residual of the conditions, each divided by its sensitivity to the unknowns: rad, m.
     pub residual: f64,
@@ -242,7 +242,7 @@ where
         self
     }
 
-    /// Makes these coordinates the only unknown ones; the others retain their initial values.
+    /// Declares these coordinates to be the only unknown ones; the others keep their initial values.
     pub fn coordinates<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.coordinates = Some(owned(names));
         self
@@ -285,20 +285,20 @@ where
         self
     }
 
-    /// Declares these velocities as unknown.
+    /// Declares the named velocities as unknowns of the trim.
     pub fn speeds<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.speeds.extend(owned(names));
         self
     }
 
-    /// Declares these inputs as unknown.
+    /// Declares the named inputs as unknowns of the trim.
     pub fn inputs<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.inputs.extend(owned(names));
         self
     }
 
-    /// Removes the condition on these accelerations, for example on those of the position of a wheel that
-    /// runs in a circle.
+    /// Removes the conditions that the named accelerations are zero, for example for the position of a wheel
+    /// that rolls in a circle.
     pub fn accelerating<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.accelerations.extend(owned(names).into_iter().map(|name| (name, None)));
         self

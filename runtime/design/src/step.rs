@@ -1,4 +1,4 @@
-//! Characteristic values of a step response.
+//! Characteristic values of a step response: rise time, settling time, overshoot and others.
 
 use crate::frequency::boundary;
 use crate::matrices::solve;
@@ -9,9 +9,9 @@ use nalgebra::DMatrix;
 /// Characteristic values of the step response of a stable system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepFigures {
-    /// Final value.
+    /// Final value of the step response.
     pub final_value: f64,
-    /// Time from the first crossing of the lower level to that of the upper one, s.
+    /// Rise time: time from the first crossing of the lower level to that of the upper level, s.
     pub rise_time: f64,
     /// Time after which the response stays within the band around the final value, s.
     pub settling_time: f64,
@@ -19,13 +19,13 @@ pub struct StepFigures {
     pub overshoot: f64,
     /// Largest value of the opposite sign, % of the final value.
     pub undershoot: f64,
-    /// Largest magnitude.
+    /// Largest magnitude of the step response.
     pub peak: f64,
     /// Time of the largest magnitude, s; infinite if the response only approaches it.
     pub peak_time: f64,
-    /// Minimum value after the rise.
+    /// Minimum value of the step response after the rise.
     pub least_after_rise: f64,
-    /// Largest value after the rise.
+    /// Largest value of the step response after the rise.
     pub largest_after_rise: f64,
 }
 
@@ -47,7 +47,7 @@ impl Default for StepLimits {
 /// Deviation of a step response from its final value, relative to the final value, as a function of time or
 /// of the sample index.
 struct Distance {
-    /// First samples of a discrete system.
+    /// First samples of the deviation of a discrete system, which its modes do not describe.
     first: Vec<f64>,
     modes: ModalSum,
 }
@@ -73,7 +73,7 @@ impl Distance {
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
-    /// from an instant on. If the deviation only approaches zero, it is zero at infinite time.
+    /// after the time `from`. If the deviation only approaches zero, the result is zero at infinite time.
     fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
@@ -143,21 +143,21 @@ impl StateSpace {
             (Some(last), Some(_)) => last + 1.0,
         };
         let (top, bottom) = (distance.extreme(1.0, 0.0)?, distance.extreme(-1.0, 0.0)?);
-        let relative = |extreme: (f64, f64)| 1.0 + extreme.1;
-        let peak = if relative(top).abs() >= relative(bottom).abs() { top } else { bottom };
+        let relative_extreme = |extreme: (f64, f64)| 1.0 + extreme.1;
+        let peak = if relative_extreme(top).abs() >= relative_extreme(bottom).abs() { top } else { bottom };
         let after_rise = [distance.extreme(1.0, to)?, distance.extreme(-1.0, to)?];
-        let after_rise = after_rise.map(|extreme| final_value * relative(extreme));
+        let after_rise = after_rise.map(|extreme| final_value * relative_extreme(extreme));
         Ok(StepFigures {
             final_value,
             rise_time: (to - from) * period,
             settling_time: settling_time * period,
             overshoot: 100.0 * top.1.max(0.0),
-            undershoot: if -relative(bottom) > distance.modes.noise {
-                -100.0 * relative(bottom)
+            undershoot: if -relative_extreme(bottom) > distance.modes.noise {
+                -100.0 * relative_extreme(bottom)
             } else {
                 0.0
             },
-            peak: (final_value * relative(peak)).abs(),
+            peak: (final_value * relative_extreme(peak)).abs(),
             peak_time: peak.0 * period,
             least_after_rise: after_rise[0].min(after_rise[1]),
             largest_after_rise: after_rise[0].max(after_rise[1]),

@@ -1,4 +1,4 @@
-//! Controllability and observability.
+//! Controllability and observability of linear systems.
 
 use crate::matrices::{
     C, CMatrix, Compression, balance_system, discrete_lyapunov, lyapunov, smallest_singular,
@@ -13,26 +13,26 @@ const ROUNDING: f64 = 1e-12;
 /// Staircase form of a system, with the controllable part first: `[A₁₁ A₁₂; 0 A₂₂]`, `[B₁; 0]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Staircase {
-    /// System in the transformed states.
+    /// System in the transformed states of the staircase form.
     pub system: StateSpace,
     /// Transformation `x = T z`: orthogonal, or orthogonal times diagonal scales if the system was balanced.
     pub transformation: DMatrix<f64>,
-    /// Dimension of the controllable part.
+    /// Dimension of the controllable subspace.
     pub rank: usize,
     /// Ranks of the steps. The controllability indices are the conjugate partition of these ranks.
     pub steps: Vec<usize>,
 }
 
-/// Dimensions of the subspaces of Kalman's decomposition.
+/// Dimensions of the four subspaces of Kalman's decomposition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KalmanRanks {
     /// Dimension of the controllable and observable part, which is the order of a minimal realisation.
     pub both: usize,
-    /// Dimension of the controllable, unobservable part.
+    /// Dimension of the controllable and unobservable part.
     pub controllable_only: usize,
-    /// Dimension of the uncontrollable, observable part.
+    /// Dimension of the uncontrollable and observable part.
     pub observable_only: usize,
-    /// Dimension of the uncontrollable, unobservable part.
+    /// Dimension of the uncontrollable and unobservable part.
     pub neither: usize,
 }
 
@@ -195,7 +195,7 @@ impl StateSpace {
         let (scaled, _) = self.scaled();
         let (n, m) = scaled.b.shape();
         let size = scaled.a.norm().max(f64::MIN_POSITIVE);
-        let distance = |pole: C| {
+        let distance_to_uncontrollability = |pole: C| {
             let test = CMatrix::from_fn(n, n + m, |i, j| {
                 if j >= n {
                     return C::new(scaled.b[(i, j - n)], 0.0);
@@ -205,7 +205,7 @@ impl StateSpace {
             });
             (pole, smallest_singular(&test) / size)
         };
-        Ok(self.poles()?.into_iter().map(distance).collect())
+        Ok(self.poles()?.into_iter().map(distance_to_uncontrollability).collect())
     }
 
     /// Computes for every pole its distance from unobservability, the dual of

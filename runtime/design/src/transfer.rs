@@ -28,13 +28,13 @@ pub struct TransferFunction {
 /// Transfer function given by its zeros, poles and gain: `k ∏(s − zᵢ) / ∏(s − pᵢ)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ZerosPolesGain {
-    /// Zeros, in conjugate pairs.
+    /// Zeros of the transfer function, in conjugate pairs.
     pub zeros: Vec<C>,
-    /// Poles, in conjugate pairs.
+    /// Poles of the transfer function, in conjugate pairs.
     pub poles: Vec<C>,
     /// Factor `k`: the ratio of the leading coefficients.
     pub gain: f64,
-    /// Period of a discrete system, s.
+    /// Sampling period of a discrete system, s.
     pub period: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ impl TransferFunction {
         Ok(Self { numerator: numerator.scaled(scale), denominator, period: None })
     }
 
-    /// Creates a constant transfer function.
+    /// Creates a transfer function with a constant value.
     pub fn constant(value: f64) -> Self {
         Self { numerator: Polynomial::constant(value), denominator: Polynomial::constant(1.0), period: None }
     }
@@ -97,12 +97,12 @@ impl TransferFunction {
         Ok(self)
     }
 
-    /// Returns the numerator.
+    /// Returns the numerator polynomial of the transfer function.
     pub fn numerator(&self) -> &Polynomial {
         &self.numerator
     }
 
-    /// Returns the denominator, whose leading coefficient is one.
+    /// Returns the denominator polynomial of the transfer function, whose leading coefficient is one.
     pub fn denominator(&self) -> &Polynomial {
         &self.denominator
     }
@@ -135,7 +135,7 @@ impl TransferFunction {
         self.numerator.roots()
     }
 
-    /// Returns the value at a complex frequency.
+    /// Returns the value of the transfer function at a complex frequency.
     pub fn at(&self, s: C) -> C {
         self.numerator.at(s) / self.denominator.at(s)
     }
@@ -164,8 +164,8 @@ impl TransferFunction {
         let mut all = self.factored()?;
         let mut kept = Vec::new();
         for zero in all.zeros {
-            let is_near = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
-            match all.poles.iter().position(is_near) {
+            let is_near_zero = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
+            match all.poles.iter().position(is_near_zero) {
                 Some(k) => drop(all.poles.remove(k)),
                 None => kept.push(zero),
             }
@@ -216,8 +216,9 @@ impl TransferFunction {
     }
 
     fn common_period(&self, other: &Self) -> Result<Option<f64>, Error> {
-        let constant = |g: &Self| g.period.is_none() && g.numerator.degree() + g.denominator.degree() == 0;
-        let alike = self.period == other.period || constant(self) || constant(other);
+        let is_static_gain =
+            |g: &Self| g.period.is_none() && g.numerator.degree() + g.denominator.degree() == 0;
+        let alike = self.period == other.period || is_static_gain(self) || is_static_gain(other);
         if alike {
             Ok(self.period.or(other.period))
         } else {
@@ -292,10 +293,14 @@ impl Mul for &TransferFunction {
 }
 
 fn fraction(above: &str, below: &str) -> String {
-    let wrapped = |text: &str| {
+    let wrap_in_parentheses = |text: &str| {
         if text.contains(" + ") || text.contains(" - ") { format!("({text})") } else { text.to_owned() }
     };
-    if below == "1" { above.to_owned() } else { format!("{} / {}", wrapped(above), wrapped(below)) }
+    if below == "1" {
+        above.to_owned()
+    } else {
+        format!("{} / {}", wrap_in_parentheses(above), wrap_in_parentheses(below))
+    }
 }
 
 impl fmt::Display for TransferFunction {
@@ -315,7 +320,7 @@ impl ZerosPolesGain {
         }
     }
 
-    /// Returns the value at a complex frequency.
+    /// Returns the value of the transfer function at a complex frequency, from its zeros, poles and gain.
     pub fn at(&self, s: C) -> C {
         let mut value = C::new(self.gain, 0.0);
         let count = self.zeros.len().max(self.poles.len());

@@ -1,10 +1,11 @@
-//! Invariant zeros of systems.
+//! Invariant zeros of linear systems.
 
 use crate::matrices::{C, Compression, balance_system, eigenvalues, solve};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
-/// System during the reduction to one with invertible `D`.
+/// State-space system during the reduction to one with invertible `D`, whose eigenvalues are the invariant
+/// zeros.
 struct Pencil {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -48,8 +49,8 @@ impl Pencil {
         }
     }
 
-    /// Eliminates states until `D` has full row rank. At a zero the outputs vanish; those without feedthrough
-    /// fix a subspace of the states, which is removed.
+    /// Eliminates states until `D` has full row rank. At a zero the outputs vanish. Outputs without
+    /// feedthrough then restrict the states to a subspace, and the other states are removed.
     fn reduce(mut self) -> Self {
         loop {
             let (n, p) = (self.a.nrows(), self.d.nrows());

@@ -15,10 +15,10 @@ const ROUNDING: f64 = 1e-10;
 fn slopes<const N: usize, const K: usize>(
     f: impl Fn(SVector<Dual64, K>) -> SVector<Dual64, N>,
 ) -> DMatrix<f64> {
-    let derivative = |k: usize| {
+    let column_of_derivatives = |k: usize| {
         f(SVector::from_fn(|i, _| Dual64::new(0.0, if i == k { 1.0 } else { 0.0 }))).map(|entry| entry.eps)
     };
-    let columns: Vec<_> = (0..K).map(derivative).collect();
+    let columns: Vec<_> = (0..K).map(column_of_derivatives).collect();
     DMatrix::from_fn(N, K, |i, k| columns[k][i])
 }
 
@@ -75,16 +75,16 @@ static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
 fn unsteady<T: Real>(state: T) -> Unsteady<T> {
-    let constant = |x: f64| nalgebra::convert(x);
+    let constant_number = |x: f64| nalgebra::convert(x);
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
     Unsteady {
-        mass: constant(900.0),
-        area: constant(12.0),
-        chord: constant(1.4),
-        lag: constant(0.7),
+        mass: constant_number(900.0),
+        area: constant_number(12.0),
+        chord: constant_number(1.4),
+        lag: constant_number(0.7),
         lift,
-        lift_rate: constant(300.0),
-        moment_rate: constant(-90.0),
+        lift_rate: constant_number(300.0),
+        moment_rate: constant_number(-90.0),
         power: state,
     }
 }
@@ -106,20 +106,30 @@ fn linear_systems_are_those_of_automatic_differentiation() {
         let dual = unsteady(Dual64::from(0.0));
         let whole = dual.extended();
         let zero = Dual64::from(0.0);
-        let motion = |q: &SVector<Dual64, 7>, v: &SVector<Dual64, 7>, u: &SVector<Dual64, 2>| {
-            let tau = whole.generalized_forces(zero, q, v, u);
-            whole.forward_dynamics(zero, q, v, &tau)
-        };
+        let acceleration_of_whole =
+            |q: &SVector<Dual64, 7>, v: &SVector<Dual64, 7>, u: &SVector<Dual64, 2>| {
+                let tau = whole.generalized_forces(zero, q, v, u);
+                whole.forward_dynamics(zero, q, v, &tau)
+            };
         let (q, v, u) = (raised(&q), raised(&v), raised(&u));
         let rows = system.a().rows(6, 7);
-        let displaced_motion = |by: SVector<Dual64, 7>| motion(&whole.integrate(&q, &by), &v, &u);
+        let displaced_motion =
+            |by: SVector<Dual64, 7>| acceleration_of_whole(&whole.integrate(&q, &by), &v, &u);
         agree(
             "∂v̇/∂q",
             &rows.columns(0, 6).clone_owned(),
             &slopes(displaced_motion).columns(0, 6).clone_owned(),
         );
-        agree("∂v̇/∂v", &rows.columns(6, 7).clone_owned(), &slopes(|by| motion(&q, &(v + by), &u)));
-        agree("B", &system.b().rows(6, 7).clone_owned(), &slopes(|by| motion(&q, &v, &(u + by))));
+        agree(
+            "∂v̇/∂v",
+            &rows.columns(6, 7).clone_owned(),
+            &slopes(|by| acceleration_of_whole(&q, &(v + by), &u)),
+        );
+        agree(
+            "B",
+            &system.b().rows(6, 7).clone_owned(),
+            &slopes(|by| acceleration_of_whole(&q, &v, &(u + by))),
+        );
     }
 }
 

@@ -1,4 +1,4 @@
-//! Comparison with published values and exact solutions.
+//! Comparison of the control functions with published values and exact solutions.
 
 use linkwork_design::matrices::{Cost, discrete_riccati, eigenvalues, riccati};
 use linkwork_design::{Polynomial, Special, StateSpace, TransferFunction};
@@ -147,12 +147,13 @@ fn step_responses() {
     close(figures.peak_time, 4.282, 2e-2);
     // Exact: 1 − e^{−t/2} (cos ωt + √3 sin ωt) with ω = √3/2; its derivative is zero at ωt = π/6 and 7π/6.
     let omega = 0.75_f64.sqrt();
-    let y = |t: f64| 1.0 - (-t / 2.0).exp() * ((omega * t).cos() + 3.0_f64.sqrt() * (omega * t).sin());
+    let expected_step_response =
+        |t: f64| 1.0 - (-t / 2.0).exp() * ((omega * t).cos() + 3.0_f64.sqrt() * (omega * t).sin());
     let turn = std::f64::consts::PI / 6.0;
     close(figures.peak_time, 7.0 * turn / omega, 1e-12);
-    close(figures.peak, y(7.0 * turn / omega), 1e-13);
-    close(figures.undershoot, -100.0 * y(turn / omega), 1e-13);
-    close((y(figures.settling_time) - 1.0).abs(), 0.02, 1e-10);
+    close(figures.peak, expected_step_response(7.0 * turn / omega), 1e-13);
+    close(figures.undershoot, -100.0 * expected_step_response(turn / omega), 1e-13);
+    close((expected_step_response(figures.settling_time) - 1.0).abs(), 0.02, 1e-10);
     let figures = TransferFunction::new([-1.0, 1.0], [1.0, 1.0]).unwrap().step_figures().unwrap();
     close(figures.rise_time, 9.0_f64.ln(), 1e-12);
     close(figures.settling_time, 100.0_f64.ln(), 1e-12);
@@ -215,7 +216,7 @@ fn whipple_bicycle() {
     let c1 = dmatrix![0.0, 33.86641391492494; -0.85035641456978, 1.68540397397560];
     let k0 = dmatrix![-80.95, -2.59951685249872; -2.59951685249872, -0.80329488458618];
     let k2 = dmatrix![0.0, 76.59734589573222; 0.0, 2.65431523794604];
-    let system = |v: f64| {
+    let bicycle_at_speed = |v: f64| {
         let form =
             SecondOrderForm::new(mass.clone(), &c1 * v, &k0 * 9.81 + &k2 * (v * v), DMatrix::zeros(2, 0))
                 .unwrap();
@@ -229,14 +230,14 @@ fn whipple_bicycle() {
         (10.0, [(-24.62459635017404, 0.0), (0.16105338653172, 0.0), (-3.72016840437287, 10.90681139476287)]),
     ];
     for (v, expected) in published {
-        let poles = system(v).poles().unwrap();
+        let poles = bicycle_at_speed(v).poles().unwrap();
         expected.iter().for_each(|(re, im)| contains(&poles, *re, *im, 1e-11));
     }
     // The bicycle is self-stable between the weave speed and the capsize speed.
     for (v, stable) in
         [(4.29238253634, false), (4.29238253635, true), (6.024262015, true), (6.024262016, false)]
     {
-        assert_eq!(system(v).is_stable().unwrap(), stable, "at {v} m/s");
+        assert_eq!(bicycle_at_speed(v).is_stable().unwrap(), stable, "at {v} m/s");
     }
 }
 
@@ -244,21 +245,21 @@ fn whipple_bicycle() {
 /// numerical solution of algebraic Riccati equations* (1995), continuous time, examples 1, 2, 7 and 12.
 #[test]
 fn riccati_benchmarks() {
-    let same = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
+    let assert_same_matrix = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
         assert!(
             (found - expected).norm() <= tolerance * expected.norm(),
             "expected {expected}, found {found}"
         );
     };
     let x = riccati(&dmatrix![0.0, 1.0; 0.0, 0.0], &dmatrix![0.0; 1.0], &Cost::diagonal(&[1.0, 2.0], &[1.0]));
-    same(&x.unwrap().x, &dmatrix![2.0, 1.0; 1.0, 2.0], 1e-14);
+    assert_same_matrix(&x.unwrap().x, &dmatrix![2.0, 1.0; 1.0, 2.0], 1e-14);
     let q = dmatrix![9.0, 6.0; 6.0, 4.0];
     let x = riccati(
         &dmatrix![4.0, 3.0; -4.5, -3.5],
         &dmatrix![1.0; -1.0],
         &Cost::new(q.clone(), DMatrix::identity(1, 1)),
     );
-    same(&x.unwrap().x, &(q * (1.0 + 2.0_f64.sqrt())), 1e-13);
+    assert_same_matrix(&x.unwrap().x, &(q * (1.0 + 2.0_f64.sqrt())), 1e-13);
     // Nearly uncontrollable.
     for epsilon in [1.0, 1e-2, 1e-4, 1e-6_f64] {
         let (a, b) = (dmatrix![1.0, 0.0; 0.0, -2.0], dmatrix![epsilon; 0.0]);
@@ -273,16 +274,17 @@ fn riccati_benchmarks() {
     // Eigenvalues and costs of very different magnitudes.
     let turn = DMatrix::identity(3, 3) - DMatrix::from_element(3, 3, 2.0 / 3.0);
     for e in [1e-2_f64, 1.0, 1e2, 1e4] {
-        let diagonal = |d: [f64; 3]| &turn * DMatrix::from_diagonal(&d.to_vec().into()) * &turn;
-        let cost = Cost::new(diagonal([1.0 / e, 1.0, e]), DMatrix::identity(3, 3) * e);
-        let found = riccati(&diagonal([e, 2.0 * e, 3.0 * e]), &DMatrix::identity(3, 3), &cost).unwrap();
+        let rotated_diagonal = |d: [f64; 3]| &turn * DMatrix::from_diagonal(&d.to_vec().into()) * &turn;
+        let cost = Cost::new(rotated_diagonal([1.0 / e, 1.0, e]), DMatrix::identity(3, 3) * e);
+        let found =
+            riccati(&rotated_diagonal([e, 2.0 * e, 3.0 * e]), &DMatrix::identity(3, 3), &cost).unwrap();
         let (square, four) = (e * e, e.powi(4));
         let x = [
             square + (four + 1.0).sqrt(),
             2.0 * square + (4.0 * four + e).sqrt(),
             3.0 * square + (9.0 * four + square).sqrt(),
         ];
-        same(&found.x, &diagonal(x), 1e-12);
+        assert_same_matrix(&found.x, &rotated_diagonal(x), 1e-12);
     }
 }
 
@@ -330,10 +332,10 @@ fn repeated_poles_have_their_margins() {
 /// zeros, and roots on the stability boundary.
 #[test]
 fn routh_of_ogata() {
-    let right = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;
-    assert_eq!(right(&[1.0, 2.0, 3.0, 4.0, 5.0]), 2);
-    assert_eq!(right(&[1.0, 2.0, 1.0, 2.0]), 0);
-    assert_eq!(right(&[1.0, 0.0, -3.0, 2.0]), 2);
+    let count_right_roots = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;
+    assert_eq!(count_right_roots(&[1.0, 2.0, 3.0, 4.0, 5.0]), 2);
+    assert_eq!(count_right_roots(&[1.0, 2.0, 1.0, 2.0]), 0);
+    assert_eq!(count_right_roots(&[1.0, 0.0, -3.0, 2.0]), 2);
     let table = Polynomial::new([1.0, 2.0, 24.0, 48.0, -25.0, -50.0]).routh().unwrap();
     assert_eq!(table.right, 1);
     assert!(table.special.contains(&Special::ZeroRow));

@@ -52,18 +52,24 @@ fn real(x: f64) -> Complex<f64> {
 
 #[test]
 fn matrices_name_themselves() {
-    let one = || dmatrix![1.0];
-    says("A has an entry that is not finite", StateSpace::new(dmatrix![f64::NAN], one(), one(), one()));
+    let one_by_one_matrix = || dmatrix![1.0];
+    says(
+        "A has an entry that is not finite",
+        StateSpace::new(dmatrix![f64::NAN], one_by_one_matrix(), one_by_one_matrix(), one_by_one_matrix()),
+    );
     says(
         "expected 1 × 1 entries of A, found 1 × 2",
-        StateSpace::new(dmatrix![1.0, 2.0], one(), one(), one()),
+        StateSpace::new(dmatrix![1.0, 2.0], one_by_one_matrix(), one_by_one_matrix(), one_by_one_matrix()),
     );
     says(
         "expected 1 × 1 entries of B, found 2 × 1",
-        StateSpace::new(one(), dmatrix![1.0; 2.0], one(), one()),
+        StateSpace::new(one_by_one_matrix(), dmatrix![1.0; 2.0], one_by_one_matrix(), one_by_one_matrix()),
     );
-    says("A has an entry that is not finite", matrices::lyapunov(&dmatrix![f64::NAN], &one()));
-    says("expected 1 × 1 entries of Q, found 2 × 2", matrices::lyapunov(&one(), &DMatrix::identity(2, 2)));
+    says("A has an entry that is not finite", matrices::lyapunov(&dmatrix![f64::NAN], &one_by_one_matrix()));
+    says(
+        "expected 1 × 1 entries of Q, found 2 × 2",
+        matrices::lyapunov(&one_by_one_matrix(), &DMatrix::identity(2, 2)),
+    );
     let inputs = dmatrix![1.0, 2.0];
     let forced = stable().forced_response(&inputs, &[0.0, 0.0], &[0.0], Hold::Zero);
     says("expected 1 × 1 entries of the inputs, found 1 × 2", forced);
@@ -141,7 +147,7 @@ fn what_needs_stability_names_the_pole() {
     says("a band of -0.02 is not allowed", stable().step_figures_within(limits));
 }
 
-/// Checks the Lyapunov solvers for unsymmetric `Q`.
+/// Checks that the Lyapunov solvers accept an unsymmetric right-hand side `Q`.
 #[test]
 fn lyapunov_takes_any_right_side() {
     let (a, q) = (dmatrix![-1.0, 2.0; -3.0, -2.0], dmatrix![1.0, 5.0; -2.0, 0.5]);
@@ -175,28 +181,28 @@ fn margins_that_do_not_exist_are_none() {
 
 #[test]
 fn regulators_that_do_not_exist_name_the_mode() {
-    let cost = |q: &[f64], r: f64| Cost::diagonal(q, &[r]);
+    let diagonal_cost = |q: &[f64], r: f64| Cost::diagonal(q, &[r]);
     let stuck = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 0.0], dmatrix![1.0, 1.0]);
-    says("no input controls the mode 2+0i", stuck.lqr(&cost(&[1.0, 1.0], 1.0)));
+    says("no input controls the mode 2+0i", stuck.lqr(&diagonal_cost(&[1.0, 1.0], 1.0)));
     says("no input controls the mode 2+0i", stuck.place(&[real(-1.0), real(-3.0)]));
-    let error = stuck.lqr_held(&cost(&[1.0, 1.0], 1.0), 0.1).unwrap_err();
+    let error = stuck.lqr_held(&diagonal_cost(&[1.0, 1.0], 1.0), 0.1).unwrap_err();
     let Error::Unstabilizable { mode } = error else { panic!("{error}") };
     assert!((mode.re - 0.2_f64.exp()).abs() < 1e-12);
     let double = double_integrator();
-    says("no output observes the mode 0+0i", double.lqr(&cost(&[0.0, 0.0], 1.0)));
-    says("R is singular", double.lqr(&cost(&[1.0, 1.0], 0.0)));
-    says("R is not symmetric and positive", double.lqr(&cost(&[1.0, 1.0], -1.0)));
+    says("no output observes the mode 0+0i", double.lqr(&diagonal_cost(&[0.0, 0.0], 1.0)));
+    says("R is singular", double.lqr(&diagonal_cost(&[1.0, 1.0], 0.0)));
+    says("R is not symmetric and positive", double.lqr(&diagonal_cost(&[1.0, 1.0], -1.0)));
     says(
         "Riccati's equation, with eigenvalues on the imaginary axis, did not converge",
-        double.lqr(&cost(&[-1.0, 1.0], 1.0)),
+        double.lqr(&diagonal_cost(&[-1.0, 1.0], 1.0)),
     );
-    says("expected 2 × 2 entries of Q, found 1 × 1", double.lqr(&cost(&[1.0], 1.0)));
-    says("Q has an entry that is not finite", double.lqr(&cost(&[f64::NAN, 1.0], 1.0)));
+    says("expected 2 × 2 entries of Q, found 1 × 1", double.lqr(&diagonal_cost(&[1.0], 1.0)));
+    says("Q has an entry that is not finite", double.lqr(&diagonal_cost(&[f64::NAN, 1.0], 1.0)));
     let mute = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 0.0]);
-    let noise = |v: f64| Noise { states: DMatrix::identity(2, 2), outputs: dmatrix![v] };
-    says("no output observes the mode 2+0i", mute.kalman(&noise(1.0)));
-    says("the outputs' noise is singular", unstable().kalman(&noise(0.0)));
-    says("the outputs' noise is not symmetric and positive", unstable().kalman(&noise(-1.0)));
+    let noise_with_variance = |v: f64| Noise { states: DMatrix::identity(2, 2), outputs: dmatrix![v] };
+    says("no output observes the mode 2+0i", mute.kalman(&noise_with_variance(1.0)));
+    says("the outputs' noise is singular", unstable().kalman(&noise_with_variance(0.0)));
+    says("the outputs' noise is not symmetric and positive", unstable().kalman(&noise_with_variance(-1.0)));
     says("expected 2 poles, found 1", double.place(&[real(-1.0)]));
     let unpaired = "the pole -1+1i is not finite, or lacks its conjugate";
     says(unpaired, double.place(&[Complex::new(-1.0, 1.0), Complex::new(-1.0, 1.0)]));
@@ -206,22 +212,22 @@ fn regulators_that_do_not_exist_name_the_mode() {
 
 #[test]
 fn improper_and_impossible_transfer_functions() {
-    let transfer = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
-    let improper = transfer(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
+    let transfer_function = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
+    let improper = transfer_function(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
     let text = "improper: degree 2 over degree 1";
     says(text, improper.state_space());
     says(text, improper.step_figures());
     says(text, improper.margins());
     says(text, improper.factored().unwrap().matched(0.1));
     says("improper: degree 1 over degree 0", TransferFunction::s().state_space());
-    says("a denominator of 0 is not allowed", transfer(&[1.0], &[0.0]));
-    says("a denominator of 0 is not allowed", transfer(&[1.0], &[]));
+    says("a denominator of 0 is not allowed", transfer_function(&[1.0], &[0.0]));
+    says("a denominator of 0 is not allowed", transfer_function(&[1.0], &[]));
     says(
         "a denominator of 0 is not allowed",
-        transfer(&[1.0], &[1.0]).unwrap().divide(&transfer(&[0.0], &[1.0]).unwrap()),
+        transfer_function(&[1.0], &[1.0]).unwrap().divide(&transfer_function(&[0.0], &[1.0]).unwrap()),
     );
-    says("the numerator has an entry that is not finite", transfer(&[f64::NAN], &[1.0]));
-    says("the denominator has an entry that is not finite", transfer(&[1.0], &[1.0, f64::INFINITY]));
+    says("the numerator has an entry that is not finite", transfer_function(&[f64::NAN], &[1.0]));
+    says("the denominator has an entry that is not finite", transfer_function(&[1.0], &[1.0, f64::INFINITY]));
     let [one, minus] = [1.0, -1.0].map(TransferFunction::constant);
     let text = "the direct feedthrough of both systems forms an algebraic loop without a solution";
     says(text, one.feedback(&minus));
@@ -337,44 +343,54 @@ fn linear_motions_off_a_steady_state_say_by_how_much() {
 fn problems_that_are_posed_wrongly_are_named() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
     let whole = whole.extended();
-    let rest = || equilibrium(&whole);
-    let unknown = |kind: &str| format!("no {kind} `hing`, perhaps `hinge`; there are hinge, torque");
-    says(&unknown("coordinate"), rest().coordinates(["hing"]).find());
-    says(&unknown("coordinate"), rest().fix(["hing"]).find());
-    says(&unknown("coordinate"), rest().hold(["hing"]).find());
-    says(&unknown("speed"), rest().speeds(["hing"]).find());
-    says(&unknown("velocity"), rest().accelerating(["hing"]).find());
-    says(&unknown("velocity"), rest().acceleration("hing", 1.0).find());
-    says("no input `comand`, perhaps `command`; there are command", rest().inputs(["comand"]).find());
-    let output_at_rest = || rest().inputs(["command"]).output("angle", 0.2);
-    let angel = rest().inputs(["command"]).output("angel", 0.2);
+    let equilibrium_of_whole = || equilibrium(&whole);
+    let unknown_name_message =
+        |kind: &str| format!("no {kind} `hing`, perhaps `hinge`; there are hinge, torque");
+    says(&unknown_name_message("coordinate"), equilibrium_of_whole().coordinates(["hing"]).find());
+    says(&unknown_name_message("coordinate"), equilibrium_of_whole().fix(["hing"]).find());
+    says(&unknown_name_message("coordinate"), equilibrium_of_whole().hold(["hing"]).find());
+    says(&unknown_name_message("speed"), equilibrium_of_whole().speeds(["hing"]).find());
+    says(&unknown_name_message("velocity"), equilibrium_of_whole().accelerating(["hing"]).find());
+    says(&unknown_name_message("velocity"), equilibrium_of_whole().acceleration("hing", 1.0).find());
+    says(
+        "no input `comand`, perhaps `command`; there are command",
+        equilibrium_of_whole().inputs(["comand"]).find(),
+    );
+    let output_at_rest = || equilibrium_of_whole().inputs(["command"]).output("angle", 0.2);
+    let angel = equilibrium_of_whole().inputs(["command"]).output("angel", 0.2);
     says("no output `angel`, perhaps `angle`; there are angle", angel.find());
-    says("the coordinate `hinge` is requested twice", rest().coordinates(["hinge", "hinge"]).find());
-    says("the coordinate `hinge` is requested twice", rest().hold(["hinge"]).hold(["hinge"]).find());
+    says(
+        "the coordinate `hinge` is requested twice",
+        equilibrium_of_whole().coordinates(["hinge", "hinge"]).find(),
+    );
+    says(
+        "the coordinate `hinge` is requested twice",
+        equilibrium_of_whole().hold(["hinge"]).hold(["hinge"]).find(),
+    );
     says("the input `command` is requested twice", output_at_rest().inputs(["command"]).find());
     says("the output `angle` is requested twice", output_at_rest().output("angle", 0.3).find());
     says(
         "the velocity `hinge` is requested twice",
-        rest().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
+        equilibrium_of_whole().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
     );
     // Too many unknowns.
     says(
         "the conditions do not determine hinge, torque', command at hinge 0.000000, torque' 0.000000, \
          command 0.000000: fix or prescribe one of them, add a condition, or take the nearest",
-        rest().inputs(["command"]).find(),
+        equilibrium_of_whole().inputs(["command"]).find(),
     );
     // Too few unknowns, and equal numbers of unknowns and conditions without a solution.
     for (trim, start) in [
         (
-            rest().output("angle", 0.2),
+            equilibrium_of_whole().output("angle", 0.2),
             "no steady state near the guess: 2 unknowns for 3 conditions, and `hinge''` is left at ",
         ),
         (
-            rest().fix(["hinge"]).from([0.5].into()),
+            equilibrium_of_whole().fix(["hinge"]).from([0.5].into()),
             "no steady state near the guess: one unknown for 2 conditions, and `torque'` is left at ",
         ),
         (
-            rest().with_inputs([100.0].into()),
+            equilibrium_of_whole().with_inputs([100.0].into()),
             "no steady state near the guess: 2 unknowns for 2 conditions, and `torque'` is left at ",
         ),
     ] {

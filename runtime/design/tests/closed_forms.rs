@@ -9,7 +9,7 @@ type C = Complex<f64>;
 struct Random(u64);
 
 impl Random {
-    /// Returns a number between zero and one.
+    /// Returns a random number between zero and one.
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -45,12 +45,12 @@ fn close(what: &str, found: f64, expected: f64, relative: f64) {
 /// magnitude is a ratio of quadratics, which is stationary at the roots of another quadratic.
 fn biproper_peak(e: f64, f: f64, b: f64, c: f64) -> f64 {
     let (n, d) = ([1.0, e * e - 2.0 * f, f * f], [1.0, b * b - 2.0 * c, c * c]);
-    let square = |x: f64| ((f - x).powi(2) + e * e * x) / ((c - x).powi(2) + b * b * x);
+    let squared_gain = |x: f64| ((f - x).powi(2) + e * e * x) / ((c - x).powi(2) + b * b * x);
     let (p, q, r) = (d[1] - n[1], 2.0 * (d[2] - n[2]), n[1] * d[2] - n[2] * d[1]);
     let root = (q * q - 4.0 * p * r).max(0.0).sqrt();
     let stationary = [(-q + root) / (2.0 * p), (-q - root) / (2.0 * p)];
-    let squares = stationary.into_iter().filter(|x| *x > 0.0).map(square);
-    squares.fold(square(0.0).max(1.0), f64::max).sqrt()
+    let squares = stationary.into_iter().filter(|x| *x > 0.0).map(squared_gain);
+    squares.fold(squared_gain(0.0).max(1.0), f64::max).sqrt()
 }
 
 #[test]
@@ -59,10 +59,10 @@ fn peak_gains_of_biproper_systems() {
     for k in 0..1000 {
         let light = k % 4 == 3;
         let (c, f) = (random.uniform(0.1, 50.0), random.uniform(0.0, 50.0));
-        let damping = |random: &mut Random| {
+        let random_damping = |random: &mut Random| {
             if light { random.magnitude(1e-5, 1.0) } else { random.uniform(0.05, 10.0) }
         };
-        let (b, e) = (damping(&mut random), damping(&mut random));
+        let (b, e) = (random_damping(&mut random), random_damping(&mut random));
         let system = state_space(&[1.0, e, f], &[1.0, b, c]);
         let expected = biproper_peak(e, f, b, c);
         close(&format!("{e} {f} {b} {c}"), system.peak_gain().unwrap().gain, expected, 1e-9);
@@ -73,8 +73,9 @@ fn peak_gains_of_biproper_systems() {
     }
 }
 
-/// Compares with SLICOT's AB13DD with a tolerance of 1e-13 (slycot 0.7.1), which returns 1.414487935024265 at
-/// 4.638148816470194 rad/s. The largest singular value of `D` is one, that of the response is larger.
+/// Compares the peak gain of a system with two inputs and outputs with SLICOT's AB13DD (slycot 0.7.1,
+/// tolerance 1e-13), which returns 1.414487935024265 at 4.638148816470194 rad/s. The largest singular value
+/// of `D` is one; that of the response is larger.
 #[test]
 fn peak_gain_of_two_channels() {
     let system = StateSpace::new(
@@ -139,9 +140,9 @@ fn gain_margins_of_loops_with_an_integrator() {
     }
 }
 
-/// Checks an integrator with a zero-order hold, `h / (z − 1)`: it is real at the Nyquist frequency only, with
-/// magnitude `h / 2`, and has magnitude one at `sin(ω h / 2) = h / 2`. A double integrator discretised by
-/// Tustin's rule is real at all frequencies.
+/// Checks the stability margins of an integrator with a zero-order hold, `h / (z − 1)`: it is real at the
+/// Nyquist frequency only, with magnitude `h / 2`, and has magnitude one at `sin(ω h / 2) = h / 2`. A double
+/// integrator discretised by Tustin's rule is real at all frequencies.
 #[test]
 fn margins_of_held_integrators() {
     let mut random = Random(4);
@@ -175,26 +176,26 @@ fn margins_of_held_integrators() {
 /// frequencies.
 #[test]
 fn matched_systems_keep_low_frequencies() {
-    let coefficients = |g: &TransferFunction, h: f64| {
+    let matched_coefficients = |g: &TransferFunction, h: f64| {
         let matched = g.factored().unwrap().matched(h).unwrap().transfer_function();
         (matched.numerator().coefficients().to_vec(), matched.denominator().coefficients().to_vec())
     };
     let mut random = Random(5);
     for _ in 0..300 {
         let (h, a) = (random.magnitude(1e-4, 10.0), random.magnitude(1e-8, 30.0));
-        let (numerator, denominator) = coefficients(&transfer(&[1.0], &[1.0, 0.0]), h);
+        let (numerator, denominator) = matched_coefficients(&transfer(&[1.0], &[1.0, 0.0]), h);
         assert_eq!((numerator, denominator), (vec![h], vec![1.0, -1.0]));
-        let (numerator, denominator) = coefficients(&transfer(&[1.0], &[1.0, 0.0, 0.0]), h);
+        let (numerator, denominator) = matched_coefficients(&transfer(&[1.0], &[1.0, 0.0, 0.0]), h);
         assert_eq!(denominator, [1.0, -2.0, 1.0]);
         numerator.iter().for_each(|found| close("1 / s²", *found, 0.5 * h * h, 1e-14));
         // 1 / (s (s + a)): h (1 − e^{−a h}) (z + 1) / (2 a (z − 1) (z − e^{−a h})).
-        let (numerator, _) = coefficients(&transfer(&[1.0], &[1.0, a, 0.0]), h);
+        let (numerator, _) = matched_coefficients(&transfer(&[1.0], &[1.0, a, 0.0]), h);
         let expected = -0.5 * h * (-a * h).exp_m1() / a;
         numerator.iter().for_each(|found| close("1 / (s (s + a))", *found, expected, 1e-9));
         // a / (s + a) and s / (s + a), whose gains stay accurate for poles near zero.
-        let (numerator, _) = coefficients(&transfer(&[a], &[1.0, a]), h);
+        let (numerator, _) = matched_coefficients(&transfer(&[a], &[1.0, a]), h);
         close("a / (s + a)", numerator[0], -(-a * h).exp_m1(), 1e-12);
-        let (numerator, _) = coefficients(&transfer(&[1.0, 0.0], &[1.0, a]), h);
+        let (numerator, _) = matched_coefficients(&transfer(&[1.0, 0.0], &[1.0, a]), h);
         close("s / (s + a)", numerator[0], -(-a * h).exp_m1() / (a * h), 1e-12);
     }
     // An oscillation at the sampling frequency is indistinguishable from a pole at zero.
@@ -250,9 +251,9 @@ fn step_figures_of_second_order() {
     }
 }
 
-/// Checks a fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000
-/// reaches 90 % of its final value within the first half period. The expected times were computed with 50
-/// digits (mpmath).
+/// Checks the step response of a fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)`
+/// with `ω` = 1000 reaches 90 % of its final value within the first half period. The expected times were
+/// computed with 50 digits (mpmath).
 #[test]
 fn step_figures_of_two_time_scales() {
     let slow = transfer(&[0.5], &[1.0, 1.0]);
@@ -269,27 +270,28 @@ fn step_figures_of_repeated_poles() {
     let denominator = Polynomial::from_roots(&[C::new(-1.0, 0.0); 8]);
     let system = TransferFunction::quotient(&Polynomial::constant(1.0), &denominator).unwrap();
     let figures = system.step_figures().unwrap();
-    let distance = |t: f64| {
+    let distance_from_final_value = |t: f64| {
         let terms = (1..8).scan(1.0, |term, k| {
             *term *= t / f64::from(k);
             Some(*term)
         });
         (1.0 + terms.sum::<f64>()) * (-t).exp()
     };
-    let instant = |level: f64| {
+    let time_to_reach_level = |level: f64| {
         let (mut low, mut high) = (0.0, 40.0);
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
-            if distance(middle) > level { low = middle } else { high = middle }
+            if distance_from_final_value(middle) > level { low = middle } else { high = middle }
         }
         low
     };
-    close("settling time", figures.settling_time, instant(0.02), 1e-9);
-    close("rise time", figures.rise_time, instant(0.1) - instant(0.9), 1e-9);
+    close("settling time", figures.settling_time, time_to_reach_level(0.02), 1e-9);
+    close("rise time", figures.rise_time, time_to_reach_level(0.1) - time_to_reach_level(0.9), 1e-9);
     assert_eq!((figures.overshoot, figures.undershoot, figures.peak_time), (0.0, 0.0, f64::INFINITY));
 }
 
-/// Checks that the samples of an oscillator with a zero-order hold are those of the continuous oscillator.
+/// Checks the step-response values of an oscillator discretised with a zero-order hold against samples of the
+/// continuous oscillator.
 #[test]
 fn step_figures_of_sampled_systems() {
     let mut random = Random(7);
@@ -299,9 +301,13 @@ fn step_figures_of_sampled_systems() {
         let StepFigures { rise_time, settling_time, overshoot, peak_time, .. } = held.step_figures().unwrap();
         let count = (12.0 / (zeta * h)) as usize;
         let samples: Vec<f64> = (0..count).map(|k| oscillation(zeta, h * k as f64)).collect();
-        let first = |level: f64| samples.iter().position(|e| 1.0 + e >= level).unwrap();
+        let first_sample_above = |level: f64| samples.iter().position(|e| 1.0 + e >= level).unwrap();
         let last = samples.iter().rposition(|e| e.abs() > 0.02).unwrap();
-        assert_eq!((rise_time / h).round() as usize, first(0.9) - first(0.1), "{zeta} {h}");
+        assert_eq!(
+            (rise_time / h).round() as usize,
+            first_sample_above(0.9) - first_sample_above(0.1),
+            "{zeta} {h}"
+        );
         assert_eq!((settling_time / h).round() as usize, last + 1, "{zeta} {h}");
         let largest = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         assert!((overshoot - 100.0 * largest.max(0.0)).abs() < 1e-8, "{zeta} {h}: {overshoot}, {largest}");
@@ -321,9 +327,9 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
     Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
 }
 
-/// Compares with the Hurwitz criterion: `s³ + (3 + k) s² + 3 s + 1 + k` is stable for `k > −1`, and
-/// `s³ + k (s² + 2 s + 1)` for `2 k² > k`. The sum of a stable polynomial and a multiple of itself is stable
-/// for all gains except the one that cancels it.
+/// Compares stable gain intervals with the Hurwitz criterion: `s³ + (3 + k) s² + 3 s + 1 + k` is stable for
+/// `k > −1`, and `s³ + k (s² + 2 s + 1)` for `2 k² > k`. The sum of a stable polynomial and a multiple of
+/// itself is stable for all gains except the one that cancels it.
 #[test]
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -345,12 +351,12 @@ fn stable_gains_by_hurwitz() {
     ];
     for (one, other, expected) in cases {
         let found = stable_gains(one, other);
-        let same = |(found, (low, high)): (&GainRange, &(f64, f64))| {
-            let agree = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
-            agree(found.low, *low) && agree(found.high, *high)
+        let has_same_limits = |(found, (low, high)): (&GainRange, &(f64, f64))| {
+            let is_equal_or_close = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
+            is_equal_or_close(found.low, *low) && is_equal_or_close(found.high, *high)
         };
         assert!(
-            found.len() == expected.len() && found.iter().zip(expected).all(same),
+            found.len() == expected.len() && found.iter().zip(expected).all(has_same_limits),
             "{one:?} {other:?}: {found:?}"
         );
     }

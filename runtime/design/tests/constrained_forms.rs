@@ -19,7 +19,7 @@ fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     );
 }
 
-/// Particle on a massless rod, in wind.
+/// Test mechanism: a particle on a massless rod, with gravity, a dashpot and wind.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Blown {
     mass: f64,
@@ -60,7 +60,7 @@ fn a_particle_on_a_rod_in_wind() {
     assert!((system.a() - direct.a()).amax() < 1e-11 && (system.b() - direct.b()).amax() < 1e-12);
 }
 
-/// Slider-crank mechanism with springs.
+/// Test mechanism: a slider-crank with springs.
 #[mechanism(derivatives)]
 struct SliderCrank {
     r: f64,
@@ -176,14 +176,14 @@ struct Skate {
 
 #[test]
 fn forces_on_coordinates_without_speeds_have_no_form() {
-    let form = |pull: f64| -> Result<SecondOrderForm, Error> {
+    let form_with_pull = |pull: f64| -> Result<SecondOrderForm, Error> {
         let skate = Skate { pull };
         let problem = constrained_equilibrium(&skate).fix(Skate::VELOCITIES);
         problem.second_order_form(&problem.find()?)
     };
-    let free = form(0.0).unwrap();
+    let free = form_with_pull(0.0).unwrap();
     assert_eq!(free.mass.nrows(), 2);
-    let error = form(3.0).unwrap_err().to_string();
+    let error = form_with_pull(3.0).unwrap_err().to_string();
     assert_eq!(
         error,
         "no second-order form: forces depend on `pose.y`, which has no independent speed of its own"

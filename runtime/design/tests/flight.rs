@@ -81,21 +81,21 @@ struct Wing {
 fn glide_and_level_flight_without_outputs() {
     let wing = Wing { mass: 300.0, lift_area: 9.0, drag_area: 0.45 };
     let weight = 300.0 * 9.81;
-    let trim = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
-    let glide = trim().speeds(["place.x", "place.y"]).find().unwrap();
+    let equilibrium_of_wing = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
+    let glide = equilibrium_of_wing().speeds(["place.x", "place.y"]).find().unwrap();
     close(glide.v[1].atan2(glide.v[0]), (0.45_f64 / 9.0).atan(), 1e-12);
     close(0.6 * glide.v.norm_squared() * 9.0_f64.hypot(0.45), weight, 1e-12);
 
-    let sinking = |w: f64| {
-        let trim = trim().speeds(["place.x", "place.y"]).inputs(["thrust"]);
+    let trim_with_sink_rate = |w: f64| {
+        let trim = equilibrium_of_wing().speeds(["place.x", "place.y"]).inputs(["thrust"]);
         trim.condition("sink", w, |_, _, v, _| v[1]).find().unwrap()
     };
-    let level = sinking(0.0);
+    let level = trim_with_sink_rate(0.0);
     assert!(level.v[1].abs() < 1e-12);
     close(level.u[0], weight * 0.05, 1e-11);
     close(0.6 * level.v[0].powi(2) * 9.0, weight, 1e-11);
     for w in [-3.0, 0.5, glide.v[1]] {
-        let found = sinking(w);
+        let found = trim_with_sink_rate(w);
         let speed = found.v.norm();
         close(found.v[1], w, 1e-11);
         close(found.u[0], 0.6 * speed.powi(2) * 0.45 - weight * w / speed, 1e-9);
@@ -103,9 +103,14 @@ fn glide_and_level_flight_without_outputs() {
     }
 
     // A condition that cannot hold is reported by its name, and so is one that is given twice.
-    let never = trim().speeds(["place.x", "place.y"]).condition("sink", 0.0, |_, _, v, _| v[1]).find();
+    let never =
+        equilibrium_of_wing().speeds(["place.x", "place.y"]).condition("sink", 0.0, |_, _, v, _| v[1]).find();
     assert!(matches!(never, Err(Error::NoSteadyState { .. })), "{never:?}");
-    let twice = trim().condition("sink", 0.0, |_, _, v, _| v[1]).condition("sink", 1.0, |_, _, v, _| v[1]);
+    let twice = equilibrium_of_wing().condition("sink", 0.0, |_, _, v, _| v[1]).condition(
+        "sink",
+        1.0,
+        |_, _, v, _| v[1],
+    );
     assert!(matches!(twice.find(), Err(Error::Repeated { kind: "condition", .. })));
 }
 
@@ -174,9 +179,11 @@ struct DampedRotor {
 /// Systems*, 2005, § 2.6). The rotor is unstable above the rate `ω (1 + cₑ / cᵢ)`.
 #[test]
 fn rotor_with_internal_damping() {
-    let rotor = |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
-    let system_of =
-        |spin| linear_system(&rotor(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap();
+    let rotor_with_spin =
+        |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
+    let system_of = |spin| {
+        linear_system(&rotor_with_spin(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap()
+    };
     for spin in [0.0, 15.0, 40.0] {
         let (m, c) = (3.0, 7.0);
         let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
@@ -190,7 +197,7 @@ fn rotor_with_internal_damping() {
     assert!(!system_of(threshold * (1.0 + 1e-6)).is_stable().unwrap());
 }
 
-/// Balanced rotor in massless gimbals.
+/// Test mechanism: a balanced rotor in massless gimbals.
 #[mechanism(derivatives)]
 struct Rotor {
     axial: f64,
@@ -340,8 +347,8 @@ fn decaying_constraints_have_their_exponents() {
     contains(&system, 0.0, -own);
     let characteristic = system.channel("place.x", "push").unwrap();
     assert_eq!(system.poles().unwrap().len(), 4);
-    let is_near = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
-    assert_eq!(system.poles().unwrap().iter().filter(|pole| is_near(pole)).count(), 2);
+    let is_near_decay_rate = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
+    assert_eq!(system.poles().unwrap().iter().filter(|pole| is_near_decay_rate(pole)).count(), 2);
     // The push does not excite the decaying constraint.
     let (s, answer) = (Complex::new(0.3, 2.0), characteristic.at(Complex::new(0.3, 2.0)).unwrap());
     let expected = (s * s + 2.0 * 9.81).inv() / 2.0;

@@ -1,5 +1,5 @@
-//! Pictures are well-formed SVG with names and units. With `PICTURES=folder` they are written there for
-//! inspection.
+//! Checks that pictures are well-formed SVG with names and units. If `PICTURES` names a folder, they are
+//! written there for inspection.
 
 use linkwork_design::{StateSpace, TransferFunction, picture};
 use nalgebra::{DMatrix, dmatrix};

@@ -1,5 +1,5 @@
-//! Properties that hold for every system, checked on random systems including stiff and defective ones:
-//! residuals, roots and round trips.
+//! Checks properties that hold for every linear system, such as small residuals and exact round trips, on
+//! random systems including stiff and defective ones.
 
 use linkwork_design::matrices::{
     Cost, discrete_lyapunov, discrete_riccati, discrete_sylvester, eigenvalues, exponential, logarithm,
@@ -100,15 +100,15 @@ fn regulators_are_optimal() {
 
 #[test]
 fn regulators_that_do_not_exist() {
-    let system = |a, b: DMatrix<f64>| {
+    let system_from_matrices = |a, b: DMatrix<f64>| {
         let n = b.nrows();
         let m = b.ncols();
         StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, m)).unwrap()
     };
-    let stuck = system(dmatrix![1.0, 0.0; 0.0, -1.0], dmatrix![0.0; 1.0]);
+    let stuck = system_from_matrices(dmatrix![1.0, 0.0; 0.0, -1.0], dmatrix![0.0; 1.0]);
     let cost = Cost::diagonal(&[1.0, 1.0], &[1.0]);
     assert!(matches!(stuck.lqr(&cost), Err(Error::Unstabilizable { mode }) if mode.re == 1.0));
-    let unseen = system(dmatrix![0.0, 1.0; -1.0, 0.0], dmatrix![0.0; 1.0]);
+    let unseen = system_from_matrices(dmatrix![0.0, 1.0; -1.0, 0.0], dmatrix![0.0; 1.0]);
     assert!(matches!(unseen.lqr(&Cost::diagonal(&[0.0, 0.0], &[1.0])), Err(Error::Undetectable { .. })));
     assert_eq!(unseen.lqr(&Cost::diagonal(&[1.0, 1.0], &[0.0])), Err(Error::Singular { what: "R" }));
     assert_eq!(unseen.lqr(&Cost::diagonal(&[1.0, 1.0], &[-1.0])), Err(Error::Indefinite { matrix: "R" }));
@@ -213,9 +213,10 @@ fn energies_agree() {
         // Parseval's theorem: the integral of the squared impulse response, by Simpson's rule.
         let times = system.times(200.0, 80_001).unwrap();
         let y = system.impulse_response(0, &times).unwrap().outputs;
-        let weight = |k: usize| if k == 0 || k + 1 == times.len() { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+        let simpson_weight =
+            |k: usize| if k == 0 || k + 1 == times.len() { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
         let energy: f64 =
-            y.iter().enumerate().map(|(k, y)| weight(k) * y * y).sum::<f64>() * (times[1] / 3.0);
+            y.iter().enumerate().map(|(k, y)| simpson_weight(k) * y * y).sum::<f64>() * (times[1] / 3.0);
         assert!((energy.sqrt() / norm - 1.0).abs() < 1e-7, "{} and {norm}", energy.sqrt());
         let peak = system.peak_gain().unwrap();
         let grid = linkwork_design::logarithmic(1e-3, 1e3, 4000).unwrap();
@@ -308,13 +309,13 @@ fn connections() {
     let (one, two) = (random.stable(3, 2, 2, 0.0), random.stable(2, 2, 2, 0.0));
     let s = C::new(0.2, 0.9);
     let (g, h) = (one.at(s).unwrap(), two.at(s).unwrap());
-    let close = |found: DMatrix<C>, expected: DMatrix<C>| {
+    let assert_close_matrices = |found: DMatrix<C>, expected: DMatrix<C>| {
         assert!((found - &expected).norm() < 1e-12 * expected.norm())
     };
-    close(one.series(&two).unwrap().at(s).unwrap(), &h * &g);
-    close(one.parallel(&two).unwrap().at(s).unwrap(), &h + &g);
+    assert_close_matrices(one.series(&two).unwrap().at(s).unwrap(), &h * &g);
+    assert_close_matrices(one.parallel(&two).unwrap().at(s).unwrap(), &h + &g);
     let sensitivity = (DMatrix::identity(2, 2) + &g * &h).try_inverse().unwrap();
-    close(one.feedback(&two).unwrap().at(s).unwrap(), sensitivity * &g);
+    assert_close_matrices(one.feedback(&two).unwrap().at(s).unwrap(), sensitivity * &g);
     let direct = StateSpace::gain(dmatrix![1.0]).unwrap();
     assert_eq!(direct.feedback_gain(&dmatrix![-1.0]), Err(Error::AlgebraicLoop));
 }
@@ -378,14 +379,14 @@ fn margins_miss_no_crossing() {
         for w in one {
             assert!(margins.phase.iter().any(|m| (m.frequency / w - 1.0).abs() < 1e-2), "{k}: phase at {w}");
         }
-        let response = |w: f64| loose.at(C::new(0.0, w)).unwrap()[(0, 0)];
+        let open_loop_response = |w: f64| loose.at(C::new(0.0, w)).unwrap()[(0, 0)];
         for m in &margins.gain {
-            assert!((response(m.frequency) * m.factor + 1.0).norm() < 1e-6, "{k}: {m:?}");
+            assert!((open_loop_response(m.frequency) * m.factor + 1.0).norm() < 1e-6, "{k}: {m:?}");
         }
         for m in &margins.phase {
-            assert!((response(m.frequency).norm() - 1.0).abs() < 1e-9, "{k}: {m:?}");
+            assert!((open_loop_response(m.frequency).norm() - 1.0).abs() < 1e-9, "{k}: {m:?}");
         }
-        let ends = [response(0.0), response(1e9 * grid[grid.len() - 1])];
+        let ends = [open_loop_response(0.0), open_loop_response(1e9 * grid[grid.len() - 1])];
         let least = values.iter().chain(&ends).map(|x| (x + 1.0).norm()).fold(f64::INFINITY, f64::min);
         assert!(
             margins.stability.distance <= least * (1.0 + 1e-9),

@@ -69,7 +69,7 @@ fn loader(file: &str, options: &str, name: Option<&str>) -> Loader {
     name.map_or(loader.clone(), |name| loader.name(name))
 }
 
-/// Gives parameters without a value one.
+/// Sets a value for each parameter that has none.
 fn filled(mut robot: Robot) -> Result<Robot, Error> {
     let names: Vec<String> = robot.parameters().iter().map(|p| p.name.clone()).collect();
     for (k, name) in names.iter().enumerate() {
@@ -80,19 +80,19 @@ fn filled(mut robot: Robot) -> Result<Robot, Error> {
     Ok(robot)
 }
 
-/// Values of arguments: configurations with unit quaternions.
+/// Returns values for the arguments of a function; configurations have unit quaternions.
 fn arguments(robot: &Robot, list: &[(&str, usize)]) -> Vec<Vec<f64>> {
-    let values = |seed: usize, n: usize| -> Vec<f64> {
+    let sample_values = |seed: usize, n: usize| -> Vec<f64> {
         (0..n).map(|k| 0.4 * ((7 * k + 3 * seed + 1) as f64).sin()).collect()
     };
-    let configuration = |seed| {
+    let sample_configuration = |seed| {
         let neutral = robot.neutral().unwrap_or_default();
-        let q = robot.integrate(neutral.as_slice(), &values(seed, robot.nv()));
+        let q = robot.integrate(neutral.as_slice(), &sample_values(seed, robot.nv()));
         q.map_or(Vec::new(), |q| q.as_slice().to_vec())
     };
     let each = list.iter().enumerate().map(|(k, (name, n))| match *name {
-        "q" | "from" | "to" => configuration(k),
-        _ => values(k, *n),
+        "q" | "from" | "to" => sample_configuration(k),
+        _ => sample_values(k, *n),
     });
     each.collect()
 }

@@ -6,14 +6,14 @@ use linkwork_compiler::Source;
 use linkwork_compiler::export::without_links;
 use linkwork_compiler::mechanism::Model;
 
-/// Documentation and outputs.
+/// Documentation of a mechanism, and names and units of its outputs.
 pub(crate) struct About {
     documentation: String,
     outputs: Vec<Quantity>,
 }
 
 impl About {
-    /// Returns the data of a mechanism.
+    /// Collects the documentation and the outputs of a mechanism.
     pub fn new(source: &Source, model: &Model<'_>) -> About {
         let outputs = model.outputs.iter().enumerate().map(|(k, output)| Quantity {
             name: output.name.clone(),
@@ -27,7 +27,8 @@ impl About {
 }
 
 impl Shared {
-    /// Returns the reason why a step of a method needs more than the accelerations, if there is one.
+    /// Returns the reason why a Runge–Kutta step needs more than the accelerations of the mechanism, such as
+    /// constraints or contacts; `None` if it does not.
     pub fn step_obstacle(&self) -> Option<&'static str> {
         let reasons = [
             (self.kinematic, "it has no inertia"),
@@ -52,13 +53,13 @@ impl Robot {
         &self.shared.about.outputs
     }
 
-    /// Returns the number of scalar constraints.
+    /// Returns the number of scalar constraints of the mechanism.
     #[must_use]
     pub fn constraints(&self) -> usize {
         self.shared.constraints.names.len()
     }
 
-    /// Returns the number of unilateral contacts.
+    /// Returns the number of unilateral contacts of the mechanism.
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.shared.contacts.len()

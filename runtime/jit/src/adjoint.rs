@@ -17,20 +17,21 @@ use std::sync::Arc;
 /// Name of the argument with the factors of the results.
 const FACTORS: &str = "factors";
 
-/// Vector–Jacobian product of a function: derivatives of the sum of its results, each times a factor, by all
-/// arguments and parameters. They are derivatives of the function of all entries, those of quaternions
-/// included, and are exact to rounding.
+/// Vector–Jacobian product of a function: derivatives of a weighted sum of its results with respect to all
+/// arguments and parameters. They treat all entries of quaternions as independent, and are exact up to
+/// rounding errors.
 pub struct VectorJacobian {
     shared: Arc<Shared>,
     name: String,
     kind: Product,
-    /// Lengths of the arguments.
+    /// Number of entries of each argument of the function.
     arguments: Vec<usize>,
     factors: usize,
     parameters: usize,
 }
 
-/// Computation of the derivatives.
+/// Method by which a vector–Jacobian product is computed: a reversed program, or a function of the
+/// configuration space.
 enum Product {
     Reversed(Box<Routine>),
     Integrate,
@@ -53,7 +54,8 @@ impl Function {
     /// are generalized speeds, and the function moves configurations.
     pub fn vector_jacobian(&self) -> Result<VectorJacobian, Error> {
         let entry = &self.shared().entries[self.index()];
-        let unavailable = || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
+        let missing_adjoint_error =
+            || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
         let parameters = self.shared().parameters.len();
         let sizes = self.shared().sizes;
         let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
@@ -74,14 +76,16 @@ impl Function {
                     (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
-                let reversed = reverse(program, symbols).ok_or_else(unavailable)?;
-                Product::Reversed(Box::new(Routine::new(reversed, &all, inputs).ok_or_else(unavailable)?))
+                let reversed = reverse(program, symbols).ok_or_else(missing_adjoint_error)?;
+                Product::Reversed(Box::new(
+                    Routine::new(reversed, &all, inputs).ok_or_else(missing_adjoint_error)?,
+                ))
             }
-            (None, _) if self.shared().has_speeds => return Err(unavailable()),
+            (None, _) if self.shared().has_speeds => return Err(missing_adjoint_error()),
             (None, "integrate") => Product::Integrate,
             (None, "difference") => Product::Difference,
             (None, "tangent_rate") => Product::TangentRate,
-            _ => return Err(unavailable()),
+            _ => return Err(missing_adjoint_error()),
         };
         Ok(VectorJacobian {
             shared: self.shared().clone(),
@@ -113,7 +117,8 @@ fn symbol(argument: Argument, k: usize) -> Option<Symbol> {
 }
 
 impl VectorJacobian {
-    /// Returns the number of derivatives: by the arguments one after the other, then by the parameters.
+    /// Returns the number of derivatives: those with respect to all arguments in order, then those with
+    /// respect to the parameters.
     #[must_use]
     pub fn length(&self) -> usize {
         self.arguments.iter().sum::<usize>() + self.parameters
@@ -169,7 +174,7 @@ impl VectorJacobian {
     }
 }
 
-/// A program with the instructions in reverse order behind its own.
+/// Program followed by the instructions of its reverse-mode derivatives, while it is built.
 struct Reversed {
     instructions: Vec<Op>,
     /// Derivative by each value, and by each input.
@@ -236,7 +241,7 @@ impl Reversed {
         }
     }
 
-    /// Adds to the derivative by an operand.
+    /// Adds a term to the derivative with respect to an operand.
     fn add(&mut self, operand: Operand, term: Operand) {
         if matches!(operand, Operand::Const(_)) {
             return;
@@ -248,7 +253,7 @@ impl Reversed {
         self.set(operand, sum);
     }
 
-    /// Subtracts from the derivative by an operand.
+    /// Subtracts a term from the derivative with respect to an operand.
     fn subtract(&mut self, operand: Operand, term: Operand) {
         if matches!(operand, Operand::Const(_)) {
             return;
@@ -296,7 +301,8 @@ impl Reversed {
         }
     }
 
-    /// Passes the derivative by the value of an instruction on to its operands.
+    /// Propagates the derivative with respect to the value of an instruction to the operands of the
+    /// instruction, as in reverse-mode differentiation.
     fn pass(&mut self, op: Op, value: Operand, factor: Operand) -> Option<()> {
         match op {
             Op::Neg(a) => self.subtract(a, factor),
@@ -380,7 +386,7 @@ impl Reversed {
         Some(())
     }
 
-    /// Returns the derivative of an elementary function.
+    /// Returns the derivative of an elementary function at `x`, where `value` is the function's value.
     fn slope(&mut self, f: Elementary, x: Operand, value: Operand) -> Operand {
         let one = Operand::Const(1.0);
         match f {

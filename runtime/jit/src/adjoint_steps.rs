@@ -7,8 +7,8 @@ use crate::steps::{STAGES, Stepper, integrate_derivatives, tangent_rate_derivati
 use linkwork_compiler::mechanism::{Chart, InQ, InV};
 use nalgebra::{DMatrix, Quaternion, UnitQuaternion, Vector3};
 
-/// Adjoint steps of the classical Runge–Kutta method: derivatives of a function of a motion by initial state,
-/// inputs and parameters, step by step from its end to its start.
+/// Adjoint steps of the classical Runge–Kutta method. They propagate derivatives of a function of a motion,
+/// with respect to state, inputs and parameters, from the end of the motion to its start.
 #[derive(Debug)]
 pub struct AdjointStepper {
     stepper: Stepper,
@@ -16,11 +16,11 @@ pub struct AdjointStepper {
     forces: Option<Gradient>,
 }
 
-/// A vector–Jacobian product with its results.
+/// Vector–Jacobian product of a function, with storage for its results.
 #[derive(Debug)]
 struct Gradient {
     product: VectorJacobian,
-    /// Names of the arguments.
+    /// Names and lengths of the function's arguments.
     arguments: Vec<(&'static str, usize)>,
     found: Vec<f64>,
 }
@@ -33,10 +33,11 @@ impl Gradient {
         Ok(Gradient { product, arguments: function.arguments(), found })
     }
 
-    /// Evaluates the derivatives for arguments by name.
+    /// Evaluates the derivatives; arguments are passed by name, and those without a value are empty.
     fn evaluate(&mut self, robot: &Robot, known: &[(&str, &[f64])], factors: &[f64]) -> Result<(), Error> {
-        let list = |name: &str| known.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, list)| list);
-        let arguments: Vec<&[f64]> = self.arguments.iter().map(|(name, _)| list(name)).collect();
+        let argument_values =
+            |name: &str| known.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, list)| list);
+        let arguments: Vec<&[f64]> = self.arguments.iter().map(|(name, _)| argument_values(name)).collect();
         self.product.evaluate_into(robot, &arguments, factors, &mut self.found)
     }
 
@@ -61,16 +62,20 @@ fn add(to: &mut [f64], terms: &[f64]) {
     to.iter_mut().zip(terms).for_each(|(to, term)| *to += term);
 }
 
-/// Derivatives of a function of a motion.
+/// Derivatives of a scalar function of a motion with respect to state, inputs and parameters.
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
-    /// By the configuration, `nq` entries: after the step, and before it once the step is done.
+    /// Derivatives with respect to the configuration, `nq` entries. An adjoint step replaces those after the
+    /// step by those before it.
     pub q: &'a mut [f64],
-    /// By the velocity, `nv` entries: after the step, and before it once the step is done.
+    /// Derivatives with respect to the velocity, `nv` entries. An adjoint step replaces those after the step
+    /// by those before it.
     pub v: &'a mut [f64],
-    /// By the inputs during the step, `nu` entries, to which those of the step are added.
+    /// Derivatives with respect to the inputs during the step, `nu` entries, to which an adjoint step adds
+    /// its contribution.
     pub u: &'a mut [f64],
-    /// By the parameters, one entry each, to which those of the step are added.
+    /// Derivatives with respect to the parameters, one entry each, to which an adjoint step adds its
+    /// contribution.
     pub parameters: &'a mut [f64],
 }
 
@@ -133,11 +138,12 @@ impl AdjointStepper {
         let mut by_v = after_v.clone();
         let weighted =
             |list: &[f64], weight: f64| -> Vec<f64> { list.iter().map(|x| h / 6.0 * weight * x).collect() };
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let dot_product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         // Displacement and change of the velocity are the length of the step times mean rates.
         let (mut by_t, mut by_h) = (0.0, 0.0);
         for (stage, (_, weight)) in self.stepper.stages.iter().zip(STAGES) {
-            let change = dot(&by_displacement, &stage.rate) + dot(&after_v, &stage.acceleration);
+            let change =
+                dot_product(&by_displacement, &stage.rate) + dot_product(&after_v, &stage.acceleration);
             by_h += weight / 6.0 * change;
         }
         let mut rates: Vec<Vec<f64>> = STAGES.iter().map(|(_, w)| weighted(&by_displacement, *w)).collect();
@@ -178,7 +184,8 @@ impl AdjointStepper {
             integrate(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
             add(&mut by_v, &stage_v);
             let before = &self.stepper.stages[i - 1];
-            by_h += STAGES[i].0 * (dot(&displacement, &before.rate) + dot(&stage_v, &before.acceleration));
+            by_h += STAGES[i].0
+                * (dot_product(&displacement, &before.rate) + dot_product(&stage_v, &before.acceleration));
             for k in 0..n {
                 rates[i - 1][k] += c * displacement[k];
                 accelerations[i - 1][k] += c * stage_v[k];
@@ -234,7 +241,8 @@ pub(crate) fn integrate(
     add_configuration_factors(charts, q, &displacement, by_q);
 }
 
-/// Adds the factors of the entries of a configuration for factors of its displacements.
+/// Converts a gradient with respect to displacements of a configuration to one with respect to its entries,
+/// and adds that to `by_q`.
 fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], by_q: &mut [f64]) {
     for chart in charts {
         match *chart {
@@ -252,8 +260,8 @@ fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], 
     }
 }
 
-/// Adds to two lists the gradients, by both configurations, of the sum of the entries of `difference(from, to)`,
-/// each entry multiplied by its factor.
+/// Adds to two lists the gradients, with respect to `from` and `to`, of a weighted sum of the entries of
+/// `difference(from, to)`.
 pub(crate) fn difference(
     charts: &[Chart],
     [from, to]: [&[f64]; 2],
@@ -275,8 +283,8 @@ pub(crate) fn difference(
     add_configuration_factors(charts, from, &at_start, by_from);
 }
 
-/// Adds to two lists the gradients, by both vectors, of the sum of the entries of `tangent_rate(dv, v)`, each
-/// entry multiplied by its factor.
+/// Adds to two lists the gradients, with respect to `dv` and `v`, of a weighted sum of the entries of
+/// `tangent_rate(dv, v)`.
 pub(crate) fn tangent_rate(
     charts: &[Chart],
     [dv, v]: [&[f64]; 2],
@@ -295,8 +303,8 @@ fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
     to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);
 }
 
-/// Adds the factors of the entries of a quaternion of any norm for factors of the rotation that it
-/// represents.
+/// Converts a gradient with respect to a rotation vector to one with respect to the entries of a quaternion
+/// of any norm, and adds that to a list.
 fn add_quaternion_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let q = quaternion(q);
     let product = q * Quaternion::new(0.0, factors[0], factors[1], factors[2]) * (2.0 / q.norm_squared());

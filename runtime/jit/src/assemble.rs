@@ -8,7 +8,7 @@ use crate::robot::Robot;
 use linkwork::nalgebra::{DVector, SMatrix, SVector};
 use linkwork::{Constrained, ConstraintError, integrate};
 
-/// A question about constraints.
+/// Computation on constraints: assembly of the mechanism, or projection of a configuration or velocity.
 enum Question<'a> {
     Assemble(Option<i8>),
     LeastViolation,
@@ -25,7 +25,7 @@ struct Asked<'a> {
     held: &'a [usize],
 }
 
-/// Vector, or assembly mode.
+/// Result of a computation on constraints: a vector and, where requested, the assembly mode.
 type Answer = Result<(Vec<f64>, Option<i8>), ConstraintError>;
 
 impl Visitor for Asked<'_> {
@@ -34,24 +34,26 @@ impl Visitor for Asked<'_> {
     fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) -> Answer {
         let (robot, held) = (m.robot(), self.held);
         let t = robot.time();
-        let vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
-        let configuration = |q: SVector<f64, N>| (q.as_slice()[..robot.nq()].to_vec(), None);
-        let velocity = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
-        let q = vector(self.q);
+        let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        let configuration_result = |q: SVector<f64, N>| (q.as_slice()[..robot.nq()].to_vec(), None);
+        let velocity_result = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
+        let q = padded_vector(self.q);
         match self.question {
-            Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration),
+            Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration_result),
             Question::LeastViolation => {
-                linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration)
+                linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration_result)
             }
             Question::Mode => Ok((Vec::new(), m.mode(t, &q, held))),
             Question::Project => {
-                Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration)
+                Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration_result)
             }
             Question::Velocity(v) => {
-                Constrained::<N, N, N, N, N>::complete_velocity(m, t, &q, &vector(v), held).map(velocity)
+                Constrained::<N, N, N, N, N>::complete_velocity(m, t, &q, &padded_vector(v), held)
+                    .map(velocity_result)
             }
             Question::ProjectVelocity(v) => {
-                Constrained::<N, N, N, N, N>::project_velocity(m, t, &q, &vector(v)).map(velocity)
+                Constrained::<N, N, N, N, N>::project_velocity(m, t, &q, &padded_vector(v))
+                    .map(velocity_result)
             }
         }
     }
@@ -68,14 +70,15 @@ impl Robot {
         if let Question::Velocity(v) | Question::ProjectVelocity(v) = question {
             self.check_length("v", self.nv(), v.len())?;
         }
-        let reported = |reason| self.motion_error(integrate::Error::Constraint { t: self.time(), reason });
+        let motion_error_at_time =
+            |reason| self.motion_error(integrate::Error::Constraint { t: self.time(), reason });
         if let Some(index) = held.iter().copied().find(|index| *index >= self.nv()) {
-            return Err(reported(ConstraintError::Held { index, velocities: self.nv() }));
+            return Err(motion_error_at_time(ConstraintError::Held { index, velocities: self.nv() }));
         }
         if self.shared.constraints.names.is_empty() {
             return Err(Error::Value(format!("`{}` has no constraints", self.name())));
         }
-        let (found, mode) = self.visit(Asked { question, q, held })?.map_err(reported)?;
+        let (found, mode) = self.visit(Asked { question, q, held })?.map_err(motion_error_at_time)?;
         Ok((DVector::from_vec(found), mode))
     }
 
@@ -120,7 +123,7 @@ impl Robot {
         self.state_call(index, state).ok()
     }
 
-    /// Whether there are constraints.
+    /// Returns whether the mechanism has constraints.
     #[doc(hidden)]
     #[must_use]
     pub fn is_constrained(&self) -> bool {
@@ -167,8 +170,8 @@ impl Robot {
         Ok(self.ask(Question::Velocity(v), q, held)?.0)
     }
 
-    /// Returns the ratio of the least to the greatest singular value of the matrix that determines declared
-    /// speeds from joint velocities, with rows of unit length; one without declared speeds.
+    /// Returns the ratio of the smallest to the largest singular value of the matrix from joint velocities to
+    /// generalized speeds, with rows scaled to unit length. Without declared speeds it is one.
     #[doc(hidden)]
     #[must_use]
     pub fn regularity_of_speeds(&self, q: &[f64]) -> f64 {

@@ -5,27 +5,27 @@ use crate::padded::{Padded, PaddedContacts};
 use crate::robot::Robot;
 use linkwork::Mechanism;
 
-/// Code for robots of any dimensions.
+/// Generic code that is instantiated for robots of any dimensions.
 pub(crate) trait Visitor {
-    /// Type of the result.
+    /// Type of the visitor's result.
     type Output;
 
     /// Returns the result for a robot, whose contacts have no effect.
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output;
 }
 
-/// Code for robots with contacts.
+/// Generic code that is instantiated for robots with unilateral contacts.
 pub(crate) trait ContactVisitor {
-    /// Type of the result.
+    /// Type of the visitor's result.
     type Output;
 
-    /// Returns the result for a robot.
+    /// Returns the result of the visitor for a robot with contacts.
     fn visit<M: Mechanism<N, N, N, Scalar = f64>, const N: usize>(self, robot: &M) -> Self::Output;
 }
 
 /// Largest number of coordinates, velocities, inputs and constraints.
 pub(crate) const LARGEST: usize = 64;
-/// Largest number of contacts.
+/// Maximum number of unilateral contacts of a robot.
 pub(crate) const MOST_CONTACTS: usize = 64;
 
 impl Robot {

@@ -43,16 +43,16 @@ type Entry = unsafe extern "sysv64" fn(*const *const f64, *const f64, *const Any
 #[cfg(not(target_arch = "x86_64"))]
 type Entry = unsafe extern "C" fn(*const *const f64, *const f64, *const AnyTable, *mut f64, *mut f64);
 
-/// A compiled program.
+/// Machine code of a program.
 pub(crate) struct Code {
     entry: Entry,
-    /// Constants that the code loads; not moved while it exists.
+    /// Constants that the machine code loads; their address is fixed while the code exists.
     constants: Box<[f64]>,
-    /// Minimum length of each input.
+    /// Minimum number of entries of each input of the program.
     lengths: Box<[usize]>,
     /// Number of tables that the code looks up.
     tables: usize,
-    /// Numbers of results and of further outputs.
+    /// Number of results of the function, and number of further outputs of the program.
     outputs: [usize; 2],
     _memory: Executable,
 }
@@ -91,7 +91,7 @@ impl Code {
         Ok(Code::new(plan, [results, program.outputs.len() - results], address, Executable::Pages(memory)))
     }
 
-    /// Compiles a program by Cranelift.
+    /// Compiles a program to machine code with Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
     fn by_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         let plan = Allocation::new(program, layout, results, cranelift::REGISTERS)?;
@@ -183,8 +183,8 @@ called! {
         table.value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
     }
 
-    /// Writes the sines, then the cosines, of `count` angles into the array behind them; `count` is one, two
-    /// or four, or a multiple of [`TOGETHER`].
+    /// Writes the sines, then the cosines, of `count` angles into the array after the angles. `count` is one,
+    /// two, four, or a multiple of [`TOGETHER`].
     fn sines(array: *mut f64, count: u64) {
         let count = count as usize;
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.

@@ -9,48 +9,52 @@ use linkwork::nalgebra::SVector;
 use linkwork::{Constrained, Derivatives};
 use linkwork_compiler::catalogue::{Argument, Id};
 
-/// A function that the runtime evaluates.
+/// Function of a constrained mechanism that the runtime evaluates, instead of a compiled program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ConstrainedFunction {
-    /// Accelerations.
+    /// Accelerations under generalized forces and constraint forces.
     Accelerations,
-    /// Accelerations and multipliers.
+    /// Accelerations and constraint multipliers.
     Dynamics,
-    /// Derivatives of accelerations.
+    /// Derivatives of the accelerations of constrained motion.
     Derivatives,
 }
 
-/// Adds the functions to those of a mechanism, if it has constraints and dynamics.
+/// Adds the functions of constrained dynamics to those of a mechanism, if it has constraints and dynamics.
 pub(crate) fn add(maker: &mut Maker<'_, '_>) {
-    let has = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
-    if !has(Id::ConstrainedDynamics) {
+    let has_function = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
+    if !has_function(Id::ConstrainedDynamics) {
         return;
     }
-    let has_derivatives = has(Id::MotionDerivatives);
+    let has_derivatives = has_function(Id::MotionDerivatives);
     let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
     let time = maker.model.time.then_some(Argument::T);
     let arguments: Vec<Argument> =
         time.into_iter().chain([Argument::Q, Argument::V, Argument::Tau]).collect();
-    let matrix = |name, rows, columns| Matrix { name, rows, columns };
+    let result_matrix = |name, rows, columns| Matrix { name, rows, columns };
     let functions = [
         (
             ConstrainedFunction::Accelerations,
             "forward_dynamics",
             "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where \
              friction jams.",
-            vec![matrix("result", nv, 1)],
+            vec![result_matrix("result", nv, 1)],
         ),
         (
             ConstrainedFunction::Dynamics,
             "constrained_dynamics",
             "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
-            vec![matrix("accelerations", nv, 1), matrix("multipliers", nc, 1)],
+            vec![result_matrix("accelerations", nv, 1), result_matrix("multipliers", nc, 1)],
         ),
         (
             ConstrainedFunction::Derivatives,
             "forward_dynamics_derivatives",
             "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
-            vec![matrix("by_q", nv, nv), matrix("by_v", nv, nv), matrix("by_tau", nv, nv)],
+            vec![
+                result_matrix("by_q", nv, nv),
+                result_matrix("by_v", nv, nv),
+                result_matrix("by_tau", nv, nv),
+            ],
         ),
     ];
     for (kind, name, documentation, results) in functions {
@@ -77,7 +81,7 @@ impl Robot {
     }
 }
 
-/// A call of a function.
+/// Call of a function of constrained dynamics, with its arguments and results.
 struct Call<'a> {
     kind: ConstrainedFunction,
     t: f64,
@@ -92,8 +96,8 @@ impl Visitor for Call<'_> {
 
     fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) {
         let robot = m.robot();
-        let vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
-        let (q, mut v, tau) = (vector(self.q), vector(self.v), vector(self.tau));
+        let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        let (q, mut v, tau) = (padded_vector(self.q), padded_vector(self.v), padded_vector(self.tau));
         let n = robot.nv();
         for (k, one) in robot.shared.states.iter().enumerate() {
             v[n + k] = robot.parameter_values()[one.parameter];

@@ -1,4 +1,4 @@
-//! Drawings of loaded mechanisms, as data.
+//! Drawings of loaded mechanisms as data, for programs that render them.
 
 use crate::error::Error;
 use crate::load::Loader;
@@ -13,7 +13,7 @@ use linkwork_compiler::passes::Passes;
 use std::collections::HashSet;
 use std::sync::Mutex;
 
-/// Drawing of a mechanism. Its frames are those of the robot.
+/// Drawing of a mechanism, whose frames are the frames of the robot.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     pieces: Vec<Piece>,
@@ -50,7 +50,7 @@ impl Loader {
 }
 
 impl Drawing {
-    /// Returns the pieces, in the order of their declaration.
+    /// Returns the pieces of the drawing, in the order of their declaration.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
@@ -70,7 +70,7 @@ impl Drawing {
 }
 
 fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
-    let symbol = |symbol: Symbol| {
+    let value_of_symbol = |symbol: Symbol| {
         let value = match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => robot.parameter_values().get(k),
             Quantity::Given(Supplied::Position, k) => given.get(k),
@@ -78,15 +78,15 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
         };
         value.copied().unwrap_or(f64::NAN)
     };
-    let table = |lookup: Lookup, x| {
+    let value_of_table = |lookup: Lookup, x| {
         let orders = [0, 1, 2].map(|k| lookup.order(k) as u8);
         robot.table_values().get(lookup.table()).map_or(f64::NAN, |table| table.value(x, orders))
     };
-    program.run_with(&symbol, &table)
+    program.run_with(&value_of_symbol, &value_of_table)
 }
 
-/// Returns a piece of the compiler's drawing as one of the runtime's, whose numbers begin at the index
-/// `first`. Its texts live as long as the process.
+/// Converts a piece of the compiler's drawing to one of the runtime, whose numbers begin at index `first`.
+/// The texts in it are never freed.
 pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
         name: interned(&piece.name),
@@ -97,7 +97,7 @@ pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     }
 }
 
-/// Returns a text that lives as long as the process; equal texts are one.
+/// Returns a text with static lifetime. Equal texts are stored once and never freed.
 fn interned(text: &str) -> &'static str {
     static TEXTS: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut texts = TEXTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! Errors of loading and of calls.
+//! Errors of loading a mechanism and of calling its functions.
 
 use crate::robot::Robot;
 use linkwork::integrate;
@@ -9,61 +9,61 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A file cannot be read.
+    /// Error: a file cannot be read.
     File {
-        /// Path of the file.
+        /// Path of the file that cannot be read.
         path: PathBuf,
-        /// Reason.
+        /// Reason why the file cannot be read.
         reason: String,
     },
-    /// The text is not a declaration of a mechanism in Rust's syntax, or the options are not those of the
-    /// attribute.
+    /// Error: the text is not a declaration of a mechanism in Rust's syntax, or the options are not those of
+    /// the attribute.
     Syntax(String),
     /// Errors of the mechanism, as the compiler reports them.
     Mechanism(Vec<String>),
-    /// The mechanism has nothing of this name.
+    /// Error: the mechanism has no function, parameter, frame or table of this name.
     Unknown {
         /// Kind of the name: `function`, `parameter`, `frame`, `table` or `mechanism`.
         kind: &'static str,
-        /// The name.
+        /// Unknown name that was requested.
         name: String,
         /// Nearest known name, or the list of them.
         help: String,
     },
-    /// A slice has the wrong length.
+    /// Error: a slice has the wrong length.
     Length {
-        /// Name of the function or quantity.
+        /// Name of the function or quantity that the slice belongs to.
         of: String,
-        /// Name of the argument or result.
+        /// Name of the argument or result that the slice contains.
         name: String,
-        /// Correct length.
+        /// Correct length of the slice.
         expected: usize,
-        /// Length of the slice.
+        /// Actual length of the slice.
         found: usize,
     },
-    /// The number of arguments is wrong.
+    /// Error: the number of arguments of a call is wrong.
     Arguments {
-        /// Name of the function.
+        /// Name of the called function.
         of: String,
-        /// Names of its arguments.
+        /// Names of the arguments that the function takes.
         expected: Vec<&'static str>,
-        /// Number of slices.
+        /// Number of slices that were passed.
         found: usize,
     },
-    /// Parameters or tables have no value yet.
+    /// Error: parameters or tables, listed by name, have no value yet.
     Missing(Vec<String>),
     /// No physical mechanism can have this value, or it is not finite.
     Value(String),
-    /// The function belongs to another mechanism.
+    /// Error: the function belongs to another mechanism.
     OtherMechanism(String),
     /// A motion cannot be simulated or continued, or no state satisfies the constraints.
     Motion {
         /// Reason; the names that it contains are numbers, which the message replaces by names.
         reason: integrate::Error,
-        /// Message.
+        /// Error message of the motion, with the names of the mechanism.
         message: String,
     },
-    /// An internal error of Linkwork.
+    /// Error that indicates a defect of Linkwork itself.
     Internal(String),
 }
 
@@ -96,7 +96,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 impl Error {
-    /// Returns the error for an unknown name.
+    /// Returns the error for an unknown name, with the nearest known name as help.
     pub(crate) fn unknown<'a>(
         kind: &'static str,
         name: &str,
@@ -120,7 +120,7 @@ impl Error {
 }
 
 impl Robot {
-    /// Returns the error of a simulation.
+    /// Converts an error of the integrator to an error with the names of the mechanism.
     pub(crate) fn motion_error(&self, reason: integrate::Error) -> Error {
         Error::Motion { message: self.shared.with_names(&reason.to_string()), reason }
     }

@@ -9,7 +9,7 @@ use linkwork_compiler::derive::{FrameSteps, LinkSteps, Output, PLACEMENT, TWIST}
 use linkwork_compiler::lower::{Op, Operand, Program};
 use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
 
-/// A quantity of a frame.
+/// Kinematic quantity of a frame: placement, velocity, acceleration or Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Access {
     Placement,
@@ -19,7 +19,7 @@ pub(crate) enum Access {
 }
 
 impl Access {
-    /// All quantities, in the order of their functions.
+    /// All kinematic quantities of a frame, in the order of their functions.
     pub const ALL: [Access; 4] =
         [Access::Placement, Access::Velocity, Access::Acceleration, Access::Jacobian];
 
@@ -56,7 +56,8 @@ impl Access {
     }
 }
 
-/// Steps of the links and frames.
+/// Programs of the kinematics of each link and frame, from parent to child, of which functions of frames are
+/// composed.
 pub(crate) struct Frames {
     pub names: Vec<String>,
     links: Vec<LinkSteps>,
@@ -68,10 +69,11 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// Takes the steps of a mechanism.
+    /// Takes the kinematic programs of links and frames from the compiler's output.
     pub fn new(model: &Model<'_>, output: &mut Output) -> Frames {
-        let program = |id: Id| output.functions.iter().find(|f| f.id == id).map(|f| f.program.clone());
-        let speeds = [Id::RatesOfSpeeds, Id::RateAccelerations, Id::RateMatrix].map(program);
+        let program_of_function =
+            |id: Id| output.functions.iter().find(|f| f.id == id).map(|f| f.program.clone());
+        let speeds = [Id::RatesOfSpeeds, Id::RateAccelerations, Id::RateMatrix].map(program_of_function);
         let speeds = match speeds {
             [Some(rates), Some(accelerations), Some(matrix)] => Some([rates, accelerations, matrix]),
             _ => None,
@@ -86,9 +88,9 @@ impl Frames {
         }
     }
 
-    /// Returns the functions of all frames.
+    /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each.
     pub fn entries(&self, time: bool) -> Vec<Entry> {
-        let each = |frame: usize| {
+        let entries_of_frame = |frame: usize| {
             Access::ALL.into_iter().filter_map(move |access| {
                 use Argument::{A, Q, T, V};
                 let state: &[Argument] = match access {
@@ -98,11 +100,13 @@ impl Frames {
                 };
                 let arguments: Vec<Argument> =
                     time.then_some(T).into_iter().chain(state.iter().copied()).collect();
-                let matrix = |name, rows, columns| Matrix { name, rows, columns };
+                let result_matrix = |name, rows, columns| Matrix { name, rows, columns };
                 let results = match access {
-                    Access::Placement => vec![matrix("rotation", 3, 3), matrix("position", 3, 1)],
-                    Access::Jacobian => vec![matrix("result", TWIST, self.nv)],
-                    Access::Velocity | Access::Acceleration => vec![matrix("result", TWIST, 1)],
+                    Access::Placement => {
+                        vec![result_matrix("rotation", 3, 3), result_matrix("position", 3, 1)]
+                    }
+                    Access::Jacobian => vec![result_matrix("result", TWIST, self.nv)],
+                    Access::Velocity | Access::Acceleration => vec![result_matrix("result", TWIST, 1)],
                 };
                 let length = results.iter().map(Matrix::length).sum();
                 let routine = Routine::deferred(&arguments, length)?;
@@ -114,13 +118,14 @@ impl Frames {
                 Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
         };
-        (0..self.names.len()).flat_map(each).collect()
+        (0..self.names.len()).flat_map(entries_of_frame).collect()
     }
 
-    /// Returns the indices of the links between the ground and a frame, the first one first.
+    /// Returns the indices of the links on the path from the ground to a frame, the link nearest to the
+    /// ground first.
     fn path(&self, frame: usize) -> Vec<usize> {
-        let parent = |link: &usize| self.links[*link].parent;
-        let mut path: Vec<usize> = std::iter::successors(self.frames[frame].link, parent).collect();
+        let parent_link = |link: &usize| self.links[*link].parent;
+        let mut path: Vec<usize> = std::iter::successors(self.frames[frame].link, parent_link).collect();
         path.reverse();
         path
     }
@@ -232,12 +237,13 @@ impl Frames {
     }
 }
 
-/// Returns the placement of the ground.
+/// Returns the placement of the ground: the identity rotation and a zero position, as constants.
 fn identity() -> Vec<Operand> {
     (0..PLACEMENT).map(|k| Operand::Const(f64::from(u8::from(k < 9 && k % 4 == 0)))).collect()
 }
 
-/// Adds a program that takes these values of the parent; returns its outputs.
+/// Appends a program that takes kinematic quantities of the parent as inputs, which are bound to `values`.
+/// Returns the outputs of the program.
 fn append_given(merged: &mut Merged, values: &[&[Operand]], program: &Program) -> Vec<Operand> {
     for (k, value) in values.iter().copied().flatten().enumerate() {
         merged.bind(Quantity::Given(Supplied::Parent, k).symbol(), *value);

@@ -17,44 +17,44 @@ use linkwork_compiler::syntax::RATE_OF_STATE;
 /// A result of a function: a matrix, stored by columns behind the results before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Matrix {
-    /// Name of the result.
+    /// Name of the result, which is a matrix.
     pub name: &'static str,
-    /// Number of rows.
+    /// Number of rows of the result.
     pub rows: usize,
-    /// Number of columns; one for a vector.
+    /// Number of columns of the result; one for a vector.
     pub columns: usize,
 }
 
 impl Matrix {
-    /// Returns the number of entries.
+    /// Returns the number of entries of the matrix.
     #[must_use]
     pub fn length(&self) -> usize {
         self.rows * self.columns
     }
 }
 
-/// A function.
+/// Function of a loaded mechanism: signature, documentation, and plan of its evaluation.
 pub(crate) struct Entry {
     pub name: String,
     pub documentation: String,
-    /// Hidden functions are called by others alone.
+    /// Whether the function is hidden from callers and only called by other functions.
     pub hidden: bool,
     pub arguments: Vec<Argument>,
     /// Number of values of each argument, set at the end of loading.
     pub lengths: Vec<usize>,
     pub results: Vec<Matrix>,
-    /// Number of dimensions of the results: zero for a number, one for vectors, two for matrices.
+    /// Number of dimensions of the results: zero for scalars, one for vectors, two for matrices.
     pub rank: usize,
-    /// Number of values of all results.
+    /// Total number of entries of all results.
     pub length: usize,
-    /// Number of values of work space.
+    /// Number of work-space values that an evaluation needs.
     pub work: usize,
     pub plan: Plan,
 }
 
-/// Assembly of results from outputs of programs.
+/// Method by which the results of a function are assembled from the outputs of programs.
 pub(crate) enum Plan {
-    /// The outputs of a program.
+    /// Results that are the outputs of one program.
     Program(Routine),
     /// The outputs of a program that is composed of the steps of links.
     Frame(Access, usize, Routine),
@@ -86,12 +86,12 @@ pub(crate) enum Plan {
 
 /// Derivatives of forward dynamics that call other functions.
 pub(crate) struct CalledForward {
-    /// Accelerations, and the parts of the inverse.
+    /// Program that computes the accelerations and the data for completing the inverse mass matrix.
     accelerations: Routine,
     inverse: Inverse,
-    /// Index of the derivatives of inverse dynamics.
+    /// Index of the function that computes the derivatives of inverse dynamics.
     forces: usize,
-    /// Columns that are known without products.
+    /// Program that computes the columns of the derivatives that need no matrix product.
     known: Routine,
     /// Index of each known column in `∂v̇/∂q`, then in `∂v̇/∂v`.
     places: Vec<usize>,
@@ -100,7 +100,7 @@ pub(crate) struct CalledForward {
 }
 
 impl Plan {
-    /// Returns the routines of the plan.
+    /// Returns the compiled programs that the plan evaluates.
     pub fn routines(&self) -> Vec<&Routine> {
         match self {
             Plan::Program(routine)
@@ -126,14 +126,15 @@ impl Plan {
 }
 
 impl Entry {
-    /// Writes the values of each argument for the state with index `k`, from those of all states or of one.
+    /// Selects the entries of each argument that belong to state `k`. An argument with the entries of one
+    /// state is common to all states.
     pub fn select<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
         for ((to, list), length) in to.iter_mut().zip(arguments).zip(&self.lengths) {
             *to = if list.len() == *length { list } else { &list[k * length..(k + 1) * length] };
         }
     }
 
-    /// Evaluates the function. Lengths are correct.
+    /// Evaluates the function and writes its results to `out`. The lengths of all slices must be correct.
     pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match &self.plan {
             Plan::Program(routine) => routine.run(values, out, &mut []),
@@ -223,8 +224,9 @@ fn solve(n: usize, inverse: &[f64], forces: &mut [f64], columns: &[Vec<Columns>;
     kernels::minus_products(n, inverse, [by_q, by_v], columns, work);
 }
 
-/// Writes the matrices of a linear system: derivatives of the accelerations by `q` and `v`, minus those by
-/// the inputs, and the matrix that the rates of displacements are multiplied by.
+/// Assembles the matrices `A` and `B` of a linearised system. The inputs are the derivatives of the
+/// accelerations with respect to `q` and `v`, minus those with respect to the inputs, and the matrix that
+/// multiplies the rates of displacements.
 fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out: &mut [f64]) {
     let (state, by_input) = out.split_at_mut(4 * n * n);
     for j in 0..n {
@@ -244,7 +246,7 @@ fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out:
     }
 }
 
-/// Makes the functions of a mechanism.
+/// Builder of the callable functions of a mechanism.
 pub(crate) struct Maker<'a, 'g> {
     pub model: &'a Model<'g>,
     pub output: &'a Output,
@@ -256,12 +258,12 @@ impl Maker<'_, '_> {
         self.output.functions.iter().find(|f| f.id == id)
     }
 
-    /// Returns the index of the function with this name among the added functions; `None` if there is none.
+    /// Returns the index of the function with this name among the added ones; `None` for an unknown name.
     pub fn index(&self, name: &str) -> Option<usize> {
         self.entries.iter().position(|entry| entry.name == name)
     }
 
-    /// Adds the functions that the compiler derives.
+    /// Adds the functions that the compiler has derived.
     pub fn add_derived(&mut self) {
         let output = self.output;
         for f in &output.functions {
@@ -290,28 +292,29 @@ impl Maker<'_, '_> {
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
         let program = self.whole(&f.program);
-        let all = |results: usize| Routine::new(program.clone(), &arguments, results);
+        let routine_with_results = |results: usize| Routine::new(program.clone(), &arguments, results);
         let outputs = program.outputs.len();
-        let inverse = || Inverse::new(&f.structure.inverse, n);
-        let is_zero = |first: usize| {
+        let new_inverse = || Inverse::new(&f.structure.inverse, n);
+        let is_zero_entry = |first: usize| {
             let program = &program;
             move |j: usize, i: usize| program.outputs[first + j * n + i] == Operand::Const(0.0)
         };
         // Columns of derivatives by `q`, `v` and `u` that begin at these outputs.
         let linear_columns = |[q, v, u]: [usize; 3]| {
-            [(n, q), (n, v), (m, u)]
-                .map(|(count, first)| Columns::group(n, &(0..count).collect::<Vec<_>>(), is_zero(first)))
+            [(n, q), (n, v), (m, u)].map(|(count, first)| {
+                Columns::group(n, &(0..count).collect::<Vec<_>>(), is_zero_entry(first))
+            })
         };
         let (plan, work) = match f.shape {
             Shape::Inverse(_) => {
-                let inverse = inverse();
+                let inverse = new_inverse();
                 let work = inverse.further_length() + inverse.work();
-                (Plan::Inverse(all(n * n)?, inverse), work)
+                (Plan::Inverse(routine_with_results(n * n)?, inverse), work)
             }
             Shape::Forward(_) => {
-                let inverse = inverse();
+                let inverse = new_inverse();
                 let work = inverse.further_length() + inverse.work().max(kernels::work(n));
-                let columns = self.columns(f, &is_zero(0));
+                let columns = self.columns(f, &is_zero_entry(0));
                 // The accelerations, which come last, have a function of their own.
                 let kept: Vec<usize> = (0..3 * n * n + inverse.further_length()).collect();
                 let routine = Routine::new(program.clone().with_outputs(&kept), &arguments, 3 * n * n)?;
@@ -332,7 +335,7 @@ impl Maker<'_, '_> {
                     accelerations: Routine::new(self.whole(&accelerations.program), &arguments, n)?,
                     inverse,
                     forces,
-                    known: all(outputs)?,
+                    known: routine_with_results(outputs)?,
                     places,
                     columns,
                     n,
@@ -342,21 +345,30 @@ impl Maker<'_, '_> {
             Shape::Linear(..) => {
                 let columns = linear_columns([0, n * n, 3 * n * n]);
                 let work = 4 * n * n + n * m + kernels::work(n);
-                (Plan::Linear { routine: all(outputs)?, columns, n, m }, work)
+                (Plan::Linear { routine: routine_with_results(outputs)?, columns, n, m }, work)
             }
             Shape::CalledLinear(..) => {
                 let columns = linear_columns([n, n + n * n, n + 2 * n * n]);
                 let derivatives = self.index("forward_dynamics_derivatives")?;
                 let rest = kernels::work(n).max(self.entries[derivatives].work);
                 let work = n + 6 * n * n + n * m + rest;
-                (Plan::CalledLinear { routine: all(outputs)?, derivatives, columns, n, m }, work)
+                (
+                    Plan::CalledLinear {
+                        routine: routine_with_results(outputs)?,
+                        derivatives,
+                        columns,
+                        n,
+                        m,
+                    },
+                    work,
+                )
             }
             Shape::Record(Record::InputDerivatives(..)) => {
                 // The forces have a function of their own.
                 let program = program.clone().with_outputs(&(n..outputs).collect::<Vec<_>>());
                 (Plan::Program(Routine::new(program, &arguments, outputs - n)?), 0)
             }
-            _ => (Plan::Program(all(outputs)?), 0),
+            _ => (Plan::Program(routine_with_results(outputs)?), 0),
         };
         let results = results(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
@@ -378,10 +390,10 @@ impl Maker<'_, '_> {
         })
     }
 
-    /// Returns the program preceded by those of the passive forces that it takes.
+    /// Returns a program preceded by the programs of the passive forces that it uses.
     pub fn whole(&self, program: &Program) -> Program {
         let symbols = program.symbols();
-        let takes = |called: Called| {
+        let takes_called_argument = |called: Called| {
             symbols
                 .iter()
                 .any(|symbol| Argument::Called(called).index(Quantity::from_symbol(*symbol)).is_some())
@@ -391,7 +403,7 @@ impl Maker<'_, '_> {
             (Called::PassiveForces, Id::PassiveForces, Quantity::PassiveForce as fn(usize) -> Quantity),
             (Called::PassiveDerivatives, Id::PassiveDerivatives, Quantity::PassiveDerivative),
         ] {
-            let Some(f) = self.find(id).filter(|_| takes(called)) else { continue };
+            let Some(f) = self.find(id).filter(|_| takes_called_argument(called)) else { continue };
             for (k, output) in merged.append(&f.program).into_iter().enumerate() {
                 merged.bind(quantity(k).symbol(), output);
             }
@@ -451,7 +463,7 @@ impl Entry {
     }
 }
 
-/// Returns the results of a shape; those of a scalar, and of an array, are called `result`.
+/// Returns names and dimensions of the results of a function; scalars and plain arrays are named `result`.
 fn results(shape: Shape, outputs: usize) -> Vec<Matrix> {
     let arrays = shape.arrays();
     match arrays.is_empty() {
@@ -460,7 +472,7 @@ fn results(shape: Shape, outputs: usize) -> Vec<Matrix> {
     }
 }
 
-/// Whether the runtime alone calls a function.
+/// Returns whether a function is called only by the runtime.
 fn is_internal(id: Id) -> bool {
     matches!(
         id,
@@ -491,7 +503,7 @@ fn rank(shape: Shape) -> usize {
     }
 }
 
-/// Whether callers pass the argument.
+/// Returns whether callers pass this argument.
 pub(crate) fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }

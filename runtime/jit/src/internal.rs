@@ -2,7 +2,7 @@
 
 macro_rules! internal {
     ($($function:ident = $name:literal,)*) => {
-        /// Functions that the runtime calls.
+        /// Functions of the mechanism that the runtime calls by index.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub(crate) enum Internal {
             $($function,)*

@@ -19,8 +19,8 @@ impl Inverse {
             InverseForm::Explicit => Inverse { n, trunk: Vec::new(), limbs: None },
             InverseForm::LowRankUpdate(trunk) => Inverse { n, trunk: trunk.clone(), limbs: None },
             InverseForm::BlockArrow { trunk, limbs } => {
-                let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
-                Inverse { n, trunk: trunk.clone(), limbs: Some((0..n).map(limb).collect()) }
+                let limb_of_index = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+                Inverse { n, trunk: trunk.clone(), limbs: Some((0..n).map(limb_of_index).collect()) }
             }
         }
     }
@@ -30,7 +30,7 @@ impl Inverse {
         self.n * self.trunk.len()
     }
 
-    /// Number of values of work space.
+    /// Returns the number of work-space values that operations with the inverse mass matrix need.
     pub fn work(&self) -> usize {
         let width = self.trunk.len();
         self.n * width + width * width + 2 * self.n
@@ -104,7 +104,8 @@ impl Inverse {
         self.add_trunk(matrix, g, mul_add);
     }
 
-    /// Replaces forces by accelerations, if the program computes forces: with limbs it does.
+    /// Converts a column of generalized forces to accelerations in place, if the program computes forces, as
+    /// it does for mechanisms with limbs in SIMD lanes.
     pub fn solve(&self, inverse: &[f64], beside: &[f64], column: &mut [f64], work: &mut [f64]) {
         if let Some(limbs) = &self.limbs {
             kernels::run(self.n, Solution { inverse: self, limbs, matrix: inverse, beside, column, work });
@@ -112,7 +113,7 @@ impl Inverse {
     }
 }
 
-/// Completion of an inverse.
+/// Completion of an inverse mass matrix from the columns that a program computes.
 struct Completion<'a> {
     inverse: &'a Inverse,
     matrix: &'a mut [f64],
@@ -131,7 +132,7 @@ impl Kernel for Completion<'_> {
     }
 }
 
-/// Accelerations from forces.
+/// Computation of accelerations from generalized forces by the inverse mass matrix.
 struct Solution<'a> {
     inverse: &'a Inverse,
     limbs: &'a [Option<usize>],
@@ -167,8 +168,8 @@ impl Kernel for Solution<'_> {
     }
 }
 
-/// Inverts a symmetric positive definite matrix in place: Gauss-Jordan elimination without interchanges (Golub
-/// and Van Loan 2013, section 3.2).
+/// Inverts a symmetric positive definite matrix in place by Gauss–Jordan elimination without interchanges
+/// (Golub and Van Loan 2013, section 3.2).
 #[inline(always)]
 fn invert(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
     for k in 0..n {
@@ -190,8 +191,9 @@ fn invert(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy
 mod tests {
     use super::*;
 
-    /// An arrow of a trunk of one velocity and two limbs of one: the columns of the limbs have the inverses
-    /// of their blocks, the borders the row of the trunk.
+    /// Checks the inversion of a block-arrow matrix with a trunk of one velocity and two limbs of one
+    /// velocity each. Initially, the columns of the limbs hold the inverses of their blocks, and the borders
+    /// hold the row of the trunk.
     #[test]
     fn arrows_are_inverted() {
         let form = InverseForm::BlockArrow { trunk: vec![0], limbs: vec![vec![1], vec![2]] };

@@ -2,15 +2,15 @@
 
 #![allow(unsafe_code, reason = "calls of functions for the instructions of the host")]
 
-/// Number of rows that are computed together.
+/// Number of matrix rows that are computed together.
 const ROWS: usize = 8;
 /// Minimum number of rows for which registers of eight numbers are used.
 const LONG: usize = 12;
 
-/// A loop over matrices.
+/// Loop over matrices, compiled for the instruction set of the host.
 pub(crate) trait Kernel {
-    /// Runs the loop with a function for `a b + c`. It is inlined into a function with the instructions of
-    /// the host, as is everything that it calls.
+    /// Runs the loop; `mul_add` computes `a b + c`. The loop is inlined into a function compiled for the
+    /// host's instruction set.
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy);
 }
 
@@ -41,11 +41,11 @@ pub(crate) fn run(n: usize, kernel: impl Kernel) {
     }
 }
 
-/// Columns that are multiplied together, with the rows in which they can be nonzero.
+/// Group of matrix columns that are multiplied together, with the rows in which they can be nonzero.
 pub(crate) struct Columns {
-    /// Indices of at most [`Columns::MOST`] columns.
+    /// Indices of the columns in the group, at most [`Columns::MOST`].
     pub columns: Vec<usize>,
-    /// Rows that are nonzero in one of them.
+    /// Rows that can be nonzero in at least one column of the group.
     pub rows: Vec<usize>,
 }
 
@@ -62,7 +62,7 @@ impl Columns {
     }
 }
 
-/// Adds a multiple of a vector to another one.
+/// Adds a multiple of a vector to another vector.
 #[inline(always)]
 pub(crate) fn add_multiple(
     by: f64,
@@ -135,7 +135,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
     }
 }
 
-/// Products of matrices with `N` rows.
+/// Replaces columns of matrices with `N` rows by minus their products with a square matrix.
 #[inline(always)]
 fn small<'a, const N: usize>(
     square: &[f64],

@@ -1,16 +1,16 @@
-//! Inputs of a program: the parameters, then the arguments of its function.
+//! Layout of the inputs of a program: the parameters, then the arguments of its function.
 
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::mechanism::Quantity;
 
-/// Order of the inputs of a program.
+/// Order in which a program takes its inputs.
 pub(crate) struct Layout {
     arguments: Vec<Argument>,
 }
 
 impl Layout {
-    /// Maximum number of inputs.
+    /// Maximum number of inputs of a program, including the parameters.
     pub const MOST: usize = 12;
 
     /// Returns the layout of the parameters and these arguments; `None` if there are too many.
@@ -18,7 +18,7 @@ impl Layout {
         (arguments.len() < Layout::MOST).then(|| Layout { arguments: arguments.to_vec() })
     }
 
-    /// Returns the number of inputs.
+    /// Returns the number of inputs, including the parameters.
     pub fn len(&self) -> usize {
         1 + self.arguments.len()
     }

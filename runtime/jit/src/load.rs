@@ -1,4 +1,4 @@
-//! Files and texts to mechanisms.
+//! Loading of mechanisms from files and texts.
 
 use crate::about::About;
 use crate::constrained;
@@ -41,14 +41,14 @@ pub fn declare(text: &str) -> Result<Robot, Error> {
     Loader::text(text).load()
 }
 
-/// Source of a mechanism.
+/// Source of a mechanism: a file or a text.
 #[derive(Clone, Debug)]
 enum Origin {
     File(PathBuf),
     Text(String),
 }
 
-/// Settings of loading.
+/// Loader of a mechanism, with its settings.
 #[derive(Clone, Debug)]
 pub struct Loader {
     origin: Origin,
@@ -63,12 +63,12 @@ pub struct Loader {
 const STACK: usize = 256 << 20;
 
 impl Loader {
-    /// Loads a file.
+    /// Creates a loader for a file.
     pub fn file(path: impl AsRef<Path>) -> Loader {
         Loader::new(Origin::File(path.as_ref().to_path_buf()))
     }
 
-    /// Loads a declaration in Rust's syntax.
+    /// Creates a loader for a declaration in Rust's syntax.
     #[must_use]
     pub fn text(text: &str) -> Loader {
         Loader::new(Origin::Text(text.to_string()))
@@ -95,14 +95,15 @@ impl Loader {
         self
     }
 
-    /// Sets the folder in which the files that a text names are found; else that is the current one.
+    /// Sets the folder in which files named in the text are searched; by default it is the current folder.
     #[must_use]
     pub fn folder(mut self, folder: impl AsRef<Path>) -> Loader {
         self.folder = Some(folder.as_ref().to_path_buf());
         self
     }
 
-    /// Prints the equations of motion if they are short enough to be read, as the attribute does.
+    /// Includes the equations of motion in the mechanism's data if they are short enough to be readable, as
+    /// `#[mechanism]` does.
     #[must_use]
     pub fn readable_equations(mut self) -> Loader {
         self.readable_equations = true;
@@ -127,7 +128,7 @@ impl Loader {
         Ok(Robot::new(Arc::new(shared), interpreted))
     }
 
-    /// Runs the compiler on a thread of its own: positions of tokens stay in the memory of their thread.
+    /// Runs the compiler on a new thread, because source positions of tokens occupy memory of their thread.
     pub(crate) fn on_thread<T: Send + 'static>(
         run: impl FnOnce() -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {
@@ -151,7 +152,7 @@ impl Loader {
         Ok(shared(&source, &model, output))
     }
 
-    /// Reads the declaration with the further options.
+    /// Reads the declaration of the mechanism and adds the options of the loader.
     pub(crate) fn source(&self) -> Result<Source, Error> {
         let (mut declaration, folder) = self.declaration()?;
         let options: TokenStream = self
@@ -168,19 +169,19 @@ impl Loader {
         source.filter(|_| cx.is_empty()).ok_or_else(|| self.report(cx))
     }
 
-    /// Returns the declaration, and the folder of the files that it names.
+    /// Returns the declaration of the mechanism, and the folder of the files that it names.
     fn declaration(&self) -> Result<(DeclaredStruct, PathBuf), Error> {
-        let current = || match &self.folder {
+        let current_folder = || match &self.folder {
             Some(folder) => Ok(folder.clone()),
             None => std::env::current_dir()
                 .map_err(|error| Error::File { path: PathBuf::from("."), reason: error.to_string() }),
         };
         match &self.origin {
-            Origin::Text(text) => Ok((self.chosen(text, "the text")?, current()?)),
+            Origin::Text(text) => Ok((self.chosen(text, "the text")?, current_folder()?)),
             Origin::File(path) => {
                 let text = text_of(path)?;
                 if !is_rust(path) {
-                    return Ok((DeclaredStruct::of_file(path, &text), current()?));
+                    return Ok((DeclaredStruct::of_file(path, &text), current_folder()?));
                 }
                 let folder = match &self.folder {
                     Some(folder) => folder.clone(),
@@ -242,7 +243,7 @@ fn is_rust(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"))
 }
 
-/// Returns the text of a panic.
+/// Returns the message of a panic.
 fn message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned())
@@ -250,19 +251,19 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
 }
 
 fn text_of(path: &Path) -> Result<String, Error> {
-    let fail = |reason: String| Error::File { path: path.to_path_buf(), reason };
-    let about = std::fs::metadata(path).map_err(|error| fail(error.to_string()))?;
+    let file_error = |reason: String| Error::File { path: path.to_path_buf(), reason };
+    let about = std::fs::metadata(path).map_err(|error| file_error(error.to_string()))?;
     if !about.is_file() {
-        return Err(fail("not a file".to_string()));
+        return Err(file_error("not a file".to_string()));
     }
     let limit = import::LARGEST_FILE as u64;
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|error| fail(error.to_string()))?;
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| fail(error.to_string()))?;
+    let file = std::fs::File::open(path).map_err(|error| file_error(error.to_string()))?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| file_error(error.to_string()))?;
     if bytes.len() as u64 > limit {
-        return Err(fail(format!("larger than {} MiB", limit >> 20)));
+        return Err(file_error(format!("larger than {} MiB", limit >> 20)));
     }
-    String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".to_string()))
+    String::from_utf8(bytes).map_err(|_| file_error("not UTF-8 text".to_string()))
 }
 
 /// Returns the robot of a compiled mechanism, for the command `linkwork`.
@@ -279,7 +280,7 @@ pub fn without_rust(source: &mut Source) {
     (requests.prepare, requests.batch, requests.packed) = (false, false, false);
 }
 
-/// Takes what remains of a mechanism after its compilation.
+/// Extracts the data of a compiled mechanism that its robots share.
 fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::derive::Output) -> Shared {
     let frames = Frames::new(model, &mut output);
     let mut maker = Maker { model, output: &output, entries: Vec::new() };
@@ -293,11 +294,14 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     }
     let index: HashMap<String, usize> =
         entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
-    let find = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
-    let (methods, internal) = (find(METHODS), find(INTERNAL));
-    let quantities = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
-        let unit = |k: usize| units.get(k).cloned().unwrap_or_default();
-        names.enumerate().map(|(k, name)| Quantity { name: name.clone(), unit: unit(k) }).collect::<Vec<_>>()
+    let find_indices = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
+    let (methods, internal) = (find_indices(METHODS), find_indices(INTERNAL));
+    let quantities_with_units = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
+        let unit_of_quantity = |k: usize| units.get(k).cloned().unwrap_or_default();
+        names
+            .enumerate()
+            .map(|(k, name)| Quantity { name: name.clone(), unit: unit_of_quantity(k) })
+            .collect::<Vec<_>>()
     };
     let states = source.mechanism.description.states.iter().map(|(name, parameter)| FirstOrder {
         parameter: *parameter,
@@ -315,10 +319,13 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
     Shared {
         name: model.name.clone(),
         sizes,
-        configuration: quantities(&mut model.configuration.iter(), &model.units.configuration),
-        velocities: quantities(&mut model.velocities.iter().map(|(name, _)| name), &model.units.velocities),
-        inputs: quantities(&mut model.inputs.iter().map(|(name, _)| name), &model.units.inputs),
-        parameters: quantities(&mut model.parameters.iter(), &model.units.parameters),
+        configuration: quantities_with_units(&mut model.configuration.iter(), &model.units.configuration),
+        velocities: quantities_with_units(
+            &mut model.velocities.iter().map(|(name, _)| name),
+            &model.units.velocities,
+        ),
+        inputs: quantities_with_units(&mut model.inputs.iter().map(|(name, _)| name), &model.units.inputs),
+        parameters: quantities_with_units(&mut model.parameters.iter(), &model.units.parameters),
         defaults,
         tables: source.tables(),
         limits: model.limits.iter().map(|limit| (limit.v.0, limit.bounds().map(|b| b.is_some()))).collect(),
@@ -343,7 +350,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
 }
 
 fn constraints_of(model: &Model<'_>) -> Constraints {
-    let those = |is: fn(&mechanism::Constraint<'_>) -> bool| {
+    let matching_constraint_indices = |is: fn(&mechanism::Constraint<'_>) -> bool| {
         let all = model.constraints.iter().enumerate();
         all.filter(|(_, constraint)| is(constraint)).map(|(k, _)| k).collect()
     };
@@ -351,8 +358,8 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
         names: model.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         holonomic: model.holonomic(),
         groups: model.constraints.iter().map(|constraint| constraint.group).collect(),
-        slipping: those(|constraint| !constraint.friction.is_empty()),
-        determining: those(|constraint| constraint.determines),
+        slipping: matching_constraint_indices(|constraint| !constraint.friction.is_empty()),
+        determining: matching_constraint_indices(|constraint| constraint.determines),
         rank: model.nv().saturating_sub(model.freedom.velocities),
         overdetermined: model.is_overdetermined(),
         independent: model.dependent.is_some(),
@@ -362,7 +369,7 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
 
 fn contacts(model: &Model<'_>) -> Vec<Contact> {
     let mut first = 0;
-    let contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
+    let numbered_contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
         let count = contact.rates.len();
         first += count;
         Contact {
@@ -372,7 +379,7 @@ fn contacts(model: &Model<'_>) -> Vec<Contact> {
             of_impulses: contact.of_impulses,
         }
     };
-    model.contacts.iter().enumerate().map(contact).collect()
+    model.contacts.iter().enumerate().map(numbered_contact).collect()
 }
 
 fn requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {

@@ -1,4 +1,4 @@
-//! Programs of several programs, each of which may take results of those before it.
+//! Concatenation of programs, each of which may use results of the previous ones.
 
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Op, Operand, Program};
@@ -14,7 +14,7 @@ pub(crate) struct Merged {
 }
 
 impl Merged {
-    /// Adds the instructions of a program; returns its outputs.
+    /// Appends the instructions of a program; returns the outputs of that program.
     pub fn append(&mut self, program: &Program) -> Vec<Operand> {
         let mut values: Vec<Operand> = Vec::with_capacity(program.instructions.len());
         for op in &program.instructions {
@@ -43,13 +43,13 @@ impl Merged {
         self.bound.insert(symbol, operand);
     }
 
-    /// Adds an instruction.
+    /// Appends an instruction to the program; returns its value as an operand.
     pub fn push(&mut self, op: Op) -> Operand {
         self.program.instructions.push(op);
         Operand::Value(self.program.instructions.len() - 1)
     }
 
-    /// Returns the program of these outputs.
+    /// Completes the merged program with the given outputs.
     pub fn finish(mut self, outputs: Vec<Operand>) -> Program {
         self.program.outputs = outputs;
         self.program.sweep();

@@ -91,7 +91,7 @@ impl Robot {
 macro_rules! methods {
     (@state $($name:ident)*) => { State { $($name,)* ..State::default() } };
     ($($(#[$doc:meta])* $kind:ident $name:ident $into:ident ($($argument:ident),*);)*) => {
-        /// Functions with methods.
+        /// Functions of a mechanism that have methods of `Robot`.
         #[derive(Clone, Copy)]
         #[allow(non_camel_case_types, reason = "names of functions")]
         enum Method {
@@ -151,24 +151,24 @@ macro_rules! methods {
 }
 
 methods! {
-    /// Returns the mass matrix.
+    /// Returns the mass matrix at configuration `q`.
     matrix mass_matrix mass_matrix_into(q);
     /// Returns the generalized forces that keep the accelerations zero: of gravity, springs, dampers, and
     /// velocities.
     vector bias_forces bias_forces_into(q, v);
-    /// Returns the accelerations under generalized forces.
+    /// Returns the accelerations caused by the generalized forces `tau`.
     vector forward_dynamics forward_dynamics_into(q, v, tau);
-    /// Returns the generalized forces of a motion.
+    /// Returns the generalized forces that cause the accelerations `a`.
     vector inverse_dynamics inverse_dynamics_into(q, v, a);
-    /// Returns the generalized forces of the inputs.
+    /// Returns the generalized forces that the inputs `u` cause.
     vector generalized_forces generalized_forces_into(q, v, u);
-    /// Returns the generalized momentum.
+    /// Returns the generalized momentum of the mechanism, one entry per velocity.
     vector generalized_momentum generalized_momentum_into(q, v);
     /// Returns the rate of the generalized momentum without inputs.
     vector momentum_rate momentum_rate_into(q, v);
-    /// Returns the kinetic energy, J.
+    /// Returns the kinetic energy of the mechanism, J.
     scalar kinetic_energy kinetic_energy_into(q, v);
-    /// Returns the potential energy, J.
+    /// Returns the potential energy of the mechanism, J.
     scalar potential_energy potential_energy_into(q);
     /// Returns the center of mass in the ground, m.
     vector center_of_mass center_of_mass_into(q);
@@ -213,10 +213,10 @@ macro_rules! others {
 others! {
     /// Returns the configuration with all coordinates zero and identity quaternions.
     neutral neutral_into() State::default();
-    /// Returns the configuration that is reached from `q` in one unit of time with the constant velocity
-    /// `dv`.
+    /// Returns the configuration that is reached from `q` after one unit of time with the constant joint
+    /// velocity `dv`.
     integrate integrate_into(q, dv) State { q, other: [dv, &[], &[]], ..State::default() };
-    /// Returns the velocity that leads from one configuration to another in one unit of time.
+    /// Returns the constant joint velocity that leads from one configuration to another in one unit of time.
     difference difference_into(from, to) State { other: [from, to, &[]], ..State::default() };
     /// Returns the rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.
     tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[], &[]], ..State::default() };

@@ -1,9 +1,9 @@
-//! Names in messages of the runtime, which takes names as constants: here they are numbers, which are
-//! replaced by the names of the mechanism in messages.
+//! Names in error messages. The runtime takes names as constants, so that loaded mechanisms pass numbers,
+//! which are later replaced by their names.
 
 use crate::shared::Shared;
 
-/// Lists of names.
+/// List that a name in a message belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum List {
     Configuration,
@@ -13,9 +13,9 @@ pub(crate) enum List {
     Contacts,
 }
 
-/// Number of names of each list.
+/// Number of placeholder names in each list.
 const COUNT: usize = 1000;
-/// Number of digits of each number.
+/// Number of digits of each placeholder number.
 const DIGITS: usize = 4;
 const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &table();
 
@@ -60,7 +60,7 @@ impl Shared {
         }
     }
 
-    /// Replaces the numbers in backticks of a message by the names that they stand for.
+    /// Replaces the placeholder numbers in backquotes of a message by names of the mechanism.
     pub(crate) fn with_names(&self, message: &str) -> String {
         let mut parts = message.split('`');
         let mut text = parts.next().unwrap_or_default().to_string();

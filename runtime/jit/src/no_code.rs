@@ -1,4 +1,4 @@
-//! Processors without code generator: programs are interpreted.
+//! Replacement of the code generator on unsupported processors, where programs are interpreted.
 
 use crate::AnyTable;
 use crate::layout::Layout;
@@ -13,7 +13,7 @@ impl Code {
         Err("there is no code generator for this processor".to_string())
     }
 
-    /// Evaluates the program.
+    /// Evaluates the program. It is never called, because no machine code exists on such processors.
     pub fn call(&self, _: &[&[f64]], _: &[AnyTable], _: &mut [f64], _: &mut [f64]) {
         match *self {}
     }

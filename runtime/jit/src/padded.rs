@@ -101,7 +101,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    /// Returns the robot.
+    /// Returns the robot that has been padded to constant dimensions.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         self.robot.borrow()
@@ -130,12 +130,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         State { v: self.velocity(v), x: &v.as_slice()[n..all], ..self.instant(t, q) }
     }
 
-    /// Whether the robot has a function.
+    /// Returns whether the robot has a function.
     fn has(&self, f: Internal) -> bool {
         self.robot().shared.internal[f as usize].is_some()
     }
 
-    /// Evaluates a function. The results are NaN after an error, such as that of a function that is absent.
+    /// Evaluates a function of the robot. After an error, such as an absent function, the results are NaN.
     fn call(&self, f: Internal, state: State<'_>, out: &mut [f64]) {
         let robot = self.robot();
         let index = robot.shared.internal[f as usize];
@@ -144,7 +144,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    /// Fills the first entries of a vector.
+    /// Evaluates a function whose results are the first `count` entries of a vector.
     fn vector<const N: usize>(
         &self,
         f: Internal,
@@ -280,13 +280,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         }
         let n = self.robot().nv();
         let at = State { q: self.configuration(q), ..State::default() };
-        let rates = |state: State<'_>, v: &SVector<f64, NV>| {
+        let coordinate_rates = |state: State<'_>, v: &SVector<f64, NV>| {
             self.vector(Internal::RatesOfSpeeds, State { v: self.velocity(v), ..state }, n, *v)
         };
-        let way = rates(at, dv);
+        let way = coordinate_rates(at, dv);
         let mut there = *q;
         crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
-        crate::space::carry(charts, way.as_slice(), rates(at, v).as_slice(), out.as_mut_slice());
+        crate::space::carry(charts, way.as_slice(), coordinate_rates(at, v).as_slice(), out.as_mut_slice());
         let at = State { q: self.configuration(&there), ..State::default() };
         self.vector(Internal::SpeedsOfRates, State { v: self.velocity(&out), ..at }, n, out)
     }

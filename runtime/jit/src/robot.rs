@@ -1,4 +1,4 @@
-//! A loaded mechanism with its parameters.
+//! Robot: a loaded mechanism with values of its parameters.
 
 use crate::AnyTable;
 use crate::error::Error;
@@ -68,20 +68,22 @@ impl Function {
         &self.shared.entries[self.index].documentation
     }
 
-    /// Returns name and length of each argument, in their order.
+    /// Returns name and length of each argument of the function, in order.
     #[must_use]
     pub fn arguments(&self) -> Vec<(&'static str, usize)> {
         let entry = &self.shared.entries[self.index];
         entry.arguments.iter().map(|a| (a.name(), self.shared.sizes.length(*a))).collect()
     }
 
-    /// Returns the results. They are written one after the other, matrices by columns.
+    /// Returns the results of the function: names and dimensions. Their values are written one after the
+    /// other, matrices by columns.
     #[must_use]
     pub fn results(&self) -> &[Matrix] {
         &self.shared.entries[self.index].results
     }
 
-    /// Returns the number of dimensions of the results: zero for a number, one for vectors, two for matrices.
+    /// Returns the number of dimensions of the function's results: zero for scalars, one for vectors, two for
+    /// matrices.
     #[must_use]
     pub fn rank(&self) -> usize {
         self.shared.entries[self.index].rank
@@ -103,26 +105,26 @@ impl Function {
 /// Limits of a coordinate, infinite without a bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// Index of the velocity.
+    /// Index of the velocity of the limited coordinate.
     pub index: usize,
-    /// Minimum value of the coordinate.
+    /// Minimum value of the limited coordinate.
     pub lower: f64,
-    /// Maximum value of the coordinate.
+    /// Maximum value of the limited coordinate.
     pub upper: f64,
-    /// Maximum velocity in both directions.
+    /// Maximum magnitude of the velocity.
     pub velocity: f64,
-    /// Maximum generalized force in both directions.
+    /// Maximum magnitude of the generalized force.
     pub effort: f64,
 }
 
-/// State, accelerations, forces and inputs of a call of a function by its index.
+/// State, accelerations, forces and inputs that are passed to a function called by its index.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct State<'a> {
-    /// Time; that of the robot if absent.
+    /// Time at which the function is evaluated; if absent, that of the robot.
     pub t: Option<f64>,
     pub q: &'a [f64],
     pub v: &'a [f64],
-    /// States of first order; those among the parameters if empty.
+    /// First-order states; if empty, those stored among the parameters are used.
     pub x: &'a [f64],
     pub a: &'a [f64],
     pub tau: &'a [f64],
@@ -148,7 +150,7 @@ impl Robot {
         &self.shared.name
     }
 
-    /// Returns the number of coordinates.
+    /// Returns the number of configuration coordinates.
     #[must_use]
     pub fn nq(&self) -> usize {
         self.shared.sizes.nq
@@ -172,7 +174,7 @@ impl Robot {
         self.shared.states.len()
     }
 
-    /// Returns name and unit of each coordinate.
+    /// Returns name and unit of each configuration coordinate.
     #[must_use]
     pub fn configuration(&self) -> &[Quantity] {
         &self.shared.configuration
@@ -202,7 +204,7 @@ impl Robot {
         &self.parameters
     }
 
-    /// Returns the tables, in their order.
+    /// Returns the interpolation tables of the mechanism, in the order of their declaration.
     pub(crate) fn table_values(&self) -> &[AnyTable] {
         &self.tables
     }
@@ -231,7 +233,7 @@ impl Robot {
         self.shared.time
     }
 
-    /// Returns the functions.
+    /// Returns all functions that callers may call.
     pub fn functions(&self) -> impl Iterator<Item = Function> {
         let all = self.shared.entries.iter().enumerate().filter(|(_, entry)| !entry.hidden);
         all.map(|(index, _)| Function { shared: self.shared.clone(), index })
@@ -435,9 +437,10 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         let entry = &self.shared.entries[index];
-        let fits = |(list, length): (&&[f64], &usize)| list.len() == *length || list.len() == length * count;
+        let has_length_of_argument =
+            |(list, length): (&&[f64], &usize)| list.len() == *length || list.len() == length * count;
         let fit = arguments.len() == entry.lengths.len()
-            && arguments.iter().zip(&entry.lengths).all(fits)
+            && arguments.iter().zip(&entry.lengths).all(has_length_of_argument)
             && out.len() == entry.length * count;
         if !fit || self.missing > 0 {
             self.check_values()?;
@@ -451,7 +454,7 @@ impl Robot {
                 self.call_constrained(kind, &lists[..arguments.len()], &mut out[range])
             });
         }
-        let run = |work: &mut [f64]| {
+        let run_over_states = |work: &mut [f64]| {
             let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
             inputs[0] = parameters;
             for (k, range) in outs.enumerate() {
@@ -462,18 +465,18 @@ impl Robot {
             }
         };
         match entry.work {
-            0 => run(&mut []),
+            0 => run_over_states(&mut []),
             count => WORK.with_borrow_mut(|work| {
                 if work.len() < count {
                     work.resize(count, 0.0);
                 }
-                run(work);
+                run_over_states(work);
             }),
         }
         Ok(())
     }
 
-    /// Evaluates a function by its index with the parts of the state that it takes.
+    /// Evaluates a function, given by its index, with the arguments that it takes from the state.
     pub(crate) fn state_call_into(
         &self,
         index: usize,

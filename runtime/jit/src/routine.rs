@@ -8,7 +8,7 @@ use linkwork_compiler::expr::Lookup;
 use linkwork_compiler::lower::Program;
 use std::sync::OnceLock;
 
-/// A program with the order of its inputs.
+/// Program of a function with the layout of its inputs, and its machine code once compiled.
 pub(crate) struct Routine {
     program: OnceLock<Program>,
     layout: Layout,
@@ -20,11 +20,11 @@ pub(crate) struct Routine {
 /// The values that a program is evaluated with.
 #[derive(Clone, Copy)]
 pub(crate) struct Values<'a> {
-    /// Parameters, then the arguments.
+    /// Inputs of the program: the parameters, then the arguments of its function.
     pub inputs: &'a [&'a [f64]],
-    /// Tables.
+    /// Interpolation tables that the program looks up.
     pub tables: &'a [AnyTable],
-    /// Whether programs are interpreted.
+    /// Whether programs are interpreted instead of compiled.
     pub interpreted: bool,
 }
 
@@ -42,23 +42,24 @@ impl Routine {
         Some(Routine { program: OnceLock::new(), layout, results, code: OnceLock::new() })
     }
 
-    /// Makes the program at the first call.
+    /// Builds the program if it does not exist yet.
     pub fn ensure(&self, make: impl FnOnce() -> Program) {
         self.program.get_or_init(make);
     }
 
-    /// Returns the program, if it was made.
+    /// Returns the program, if it has been built.
     pub fn program(&self) -> Option<&Program> {
         self.program.get()
     }
 
     /// Generates machine code at the first call. Returns false if the program is interpreted.
     pub fn prepare(&self) -> bool {
-        let compile = || Code::compile(self.program.get()?, &self.layout, self.results).ok();
-        self.code.get_or_init(compile).is_some()
+        let compile_program = || Code::compile(self.program.get()?, &self.layout, self.results).ok();
+        self.code.get_or_init(compile_program).is_some()
     }
 
-    /// Evaluates the program.
+    /// Evaluates the program by machine code or by the interpreter. Writes the function's results to
+    /// `results` and the further outputs to `more`.
     pub fn run(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         let code = match values.interpreted {
             true => None,
@@ -77,16 +78,16 @@ impl Routine {
 
     fn interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         let Some(program) = self.program.get() else { return };
-        let symbol = |symbol| {
+        let value_of_symbol = |symbol| {
             let place = self.layout.locate(symbol);
             let value = place.and_then(|(slot, index)| values.inputs.get(slot)?.get(index));
             value.copied().unwrap_or(f64::NAN)
         };
-        let table = |lookup: Lookup, x| {
+        let value_of_table = |lookup: Lookup, x| {
             let table = values.tables.get(lookup.table());
             table.map_or(f64::NAN, |table| table.value(x, [0, 1, 2].map(|k| lookup.order(k) as u8)))
         };
-        let outputs = program.run_with(&symbol, &table);
+        let outputs = program.run_with(&value_of_symbol, &value_of_table);
         let places = results[..self.results].iter_mut().chain(more);
         places.zip(outputs).for_each(|(place, value)| *place = value);
     }

@@ -1,4 +1,4 @@
-//! Data that all robots of one loaded mechanism share: functions and names.
+//! Data that all robots of one loaded mechanism share, such as functions and names.
 
 use crate::about::About;
 use crate::frames::Frames;
@@ -9,7 +9,7 @@ use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::Chart;
 use std::collections::HashMap;
 
-/// Numbers of coordinates, velocities and inputs.
+/// Numbers of configuration coordinates, velocities and inputs of a mechanism.
 #[derive(Clone, Copy)]
 pub(crate) struct Sizes {
     pub nq: usize,
@@ -27,13 +27,13 @@ impl Sizes {
 /// Name and unit of a coordinate, velocity, input or parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
-    /// Name.
+    /// Name of the coordinate, velocity, input or parameter.
     pub name: String,
     /// Unit, for example `rad/s`; empty for a pure number.
     pub unit: String,
 }
 
-/// A condition on the parameters.
+/// Condition that the parameters of a mechanism must satisfy.
 pub(crate) struct Requirement {
     pub rule: linkwork::__private::Rule,
     pub figure: String,
@@ -41,48 +41,48 @@ pub(crate) struct Requirement {
     pub count: usize,
 }
 
-/// The scalar constraints of a mechanism.
+/// Scalar constraints of a loaded mechanism.
 #[derive(Default)]
 pub(crate) struct Constraints {
     pub names: Vec<String>,
     /// Number of constraints on configurations, which come first.
     pub holonomic: usize,
-    /// Group of each constraint; those of one group are components of one vector.
+    /// Group of each constraint. Constraints in one group are components of one vector equation.
     pub groups: Vec<usize>,
     /// Indices of the constraints whose multipliers are normal forces of friction.
     pub slipping: Vec<usize>,
     /// Indices of the constraints that determine coordinates without inertia.
     pub determining: Vec<usize>,
-    /// Number of independent constraints in regular configurations.
+    /// Number of independent constraints in nonsingular configurations.
     pub rank: usize,
-    /// Whether some constraints follow from others everywhere.
+    /// Whether some constraints are redundant in every configuration.
     pub overdetermined: bool,
     /// Whether accelerations are eliminated by pivots that are chosen in advance.
     pub independent: bool,
-    /// Indices of the coordinates that are angles.
+    /// Indices of the configuration coordinates that are angles.
     pub angles: Vec<usize>,
 }
 
-/// A contact that opens and closes.
+/// Unilateral contact of a loaded mechanism, which opens and closes.
 pub(crate) struct Contact {
     pub name: String,
     /// First row, and number of rows, in the contact velocities.
     pub rows: [usize; 2],
     /// Index of the contact whose normal force causes the friction: its own, except of friction moments.
     pub pressed_by: usize,
-    /// Whether restitution is a ratio of impulses.
+    /// Whether the restitution coefficient is a ratio of impulses instead of velocities.
     pub of_impulses: bool,
 }
 
-/// A state of first order.
+/// First-order state of a loaded mechanism.
 pub(crate) struct FirstOrder {
-    /// Index among the parameters.
+    /// Index of the state among the parameters.
     pub parameter: usize,
     /// Index of the function that returns the rate of the state; `None` if it has none.
     pub rate: Option<usize>,
 }
 
-/// A loaded mechanism.
+/// Loaded mechanism: the data that its robots share.
 pub(crate) struct Shared {
     pub name: String,
     pub sizes: Sizes,
@@ -99,22 +99,22 @@ pub(crate) struct Shared {
     pub requirements: Vec<Requirement>,
     pub equations: String,
     pub time: bool,
-    /// Whether it has no inertia.
+    /// Whether the mechanism has no inertia, only kinematics.
     pub kinematic: bool,
-    /// Whether generalized speeds are declared.
+    /// Whether the mechanism declares generalized speeds.
     pub has_speeds: bool,
-    /// Whether forces depend on accelerations.
+    /// Whether forces of the mechanism depend on accelerations.
     pub has_feedback: bool,
     pub constraints: Constraints,
     pub contacts: Vec<Contact>,
-    /// Number of contact velocities.
+    /// Number of contact velocities of all contacts.
     pub contact_rates: usize,
     pub states: Vec<FirstOrder>,
     pub charts: Vec<Chart>,
     pub frames: Frames,
     pub entries: Vec<Entry>,
     pub index: HashMap<String, usize>,
-    /// Indices of the functions with methods.
+    /// Indices of the functions that have methods of `Robot`; `None` for absent functions.
     pub methods: Vec<Option<usize>>,
     /// Indices of the functions that the runtime calls.
     pub internal: Vec<Option<usize>>,
@@ -122,13 +122,14 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// Returns the names of the functions, without those of frames.
+    /// Returns the names of the public functions, except functions of frames.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let public = self.entries.iter().filter(|entry| !entry.hidden && !entry.name.contains('('));
         public.map(|entry| entry.name.as_str())
     }
 
-    /// Evaluates a function with the arguments of another one, some of them replaced.
+    /// Evaluates a function that another function calls. It takes the arguments of the caller, some of them
+    /// replaced.
     pub fn call(
         &self,
         function: usize,
@@ -142,17 +143,17 @@ impl Shared {
         let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
         inputs[0] = values.inputs[0];
         for (input, argument) in inputs[1..].iter_mut().zip(&entry.arguments) {
-            let position = || arguments.iter().position(|known| known == argument);
+            let index_of_argument = || arguments.iter().position(|known| known == argument);
             *input = match replaced.iter().find(|(known, _)| known == argument) {
                 Some((_, list)) => list,
-                None => position().and_then(|at| values.inputs.get(1 + at)).copied().unwrap_or(&[]),
+                None => index_of_argument().and_then(|at| values.inputs.get(1 + at)).copied().unwrap_or(&[]),
             };
         }
         let inputs = &inputs[..=entry.arguments.len()];
         entry.run(self, Values { inputs, ..values }, out, work);
     }
 
-    /// Generates the machine code of a function and of those that it calls. Returns false if one of them is
+    /// Compiles a function and the functions that it calls to machine code. Returns false if one of them is
     /// interpreted.
     pub fn prepare(&self, function: usize) -> bool {
         let plan = &self.entries[function].plan;

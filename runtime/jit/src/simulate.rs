@@ -14,20 +14,20 @@ use method::STEP;
 /// Function of time, configuration and velocity that writes the inputs. An error ends the run.
 pub type Controller<'a> = &'a mut (dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send);
 
-/// Inputs of a simulation.
+/// Inputs of the mechanism during a simulation.
 #[derive(Default)]
 pub enum Inputs<'a> {
-    /// All inputs are zero.
+    /// Inputs that are all zero.
     #[default]
     Zero,
-    /// Constant inputs.
+    /// Inputs that are constant during the simulation.
     Constant(&'a [f64]),
-    /// Inputs at times: linear between the times, and constant before the first and after the last one.
-    /// Inputs jump where a time occurs twice.
+    /// Inputs given at discrete times: interpolated linearly between the times, and constant before the first
+    /// and after the last time. The inputs jump where a time occurs twice.
     Samples {
-        /// Times, s, which do not decrease.
+        /// Times of the input samples, s, in nondecreasing order.
         times: &'a [f64],
-        /// The inputs at each time, one row after the other.
+        /// Values of the inputs: one row for each time, row after row.
         values: &'a [f64],
     },
     /// A function that is continuous in time and state; velocities are followed by states of first order.
@@ -36,26 +36,26 @@ pub enum Inputs<'a> {
     Sampled(f64, Controller<'a>),
 }
 
-/// State and inputs at an instant.
+/// Sample of a motion: time, state and inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// Time, s.
+    /// Time of the sample, s.
     pub t: f64,
-    /// Configuration.
+    /// Configuration of the sample.
     pub q: Vec<f64>,
     /// Velocity, followed by the states of first order.
     pub v: Vec<f64>,
-    /// Inputs.
+    /// Inputs at the time of the sample.
     pub u: Vec<f64>,
 }
 
-/// Samples of a motion.
+/// Result of a simulation: the samples of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// The samples.
+    /// Samples of the motion, in the order of time.
     pub samples: Vec<Sample>,
-    /// Time from which the motion is integrated by an implicit method, because it is stiff; `None` for
-    /// methods other than [`Method::Automatic`].
+    /// Time from which an implicit method integrates the motion, because it is stiff; `None` for methods
+    /// other than [`Method::Automatic`].
     pub stiff_from: Option<f64>,
 }
 
@@ -117,29 +117,29 @@ impl Robot {
 }
 
 impl<'a, 'i> Simulation<'a, 'i> {
-    /// Sets the initial configuration and velocity. The velocity may be followed by the states of first
-    /// order; without them these have the values that they have among the parameters.
+    /// Sets the initial configuration and velocity. First-order states may follow the velocity; otherwise
+    /// their initial values are taken from the parameters.
     pub fn from(self, q: &'a [f64], v: &'a [f64]) -> Self {
         Self { q: Some(q), v: Some(v), ..self }
     }
 
-    /// Sets the initial time, s.
+    /// Sets the initial time of the simulation, s.
     pub fn start_at(self, t: f64) -> Self {
         Self { start: t, ..self }
     }
 
-    /// Sets the method.
+    /// Sets the integration method.
     pub fn method(self, method: Method) -> Self {
         Self { method, ..self }
     }
 
-    /// Sets the inputs.
+    /// Sets the inputs of the mechanism during the simulation.
     pub fn inputs<'j>(self, inputs: Inputs<'j>) -> Simulation<'a, 'j> {
         let Self { robot, method, start, q, v, duration, every, contacts, overlaps, .. } = self;
         Simulation { robot, method, start, q, v, inputs, duration, every, contacts, overlaps }
     }
 
-    /// Sets the duration, s.
+    /// Sets the duration of the simulation, s.
     pub fn duration(self, duration: f64) -> Self {
         Self { duration, ..self }
     }
@@ -192,12 +192,12 @@ impl<'a, 'i> Simulation<'a, 'i> {
     pub fn each(self, sample: &mut (dyn FnMut(Sample) + Send)) -> Result<Option<f64>, Error> {
         let robot = self.robot;
         let (n, states) = (robot.nv(), &robot.shared.states);
-        let invalid = |name: &str, value: f64| {
+        let invalid_value_error = |name: &str, value: f64| {
             Error::Value(format!("{name} must be finite and not negative, but it is {value}"))
         };
         for (name, value) in [("the duration", self.duration), ("the interval", self.every.unwrap_or(1.0))] {
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(invalid(name, value));
+                return Err(invalid_value_error(name, value));
             }
         }
         if self.every == Some(0.0) {

@@ -10,7 +10,7 @@ use linkwork::__private::{
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::{Chart, InQ, InV, Supplied};
 
-/// A function of the configuration space.
+/// Function of the configuration space, such as integration or difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Integrate,
@@ -31,7 +31,8 @@ fn array<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
     std::array::from_fn(|k| list[first + k])
 }
 
-/// Moves a configuration along a constant joint velocity for one unit of time.
+/// Computes the configuration that is reached from `q` along the constant joint velocity `dv` in one unit of
+/// time.
 pub(crate) fn integrate(charts: &[Chart], q: &[f64], dv: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
@@ -90,15 +91,15 @@ pub(crate) fn carry(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
 }
 
 impl Space {
-    /// Adds the functions to those of a mechanism.
+    /// Adds the functions of the configuration space to those of a mechanism.
     pub fn add(maker: &mut Maker<'_, '_>) {
         let (nq, nv) = (maker.model.nq(), maker.model.nv());
         let speeds = match [maker.index("rates_of_speeds"), maker.index("speeds_of_rates")] {
             [Some(rates), Some(speeds)] => Some([rates, speeds]),
             _ => None,
         };
-        let vector = |name| Argument::Given(name, Supplied::State, nv);
-        let configuration = |name| Argument::Given(name, Supplied::State, nq);
+        let velocity_argument = |name| Argument::Given(name, Supplied::State, nv);
+        let configuration_argument = |name| Argument::Given(name, Supplied::State, nq);
         let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
             let results = vec![Matrix { name: "result", rows, columns: 1 }];
             let plan = Plan::Space(Space { kind, speeds });
@@ -107,7 +108,7 @@ impl Space {
             let work = 4 * nv + nq + calls;
             maker.entries.push(Entry { work, ..entry });
         };
-        let dv = vector("dv");
+        let dv = velocity_argument("dv");
         add(
             Kind::Integrate,
             "integrate",
@@ -120,7 +121,7 @@ impl Space {
             Kind::Difference,
             "difference",
             "Velocity that leads from one configuration to another in one unit of time.",
-            vec![configuration("from"), configuration("to")],
+            vec![configuration_argument("from"), configuration_argument("to")],
             nv,
         );
         match speeds {
@@ -146,7 +147,7 @@ impl Space {
         self.speeds.into_iter().flatten().collect()
     }
 
-    /// Evaluates the function.
+    /// Evaluates the function of the configuration space.
     pub fn run(
         &self,
         shared: &Shared,

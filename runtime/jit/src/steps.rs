@@ -10,7 +10,8 @@ use linkwork::__private::{
 use linkwork_compiler::mechanism::{Chart, InV};
 use nalgebra::DMatrix;
 
-/// Coefficients of the stages: fraction of the step at which a stage is evaluated, and weight of its rates.
+/// Coefficients of the stages of the classical Runge–Kutta method: fraction of the step at which a stage is
+/// evaluated, and weight of its derivatives.
 pub(crate) const STAGES: [(f64, f64); 4] = [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)];
 
 /// Steps of the classical Runge–Kutta method of one robot, with inputs that are constant during a step.
@@ -52,14 +53,14 @@ pub struct Stepper {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Functions {
     pub dynamics: usize,
-    /// Forces of the inputs; `None` without inputs.
+    /// Index of the function that computes generalized forces from inputs; `None` without inputs.
     pub forces: Option<usize>,
     integrate: usize,
     rate: usize,
     linearize: Option<usize>,
 }
 
-/// State at which a stage is evaluated, and its rates.
+/// State at which a Runge–Kutta stage is evaluated, with its time derivatives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stage {
     pub displacement: Vec<f64>,
@@ -70,12 +71,13 @@ pub(crate) struct Stage {
     pub acceleration: Vec<f64>,
 }
 
-/// Jacobian matrices of a step, by displacements of the configuration, velocities and inputs at its start.
+/// Jacobian matrices of a Runge–Kutta step with respect to configuration displacements, velocities and inputs
+/// at its start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jacobians {
     /// Derivatives of the displacement of the configuration at the end by configuration, velocity and inputs.
     pub q: [DMatrix<f64>; 3],
-    /// Derivatives of the velocity at the end.
+    /// Derivatives of the velocity at the end of the step with respect to configuration, velocity and inputs.
     pub v: [DMatrix<f64>; 3],
 }
 
@@ -91,28 +93,29 @@ impl Stepper {
             return Err(Error::Value(format!("`{}` has no steps: {reason}", robot.name())));
         }
         robot.check_values()?;
-        let index = |name: &str| robot.shared.index.get(name).copied();
-        let needed =
-            |name: &str| index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()));
+        let function_index = |name: &str| robot.shared.index.get(name).copied();
+        let needed = |name: &str| {
+            function_index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()))
+        };
         let functions = Functions {
             dynamics: needed("forward_dynamics")?,
             forces: if robot.nu() > 0 { Some(needed("generalized_forces")?) } else { None },
             integrate: needed("integrate")?,
-            rate: index("tangent_rate").map_or_else(|| needed("displacement_rate"), Ok)?,
-            linearize: index("linearize"),
+            rate: function_index("tangent_rate").map_or_else(|| needed("displacement_rate"), Ok)?,
+            linearize: function_index("linearize"),
         };
         let (nq, nv) = (robot.nq(), robot.nv());
-        let zeros = |n: usize| vec![0.0; n];
+        let zero_vector = |n: usize| vec![0.0; n];
         let stage = Stage {
-            displacement: zeros(nv),
-            q: zeros(nq),
-            v: zeros(nv),
-            tau: zeros(nv),
-            rate: zeros(nv),
-            acceleration: zeros(nv),
+            displacement: zero_vector(nv),
+            q: zero_vector(nq),
+            v: zero_vector(nv),
+            tau: zero_vector(nv),
+            rate: zero_vector(nv),
+            acceleration: zero_vector(nv),
         };
         let stages = [stage.clone(), stage.clone(), stage.clone(), stage];
-        Ok(Stepper { robot: robot.clone(), functions, stages, displacement: zeros(nv) })
+        Ok(Stepper { robot: robot.clone(), functions, stages, displacement: zero_vector(nv) })
     }
 
     /// Returns the robot, whose parameters may be changed.
@@ -191,7 +194,7 @@ impl Stepper {
         Ok(())
     }
 
-    /// Returns the displacement of the last step.
+    /// Returns the displacement of the configuration in the last step.
     pub(crate) fn displacement(&self) -> &[f64] {
         &self.displacement
     }
@@ -246,22 +249,22 @@ impl Stepper {
             self.robot.set_time(t + c);
             let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
             self.robot.state_call_into(linearize, state, &mut system)?;
-            let entry = |i: usize, j: usize| system[2 * n * j + n + i];
-            let by_q = DMatrix::from_fn(n, n, entry);
-            let by_v = DMatrix::from_fn(n, n, |i, j| entry(i, n + j));
+            let entry_of_system = |i: usize, j: usize| system[2 * n * j + n + i];
+            let by_q = DMatrix::from_fn(n, n, entry_of_system);
+            let by_v = DMatrix::from_fn(n, n, |i, j| entry_of_system(i, n + j));
             let mut acceleration = motion.led(&by_q).plus(1.0, &v.led(&by_v));
-            acceleration.by_u += DMatrix::from_fn(n, m, |i, j| entry(i, 2 * n + j));
+            acceleration.by_u += DMatrix::from_fn(n, m, |i, j| entry_of_system(i, 2 * n + j));
             stages.push([rate, acceleration]);
         }
-        let sum = |which: usize| {
+        let weighted_sum_of_stages = |which: usize| {
             let mut all = Sensitive::zero(n, m);
             for (stage, (_, weight)) in stages.iter().zip(STAGES) {
                 all = all.plus(h / 6.0 * weight, &stage[which]);
             }
             all
         };
-        let motion = end_derivatives(&charts, &self.displacement, &sum(0));
-        let v = Sensitive::velocity(n, m).plus(1.0, &sum(1));
+        let motion = end_derivatives(&charts, &self.displacement, &weighted_sum_of_stages(0));
+        let v = Sensitive::velocity(n, m).plus(1.0, &weighted_sum_of_stages(1));
         Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
     }
 }

@@ -2,17 +2,17 @@
 
 use linkwork::Table;
 
-/// A table of one, two or three variables, or none yet.
+/// Interpolation table of one, two or three variables, or a table that has not been set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AnyTable {
     /// No table has been set: its values are NaN.
     Missing,
-    /// A function of one variable.
+    /// Interpolation table of one variable.
     One(Table<1>),
-    /// A function of two variables.
+    /// Interpolation table of two variables.
     Two(Table<2>),
-    /// A function of three variables.
+    /// Interpolation table of three variables.
     Three(Table<3>),
 }
 
@@ -28,7 +28,7 @@ impl AnyTable {
         }
     }
 
-    /// Returns the derivative of these orders.
+    /// Returns the value of the table, or its partial derivative of the given orders, at a point.
     pub(crate) fn value(&self, [x, y, z]: [f64; 3], [a, b, c]: [u8; 3]) -> f64 {
         match self {
             AnyTable::Missing => f64::NAN,

@@ -16,13 +16,13 @@ use std::fmt::Write;
 /// State and inputs at the start of a simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct WebStart<'a> {
-    /// Configuration.
+    /// Initial configuration of the simulation.
     pub q: &'a [f64],
-    /// Velocity.
+    /// Initial velocity of the simulation.
     pub v: &'a [f64],
-    /// States of first order.
+    /// Initial first-order states of the simulation.
     pub x: &'a [f64],
-    /// Inputs.
+    /// Initial inputs of the simulation.
     pub u: &'a [f64],
 }
 
@@ -30,7 +30,7 @@ pub struct WebStart<'a> {
 const FREE: &[&str] = &["forward_dynamics"];
 /// Functions of a mechanism with constraints or contacts.
 const BOUND: &[&str] = &["mass_matrix", "bias_forces"];
-/// Functions of all mechanisms, if they exist.
+/// Names of the functions that a web page includes for every mechanism that has them.
 const ALL: &[&str] = &[
     "generalized_forces",
     "rates_of_speeds",
@@ -143,10 +143,10 @@ impl Robot {
     /// Returns the structure of the mechanism: names and values of JSON fields.
     fn web_structure(&self) -> Vec<(&'static str, String)> {
         let shared = &self.shared;
-        let quantities = |list: &[Quantity]| {
+        let encode_quantities = |list: &[Quantity]| {
             joined(list.iter().map(|one| format!("[{},{}]", quoted(&one.name), quoted(&one.unit))))
         };
-        let indices = |list: &[usize]| joined(list.iter().map(ToString::to_string));
+        let encode_indices = |list: &[usize]| joined(list.iter().map(ToString::to_string));
         let charts = joined(shared.charts.iter().map(|chart| match chart {
             Chart::Plain(InQ(q), InV(v)) => format!("[0,{q},{v}]"),
             Chart::Ball(InQ(q), InV(v)) => format!("[1,{q},{v}]"),
@@ -168,29 +168,29 @@ impl Robot {
         let states_of = shared.states.iter().map(|state| &shared.parameters[state.parameter].name);
         vec![
             ("name", quoted(&shared.name)),
-            ("configuration", quantities(&shared.configuration)),
-            ("velocities", quantities(&shared.velocities)),
-            ("inputs", quantities(&shared.inputs)),
-            ("parameters", quantities(&shared.parameters)),
-            ("outputs", quantities(self.outputs())),
+            ("configuration", encode_quantities(&shared.configuration)),
+            ("velocities", encode_quantities(&shared.velocities)),
+            ("inputs", encode_quantities(&shared.inputs)),
+            ("parameters", encode_quantities(&shared.parameters)),
+            ("outputs", encode_quantities(self.outputs())),
             ("frames", joined(shared.frames.names.iter().map(|name| quoted(name)))),
             ("charts", charts),
             ("states", states),
             ("stateNames", joined(states_of.map(|name| quoted(name)))),
             ("constraints", constraints.names.len().to_string()),
             ("holonomic", constraints.holonomic.to_string()),
-            ("slipping", indices(&constraints.slipping)),
+            ("slipping", encode_indices(&constraints.slipping)),
             ("contacts", contacts),
         ]
     }
 }
 
-/// Returns a JSON list.
+/// Returns a JSON list of items that are already JSON.
 fn joined(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(","))
 }
 
-/// Returns a JSON list of numbers.
+/// Returns a JSON list of numbers, with `null` for numbers that are not finite.
 fn numbers(list: &[f64]) -> String {
     joined(list.iter().map(|x| if x.is_finite() { format!("{x:?}") } else { "null".to_string() }))
 }

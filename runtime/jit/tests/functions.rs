@@ -1,4 +1,5 @@
-//! Functions of loaded mechanisms: equal to those that the compiler writes as Rust, and to the interpreter.
+//! Checks that functions of loaded mechanisms equal those that the compiler generates as Rust code, and those
+//! of the interpreter.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -8,7 +9,7 @@ macro_rules! both {
     ($name:ident, $($tokens:tt)*) => {
         $($tokens)*
 
-        /// Text of the same declaration.
+        /// Source text of the declaration above, from which the mechanism is loaded.
         const $name: &str = stringify!($($tokens)*);
     };
 }
@@ -67,7 +68,7 @@ both! {
     }
 }
 
-/// Values between -0.6 and 0.6.
+/// Returns `n` reproducible values between -0.6 and 0.6.
 fn values(seed: usize, n: usize) -> Vec<f64> {
     (0..n).map(|k| 0.6 * ((7 * k + 3 * seed + 1) as f64).sin()).collect()
 }
@@ -80,7 +81,7 @@ fn close(found: &[f64], expected: &[f64], what: &str) {
     }
 }
 
-/// Every function equals the interpreter.
+/// Checks that every compiled function of a robot equals that of an interpreted robot.
 fn agree_with_interpreter(robot: &Robot, oracle: &Robot) -> Result<(), Error> {
     let neutral = robot.neutral()?;
     for f in robot.functions() {
@@ -165,12 +166,13 @@ fn constrained_accelerations_agree_with_generated_rust() -> Result<(), Error> {
     Ok(())
 }
 
-/// Copies share code and have parameters of their own; many states at once equal one by one.
+/// Checks that copies of a robot share code but have parameters of their own, and that evaluation of many
+/// states equals evaluation one by one.
 #[test]
 fn robots_are_shared_by_threads() -> Result<(), Error> {
     let robot = Loader::text(CART_POLE).load()?;
     let results: Vec<Result<f64, Error>> = std::thread::scope(|scope| {
-        let each = |k: usize| {
+        let spawn_robot_thread = |k: usize| {
             let robot = robot.clone();
             scope.spawn(move || {
                 let length = 1.0 + k as f64;
@@ -180,7 +182,7 @@ fn robots_are_shared_by_threads() -> Result<(), Error> {
                 Ok(robot.mass_matrix(&[0.0, 0.0])?[(1, 1)] * 3.0 / length.powi(2))
             })
         };
-        let threads: Vec<_> = (0..4).map(each).collect();
+        let threads: Vec<_> = (0..4).map(spawn_robot_thread).collect();
         threads.into_iter().map(|thread| thread.join().unwrap_or(Ok(f64::NAN))).collect()
     });
     for result in results {
@@ -195,7 +197,7 @@ fn robots_are_shared_by_threads() -> Result<(), Error> {
     Ok(())
 }
 
-/// Loading again and again neither fails nor keeps memory of its own.
+/// Checks that mechanisms can be loaded repeatedly.
 #[test]
 fn robots_are_loaded_again_and_again() -> Result<(), Error> {
     for _ in 0..20 {

@@ -12,14 +12,14 @@ use std::time::{Duration, Instant};
 
 mod random;
 
-/// Tests that take turns: memory of one does not count for the other.
+/// Lock that prevents tests from running at the same time, so that each measures only its own memory.
 static TURN: Mutex<()> = Mutex::new(());
-/// Numbers of loads and of inputs.
+/// Default numbers of loads and of random inputs that the tests use.
 const LOADS: u64 = 200;
 const INPUTS: u64 = 120;
-/// Maximum growth of memory, bytes: less than that of one retained page for each load.
+/// Maximum growth of memory during all loads, bytes: less than one retained page per load.
 const GROWTH: u64 = 4096 * LOADS / 2;
-/// Maximum time of one input in a debug build on a busy machine.
+/// Maximum time of one mutated input in a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn number(name: &str, default: u64) -> u64 {
@@ -37,7 +37,7 @@ const PENDULUM: &str = "#[mechanism(gravity = -9.81 * y, derivatives)]
         motor: Torque,
     }";
 
-/// Memory of the process, bytes.
+/// Returns the resident memory of the process, bytes.
 fn resident() -> Option<u64> {
     let text = fs::read_to_string("/proc/self/statm").ok()?;
     Some(4096 * text.split_whitespace().nth(1)?.parse::<u64>().ok()?)
@@ -76,7 +76,7 @@ impl Random {
     }
 }
 
-/// Texts to insert.
+/// Texts that mutations insert into files and declarations.
 const WORDS: [&str; 40] = [
     "NaN",
     "nan",
@@ -136,7 +136,7 @@ const OPTIONS: [&str; 14] = [
     "((,",
 ];
 
-/// Returns the texts of small robots and mechanisms with the extensions of their files.
+/// Returns the texts of small robots and mechanisms, with the extensions of their files.
 fn subjects() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = ["tests/data/urdf", "tests/data/mjcf", "tests/data/sdf", "models/src", "models/urdf"];
@@ -161,16 +161,16 @@ fn subjects() -> Vec<(String, String)> {
     all
 }
 
-/// Changes a text at random places.
+/// Applies random mutations to a text.
 fn change(text: &mut String, other: &str, random: &mut Random) {
-    let place = |text: &str, random: &mut Random| {
+    let random_char_boundary = |text: &str, random: &mut Random| {
         let mut at = random.index_below(text.len() + 1);
         while !text.is_char_boundary(at) {
             at -= 1;
         }
         at
     };
-    let (a, b) = (place(text, random), place(text, random));
+    let (a, b) = (random_char_boundary(text, random), random_char_boundary(text, random));
     let (first, last) = (a.min(b), a.max(b));
     let near =
         text[first..].char_indices().nth(1 + random.index_below(30)).map_or(text.len(), |(k, _)| first + k);
@@ -184,7 +184,7 @@ fn change(text: &mut String, other: &str, random: &mut Random) {
         }
         4 => text.truncate(last),
         5 => {
-            let from = place(other, random);
+            let from = random_char_boundary(other, random);
             let part: String = other[from..].chars().take(random.index_below(400)).collect();
             text.insert_str(a, &part);
         }

@@ -1,4 +1,5 @@
-//! Mechanisms of `linkwork-models` with constraints: loaded ones equal those of the attribute.
+//! Checks that mechanisms of `linkwork-models` with constraints, when loaded at run time, equal those
+//! compiled by the attribute.
 
 use linkwork::integrate::Hooks;
 use linkwork::nalgebra::SVector;
@@ -8,7 +9,7 @@ use linkwork_models as models;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Loads the mechanism of a file, with values of its parameters.
+/// Loads the mechanism in a file and sets values of its parameters.
 fn loaded(file: &str, values: &[(&str, f64)]) -> Result<Robot, Failure> {
     let path = format!("{}/../../models/src/{file}.rs", env!("CARGO_MANIFEST_DIR"));
     Ok(Loader::file(path).load()?.with_parameters(values)?)
@@ -21,7 +22,7 @@ fn close(found: &[f64], expected: &[f64], what: &str) {
     }
 }
 
-/// Capacity of the padded mechanisms.
+/// Constant dimension to which the mechanisms are padded.
 const N: usize = 16;
 
 /// Compares projections and accelerations in states near a given configuration.
@@ -35,24 +36,30 @@ where
 {
     let (name, m) = (robot.name(), robot.padded::<N, N, N>());
     for seed in 0..4 {
-        let value = |k: usize| (7.0 * k as f64 + 3.0 * f64::from(seed) + 1.0).sin();
-        let step = SVector::from_fn(|k, _| 1e-3 * value(k));
+        let sample_value = |k: usize| (7.0 * k as f64 + 3.0 * f64::from(seed) + 1.0).sin();
+        let step = SVector::from_fn(|k, _| 1e-3 * sample_value(k));
         let q = own.integrate(&near.into(), &step);
-        let v = SVector::from_fn(|k, _| value(k + 3));
+        let v = SVector::from_fn(|k, _| sample_value(k + 3));
         let (q, v) = own.project(0.0, &q, &v)?;
-        let tau = SVector::from_fn(|k, _| value(k + 5));
+        let tau = SVector::from_fn(|k, _| sample_value(k + 5));
         let a = own.try_forward_dynamics(0.0, &q, &v, &tau)?;
         let found = robot.forward_dynamics(q.as_slice(), v.as_slice(), tau.as_slice())?;
         close(found.as_slice(), a.as_slice(), name);
         let Ok(m) = &m else { continue };
-        let wide = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
         let off = own.integrate(&q, &(step * 0.1));
         let expected = own.project(0.0, &off, &v)?;
-        let found = m.project(0.0, &wide(off.as_slice()), &wide(v.as_slice()))?;
+        let found = m.project(0.0, &padded_vector(off.as_slice()), &padded_vector(v.as_slice()))?;
         close(found.0.as_slice(), expected.0.as_slice(), name);
         close(found.1.as_slice(), expected.1.as_slice(), name);
         let p = own.impulse(0.0, &q, &v, 1e-2, &tau);
-        let found = m.impulse(0.0, &wide(q.as_slice()), &wide(v.as_slice()), 1e-2, &wide(tau.as_slice()));
+        let found = m.impulse(
+            0.0,
+            &padded_vector(q.as_slice()),
+            &padded_vector(v.as_slice()),
+            1e-2,
+            &padded_vector(tau.as_slice()),
+        );
         close(found.as_slice(), p.as_slice(), name);
     }
     Ok(())

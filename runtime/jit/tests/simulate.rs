@@ -1,4 +1,4 @@
-//! Motions of loaded mechanisms: equal to those of generated Rust, and to closed forms.
+//! Checks that motions of loaded mechanisms equal those of generated Rust code, and closed-form solutions.
 
 use linkwork::contact;
 use linkwork::integrate::Hooks;
@@ -10,7 +10,7 @@ macro_rules! both {
     ($name:ident, $($tokens:tt)*) => {
         $($tokens)*
 
-        /// Text of the same declaration.
+        /// Source text of the declaration above, from which the mechanism is loaded.
         const $name: &str = stringify!($($tokens)*);
     };
 }
@@ -118,7 +118,7 @@ fn motions_under_constraints_agree_with_generated_rust() -> Result<(), Error> {
     let robot = Loader::text(SLIDER).load()?;
     let q = Slider.assemble(&[0.4, 0.0].into(), &[0]).expect("it can be assembled");
     let v = Slider.complete_velocity(&q, &[1.0, 0.0].into(), &[0]).expect("it moves");
-    let run = |method: Method| {
+    let simulate_with_method = |method: Method| {
         let run = robot.simulate().from(q.as_slice(), v.as_slice()).inputs(Inputs::Constant(&[2.0]));
         run.method(method).duration(0.5).sample_every(0.25).run()
     };
@@ -132,7 +132,7 @@ fn motions_under_constraints_agree_with_generated_rust() -> Result<(), Error> {
     for (method, end, tolerance) in ends {
         let tolerance: f64 = tolerance;
         let end = end.expect("it moves");
-        let run = run(method)?;
+        let run = simulate_with_method(method)?;
         assert_eq!(run.samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), [0.0, 0.25, 0.5]);
         let last = &run.samples[2];
         close(&last.q, end.q.as_slice(), tolerance.max(1e-7));

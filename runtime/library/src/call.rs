@@ -1,4 +1,4 @@
-//! Calls of one function of a mechanism, for one state or many.
+//! Calls of one generated function through plain arrays, for one state or many.
 
 use crate::{Given, Library, Number, Sink};
 use std::any::Any;
@@ -8,10 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Number of SIMD lanes, which is the number of states that are evaluated together.
 pub const LANES: usize = 8;
 
-/// Maximum number of arguments, and of results.
+/// Maximum number of arguments of a function, and maximum number of its results.
 const MAX_ARGUMENTS: usize = 12;
 
-/// Message of a failure.
+/// Error message of a failed call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure(pub String);
 
@@ -39,23 +39,23 @@ pub type Body<M> = fn(
 /// Generated function with an interface of plain arrays.
 #[derive(Clone, Copy)]
 pub struct Function<M: Library> {
-    /// Number of entries of each argument, for one state.
+    /// Number of entries of each argument for one state.
     pub arguments: &'static [usize],
-    /// Number of entries of each result, for one state.
+    /// Number of entries of each result for one state.
     pub results: &'static [usize],
-    /// Function for one state.
+    /// Body of the function that evaluates one state.
     pub one: Body<M>,
-    /// Function for eight states, if it exists.
+    /// Body of the function that evaluates eight states in SIMD lanes, if it exists.
     pub eight: Option<Body<M>>,
 }
 
-/// Arrays for many states, one state after the other.
+/// Argument and result arrays of a function for many states, one state after the other.
 pub struct Batch<'a, N> {
-    /// Arrays of the arguments.
+    /// Argument arrays, one per argument, each with the values for all states.
     pub arguments: Vec<&'a [N]>,
-    /// Arrays of the results.
+    /// Result arrays, one per result, each with the values for all states.
     pub results: Vec<&'a mut [N]>,
-    /// Number of states.
+    /// Number of states in the batch.
     pub states: usize,
     /// Number of threads; zero for the number of processors.
     pub threads: usize,
@@ -101,13 +101,13 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
 
 /// Returns the number of states per thread, a multiple of the number of lanes.
 pub(crate) fn shares(states: usize, threads: usize, lanes: usize) -> usize {
-    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = if threads == 0 { processors() } else { threads };
+    let count_processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if threads == 0 { count_processors() } else { threads };
     let groups = states.div_ceil(lanes);
     groups.div_ceil(threads.clamp(1, groups.max(1))).max(1) * lanes
 }
 
-/// States that one thread evaluates.
+/// Range of states in a batch that one thread evaluates.
 struct Part<'a, N> {
     first: usize,
     states: usize,
@@ -141,7 +141,7 @@ fn shared_out<'a, M: Library>(
     parts
 }
 
-/// Evaluates the states, and returns the first one that fails with the reason.
+/// Evaluates the states of one thread. Returns the index of the first state that fails, with the error.
 fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option<(usize, Failure)> {
     let Part { first, states, arguments, results } = part;
     let mut failed = None;

@@ -18,11 +18,11 @@ use std::ffi::CStr;
 pub trait Library: Sized + Sync + 'static {
     /// Scalar type of all arrays: `f64` or `f32`.
     type Number: Number;
-    /// Number of parameters.
+    /// Number of parameters of the mechanism.
     const PARAMETERS: usize;
     /// Names, shapes, units and documentation of all arguments and results, as JSON.
     const DESCRIPTION: &'static CStr;
-    /// Functions, in the order of the description.
+    /// Generated functions of the mechanism, in the order of the description.
     const FUNCTIONS: &'static [Function<Self>];
 
     /// Creates the mechanism with these parameters, in the order of the description.

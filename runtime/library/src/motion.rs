@@ -11,11 +11,11 @@ use linkwork::simulate::{self, Overlaps, Sample};
 /// Integration method, with its step size or tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way<N> {
-    /// Dormand–Prince method of order 5, with its tolerance.
+    /// Dormand–Prince integration method of order 5, with its tolerance.
     DormandPrince(N),
-    /// Dormand–Prince method of order 8, with its tolerance.
+    /// Dormand–Prince integration method of order 8, with its tolerance.
     DormandPrince8(N),
-    /// Rosenbrock method of order 4 for stiff equations, with its tolerance.
+    /// Rosenbrock integration method of order 4 for stiff equations, with its tolerance.
     Rodas(N),
     /// Classical Runge–Kutta method of order 4, with its step size.
     Rk4(N),
@@ -34,7 +34,7 @@ pub enum Way<N> {
     TimeSteppingLeapfrog(N),
 }
 
-/// Interval between evaluations of the controller.
+/// Interval between calls of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every<N> {
     /// The controller is called at every evaluation of the dynamics.
@@ -46,27 +46,27 @@ pub enum Every<N> {
 /// Controller: function from time, configuration and velocity to the inputs.
 pub type Control<'a, N> = &'a mut dyn FnMut(N, &[N], &[N], &mut [N]) -> Result<(), Failure>;
 
-/// Settings of a simulation, and the array for its samples.
+/// Settings of a simulation, with the array that receives its samples.
 pub struct Motion<'a, N> {
-    /// Time at the start, s.
+    /// Initial time of the simulation, s.
     pub start: N,
-    /// Initial configuration.
+    /// Initial configuration of the simulation.
     pub q: &'a [N],
-    /// Initial velocity.
+    /// Initial velocity of the simulation.
     pub v: &'a [N],
-    /// Duration, s.
+    /// Duration of the simulation, s.
     pub duration: N,
     /// Time between samples, s.
     pub interval: N,
-    /// Integration method.
+    /// Integration method of the simulation.
     pub way: Way<N>,
     /// Interval between calls of the controller.
     pub every: Every<N>,
-    /// Controller.
+    /// Controller that computes the inputs.
     pub control: Control<'a, N>,
     /// Samples: rows of time, configuration, velocity and inputs.
     pub samples: &'a mut [N],
-    /// Number of rows that were written.
+    /// Number of sample rows that were written.
     pub count: usize,
 }
 

@@ -7,9 +7,9 @@ use linkwork::nalgebra::{IsometryMatrix3, SMatrix};
 use linkwork::{Lanes, OutputJacobians, Real};
 use std::fmt::Display;
 
-/// Scalar type of arrays.
+/// Scalar type of the library's arrays: `f64` or `f32`.
 pub trait Number: Real + Send + Sync + Display + Default {
-    /// The value NaN.
+    /// Value NaN of the scalar type.
     const NAN: Self;
 }
 
@@ -28,9 +28,9 @@ pub trait Entry<N>: Copy {
     fn read(numbers: &[N], at: usize, length: usize) -> Self;
     /// Writes entry `at` of every state, where a state has `length` entries.
     fn write(self, numbers: &mut [N], at: usize, length: usize);
-    /// Reads all entries of every state.
+    /// Reads all entries of every state from an array.
     fn read_all<const LENGTH: usize>(numbers: &[N]) -> [Self; LENGTH];
-    /// Writes all entries of every state.
+    /// Writes all entries of every state to an array.
     fn write_all(all: &[Self], numbers: &mut [N]);
 }
 
@@ -102,7 +102,7 @@ entry!(f64, f32);
 
 /// Argument of a generated function that is read from an array.
 pub trait Argument<N> {
-    /// Reads the argument.
+    /// Reads the argument from the numbers of an array.
     fn take(numbers: &[N]) -> Self;
 }
 
@@ -120,7 +120,7 @@ macro_rules! scalars {
             }
         }
 
-        /// Sign, such as an assembly mode: the integer part of the number.
+        /// Sign such as an assembly mode, read as the integer part of a number.
         impl Argument<$number> for i8 {
             fn take(numbers: &[$number]) -> Self {
                 numbers.first().map_or(0, |number| *number as i8)
@@ -154,11 +154,11 @@ scalars!(f64, f32);
 impl<N, E: Entry<N>, const R: usize, const C: usize> Argument<N> for SMatrix<E, R, C> {
     #[inline(always)]
     fn take(numbers: &[N]) -> Self {
-        let column = |column: usize| match C {
+        let read_column = |column: usize| match C {
             1 => E::read_all::<R>(numbers),
             _ => std::array::from_fn(|row| E::read(numbers, column * R + row, R * C)),
         };
-        SMatrix::from_array_storage(linkwork::nalgebra::ArrayStorage(std::array::from_fn(column)))
+        SMatrix::from_array_storage(linkwork::nalgebra::ArrayStorage(std::array::from_fn(read_column)))
     }
 }
 
@@ -180,7 +180,7 @@ impl<N: Number> Argument<N> for Marked {
     }
 }
 
-/// Arrays of all arguments of a function.
+/// Argument arrays of a function, one per argument.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a, N>(pub &'a [&'a [N]]);
 
@@ -205,7 +205,7 @@ pub struct Sink<'a, 'b, N> {
 }
 
 impl<'a, 'b, N> Sink<'a, 'b, N> {
-    /// Starts at the first array.
+    /// Creates a writer that starts at the first result array.
     pub fn new(arrays: &'a mut [&'b mut [N]]) -> Self {
         Sink { arrays, next: 0 }
     }

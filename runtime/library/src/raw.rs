@@ -8,7 +8,7 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-/// Return value of a call that succeeded.
+/// Return value of a C call that succeeded.
 pub const DONE: c_int = 0;
 /// Return value of a call that failed and set a message.
 pub const FAILED: c_int = 1;
@@ -74,8 +74,9 @@ pub unsafe fn call<M: Library>(
         let Some(f) = M::FUNCTIONS.get(function) else {
             return Err(Failure::new("there is no function with this number"));
         };
-        let fits = |one: &usize| one.checked_mul(states).is_some_and(|all| all < isize::MAX as usize / 8);
-        if !f.arguments.iter().chain(f.results).all(fits) {
+        let fits_in_memory =
+            |one: &usize| one.checked_mul(states).is_some_and(|all| all < isize::MAX as usize / 8);
+        if !f.arguments.iter().chain(f.results).all(fits_in_memory) {
             return Err(Failure::new("there are too many states"));
         }
         // SAFETY: guaranteed by the caller.
@@ -116,12 +117,12 @@ pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
 /// configuration, velocity, and the array for the inputs. It returns zero, or a nonzero value to end the run.
 pub type Controller<N> = unsafe extern "C" fn(*mut c_void, N, *const N, *const N, *mut N) -> c_int;
 
-/// Settings of a simulation.
+/// Settings of a simulation that is called from C.
 #[repr(C)]
 pub struct Settings<N> {
-    /// Time at the start, s.
+    /// Initial time of the simulation, s.
     pub start: N,
-    /// Duration, s.
+    /// Duration of the simulation, s.
     pub duration: N,
     /// Time between samples, s.
     pub interval: N,
@@ -129,13 +130,13 @@ pub struct Settings<N> {
     /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`,
     /// `time_stepping_leapfrog`, each with its step size, s.
     pub method: *const c_char,
-    /// Tolerance or step size.
+    /// Tolerance or step size of the integration method.
     pub setting: N,
     /// Interval between calls of the controller, s; zero to call it at every evaluation of the dynamics.
     pub period: N,
-    /// Controller, if any.
+    /// Controller that computes the inputs, if any.
     pub control: Option<Controller<N>>,
-    /// First argument of the controller.
+    /// Pointer that is passed to the controller as its first argument.
     pub user: *mut c_void,
 }
 
@@ -202,16 +203,16 @@ pub unsafe fn simulate<M: Library>(
     })))
 }
 
-/// Settings of a rollout.
+/// Settings of a rollout that is called from C: many states advanced by many steps.
 #[repr(C)]
 pub struct RolloutSettings<N> {
-    /// Time at the start, s.
+    /// Initial time of the rollout, s.
     pub start: N,
-    /// Length of a step, s.
+    /// Duration of one step, s.
     pub step: N,
-    /// Number of steps.
+    /// Number of steps of the rollout.
     pub steps: usize,
-    /// Number of states.
+    /// Number of states that are advanced.
     pub states: usize,
     /// Number of threads; zero for the number of processors.
     pub threads: usize,

@@ -9,27 +9,27 @@ use linkwork::{Batch, Lanes, Mechanism, discrete};
 
 /// Rollout of many states with the same number of steps.
 pub struct Rollout<'a, N> {
-    /// Time at the start, s.
+    /// Initial time of the rollout, s.
     pub start: N,
-    /// Length of a step, s.
+    /// Duration of one step, s.
     pub step: N,
-    /// Number of steps.
+    /// Number of steps of the rollout.
     pub steps: usize,
     /// Number of threads; zero for the number of processors.
     pub threads: usize,
-    /// Configurations of every state after 0, 1, 2, … steps; the first one is an argument, the others are
-    /// results.
+    /// Configurations of all states after 0, 1, 2, … steps. Those after 0 steps are an argument, the others
+    /// are results.
     pub q: &'a mut [N],
-    /// Velocities, in the same layout.
+    /// Velocities of all states after 0, 1, 2, … steps, in the layout of the configurations.
     pub v: &'a mut [N],
     /// Inputs of every state during the first, second, … step, or inputs that all states have in common.
     /// Empty for zero inputs.
     pub inputs: &'a [N],
-    /// Whether every state has its own inputs.
+    /// Whether each state has inputs of its own; otherwise all states share them.
     pub own_inputs: bool,
 }
 
-/// States that one thread advances.
+/// Range of states in a rollout that one thread advances.
 struct Part<'a, N> {
     first: usize,
     q: &'a mut [N],
@@ -37,7 +37,7 @@ struct Part<'a, N> {
     inputs: &'a [N],
 }
 
-/// Settings that all threads have in common.
+/// Settings of a rollout that all threads share.
 #[derive(Clone, Copy)]
 struct Plan<N> {
     start: N,
@@ -198,7 +198,7 @@ where
     failed
 }
 
-/// Advances eight states, one in each SIMD lane.
+/// Advances eight states together, one in each SIMD lane.
 fn side_by_side<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     plan: Plan<N>,

@@ -5,7 +5,7 @@
 use numpy::{AsSliceError, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Returns the entries of a contiguous vector.
+/// Returns the entries of a contiguous Python vector as a slice.
 pub fn entries<'a>(array: &'a Bound<'_, PyArray1<f64>>) -> Result<&'a [f64], AsSliceError> {
     // SAFETY: Python code, which could change the entries, does not run while the slice is used: callers hold
     // the lock of the interpreter, and drop the slice before they call it.

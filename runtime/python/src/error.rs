@@ -1,4 +1,4 @@
-//! Errors of mechanisms as exceptions of Python.
+//! Errors of mechanisms as Python exceptions.
 
 use linkwork_jit::Error;
 use pyo3::exceptions::PyValueError;
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-/// Returns `linkwork.Error` with a message.
+/// Returns the Python exception `linkwork.Error` with a message.
 pub fn failure(py: Python<'_>, message: String) -> PyErr {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     raise(py, &CLASS, "Error", message)

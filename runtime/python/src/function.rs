@@ -1,4 +1,4 @@
-//! Functions of mechanisms as methods of Python.
+//! Functions of mechanisms as methods of Python classes.
 
 use crate::arrays;
 use crate::error::exception;
@@ -22,7 +22,7 @@ use evaluator::placement;
 /// Maximum number of arguments of a function.
 const ARGUMENTS: usize = 12;
 
-/// An argument of a function.
+/// Argument of a mechanism's function, as Python sees it.
 #[derive(Clone)]
 struct Argument {
     name: String,
@@ -36,11 +36,11 @@ impl Argument {
     }
 }
 
-/// A result of a function.
+/// Result of a mechanism's function, as Python sees it.
 #[derive(Clone)]
 struct Output {
     name: String,
-    /// Lengths of its dimensions.
+    /// Length of each dimension of the result array.
     shape: Vec<usize>,
 }
 
@@ -50,13 +50,13 @@ impl Output {
     }
 }
 
-/// Computation of the results.
+/// Method by which the results of a function are computed.
 #[derive(Clone)]
 enum Kind {
     Generated(linkwork_jit::Function),
-    /// One function for each frame.
+    /// Function of a frame: one compiled function for each frame.
     Frames(Vec<linkwork_jit::Function>),
-    /// As `Frames`, with the placement as a matrix of four rows and columns.
+    /// Placement of a frame as a 4 × 4 matrix: one compiled function for each frame.
     Placements(Vec<linkwork_jit::Function>),
     Step,
     Transition,
@@ -80,12 +80,12 @@ struct Signature {
     documentation: String,
     arguments: Vec<Argument>,
     results: Vec<Output>,
-    /// Index of each frame.
+    /// Index of each frame by its name; empty if the function takes no frame.
     frames: HashMap<String, usize>,
     kind: Kind,
 }
 
-/// A function of a mechanism: a method of its class.
+/// Function of a mechanism, which is a method of the mechanism's Python class.
 #[pyclass(frozen, dict, module = "linkwork._native")]
 pub struct Function {
     signature: Arc<Signature>,
@@ -106,7 +106,8 @@ thread_local! {
 }
 
 impl BoundFunction {
-    /// Evaluates the function for one state whose arrays need no conversion. `None` for all other arguments.
+    /// Evaluates the function for one state if all arrays can be used without conversion; returns `None`
+    /// otherwise.
     fn single<'py>(
         &self,
         py: Python<'py>,
@@ -191,7 +192,7 @@ fn object<'py>(py: Python<'py>, shape: &[usize], values: &[f64]) -> Bound<'py, P
 
 #[pymethods]
 impl Function {
-    /// Returns the name, and the documentation.
+    /// Returns the name and the documentation of the function.
     #[getter]
     fn name_and_documentation(&self) -> (&str, &str) {
         (&self.signature.name, &self.signature.documentation)
@@ -206,7 +207,7 @@ impl Function {
         frame.into_iter().chain(others).collect()
     }
 
-    /// Returns name and shape of each result.
+    /// Returns name and shape of each result of the function.
     #[getter]
     fn results(&self) -> Vec<(&str, &[usize])> {
         self.signature.results.iter().map(|result| (result.name.as_str(), &*result.shape)).collect()
@@ -260,19 +261,19 @@ impl Function {
         let (factors, mut rest) = (factors.as_slice()?, out.as_slice_mut()?);
         let width = rest.len() / states.max(1);
         let failed = py.detach(|| {
-            let split = |count: usize| {
+            let split_leading_states = |count: usize| {
                 let (own, others) = std::mem::take(&mut rest).split_at_mut(count * width);
                 rest = others;
                 own
             };
-            distribute(states, threads, split, |first, count, own| {
+            distribute(states, threads, split_leading_states, |first, count, own| {
                 signature.differentiate(robot, frame, &lists, first..first + count, factors, own)
             })
         });
         failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
     }
 
-    /// Evaluates the function for many states. Arguments and results are contiguous arrays; an argument with
+    /// Evaluates the function for many states. Arguments and results are contiguous arrays. An argument with
     /// the entries of one state is common to all states. Matrices are stored by columns.
     #[pyo3(signature = (robot, frame, arguments, results, states, threads))]
     #[expect(clippy::too_many_arguments, reason = "they are the arguments of a function for Python")]
@@ -290,11 +291,11 @@ impl Function {
         let lists = arguments.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
         let mut outs = results.iter_mut().map(|array| array.as_slice_mut()).collect::<Result<Vec<_>, _>>()?;
         let lengths: Vec<usize> = signature.results.iter().map(Output::length).collect();
-        let work = |first: usize, count: usize, mut outs: Vec<&mut [f64]>| -> Failed {
+        let evaluate_states = |first: usize, count: usize, mut outs: Vec<&mut [f64]>| -> Failed {
             signature.many(robot, frame, &lists, first..first + count, &mut outs, &lengths)
         };
         let failed = py.detach(|| {
-            let split = |count: usize| {
+            let split_leading_states = |count: usize| {
                 let each = outs.iter_mut().zip(&lengths);
                 each.map(|(out, length)| {
                     let (own, rest) = std::mem::take(out).split_at_mut(count * length);
@@ -303,14 +304,14 @@ impl Function {
                 })
                 .collect::<Vec<_>>()
             };
-            distribute(states, threads, split, work)
+            distribute(states, threads, split_leading_states, evaluate_states)
         });
         failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
     }
 }
 
 impl Signature {
-    /// Evaluates consecutive states.
+    /// Evaluates the function for a range of consecutive states.
     fn many(
         &self,
         robot: &Robot,
@@ -378,7 +379,7 @@ impl BoundFunction {
         self.function.getattr(py, intern!(py, "__doc__"))
     }
 
-    /// Returns other attributes of the function.
+    /// Returns attributes that are not defined here from the unbound function.
     fn __getattr__(&self, py: Python<'_>, name: &Bound<'_, PyString>) -> PyResult<Py<PyAny>> {
         self.function.getattr(py, name)
     }

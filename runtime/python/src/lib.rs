@@ -11,7 +11,7 @@ mod shared;
 
 use pyo3::prelude::*;
 
-/// Declarations and robot files of the gallery.
+/// Embedded declarations and robot files of the model gallery.
 mod gallery {
     include!(concat!(env!("OUT_DIR"), "/gallery.rs"));
 }
@@ -30,7 +30,7 @@ mod _native {
     #[pymodule_export]
     use super::robot::{Robot, load, roll_back};
 
-    /// Path and text of a file.
+    /// Path and text of an embedded file.
     type File = (&'static str, &'static str);
 
     /// Returns path and text of the Rust files and of the robot files of the gallery.

@@ -1,4 +1,4 @@
-//! Simulations of mechanisms.
+//! Simulations of mechanisms for Python.
 
 use crate::error::exception;
 use crate::robot::Robot;
@@ -8,8 +8,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use std::sync::Mutex;
 
-/// Simulates a motion; returns samples, the reason why they end, and the exception of the controller. Rows of
-/// the samples are time, configuration, velocity, states of first order, and inputs.
+/// Simulates a motion for Python. Returns the samples, the reason why they end, and an exception of the
+/// controller. A row of samples is time, configuration, velocity, first-order states, and inputs.
 #[pyfunction]
 #[pyo3(signature = (robot, q, v, *, start, duration, every, method, setting, period, inputs, control))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
@@ -38,7 +38,7 @@ pub fn simulate<'py>(
     };
     let mut rows: Vec<f64> = Vec::new();
     let raised = Mutex::new(None);
-    let raise = |error: PyErr| {
+    let store_raised_error = |error: PyErr| {
         let mut raised = raised.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         raised.get_or_insert(error);
         Err("an exception".to_string())
@@ -50,7 +50,7 @@ pub fn simulate<'py>(
             // An interrupt of the user ends the run.
             calls += 1;
             if calls.is_multiple_of(1024) {
-                return Python::attach(|py| py.check_signals()).or_else(raise);
+                return Python::attach(|py| py.check_signals()).or_else(store_raised_error);
             }
             return Ok(());
         };
@@ -64,7 +64,7 @@ pub fn simulate<'py>(
                 u.iter_mut().zip(found).for_each(|(to, from)| *to = from);
                 Ok(())
             }
-            Err(error) => raise(error),
+            Err(error) => store_raised_error(error),
         }
     };
     let mut collect = |sample: Sample| {

@@ -1,4 +1,4 @@
-//! Pages that show motions.
+//! HTML pages that show motions of mechanisms.
 
 use crate::error::{exception, failure};
 use crate::robot::{Robot, loader};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Maximum number of coordinates, or inputs, that are plotted.
 const PLOTTED: usize = 12;
 
-/// Writes a page of HTML that shows a motion. The arrays have one row for each sample.
+/// Writes an HTML page that shows a motion. The arrays have one row for each sample.
 #[pyfunction]
 #[pyo3(signature = (robot, source, *, is_file, options, name, folder, meshes, times, q, u, path))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
@@ -49,10 +49,10 @@ pub fn write_page(
             let all = robot.frames().iter().map(|frame| placement(&timed, frame, row));
             placements.push(all.collect::<Result<Vec<_>, Error>>()?);
         }
-        let heights = |terrain: usize, at: [f64; 2]| drawing.heights(robot, at).get(terrain).copied();
+        let terrain_height = |terrain: usize, at: [f64; 2]| drawing.heights(robot, at).get(terrain).copied();
         let many = times.len() > 1;
-        let motion = || -> Result<(), linkwork_view::Error> {
-            let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
+        let write_motion = || -> Result<(), linkwork_view::Error> {
+            let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(terrain_height);
             for (title, list, values) in
                 [("Coordinates", robot.configuration(), q), ("Inputs", robot.inputs(), u)]
             {
@@ -62,7 +62,7 @@ pub fn write_page(
             }
             Page::new(robot.name()).text(robot.documentation()).motion(motion).write(&path)
         };
-        Ok(motion())
+        Ok(write_motion())
     });
     let written = written.map_err(|error| exception(py, &error, None))?;
     written.map_err(|error| failure(py, error.to_string()))
@@ -75,7 +75,11 @@ fn placement(robot: &linkwork_jit::Robot, frame: &str, q: &[f64]) -> Result<Isom
 
 /// Returns unit, name and values of each quantity.
 fn curves<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
-    let column = |k: usize| values.iter().skip(k).step_by(list.len()).copied().collect::<Vec<f64>>();
-    let all = list.iter().enumerate().map(|(k, entry)| (entry.unit.as_str(), entry.name.as_str(), column(k)));
+    let column_of_values =
+        |k: usize| values.iter().skip(k).step_by(list.len()).copied().collect::<Vec<f64>>();
+    let all = list
+        .iter()
+        .enumerate()
+        .map(|(k, entry)| (entry.unit.as_str(), entry.name.as_str(), column_of_values(k)));
     all.collect()
 }

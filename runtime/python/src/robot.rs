@@ -1,4 +1,4 @@
-//! Loaded mechanisms as objects of Python.
+//! Loaded mechanisms as Python objects.
 
 use crate::error::{exception, failure};
 use crate::function::Function;
@@ -19,7 +19,7 @@ use std::sync::Mutex;
 #[pyclass(frozen, module = "linkwork._native")]
 pub struct Robot {
     pub robot: linkwork_jit::Robot,
-    /// Sets of parameters one after the other, and their number.
+    /// Number of parameter sets, and their values one set after the other; `None` for a single set.
     pub sets: Option<(usize, Vec<f64>)>,
 }
 
@@ -90,7 +90,7 @@ impl Robot {
         Ok(about)
     }
 
-    /// Returns the functions of the mechanism.
+    /// Returns the functions of the mechanism as Python methods.
     fn functions(&self) -> Vec<Function> {
         Function::all(&self.robot)
     }
@@ -104,10 +104,10 @@ impl Robot {
     /// Returns index of the velocity, lower, upper, velocity and effort limit of each limited coordinate.
     fn limits(&self, py: Python<'_>) -> PyResult<Vec<LimitValues>> {
         let limits = self.robot.limits().map_err(|error| exception(py, &error, None))?;
-        let values = |limit: linkwork_jit::Limit| {
+        let tuple_of_limit = |limit: linkwork_jit::Limit| {
             (limit.index, limit.lower, limit.upper, limit.velocity, limit.effort)
         };
-        Ok(limits.into_iter().map(values).collect())
+        Ok(limits.into_iter().map(tuple_of_limit).collect())
     }
 
     /// Returns the number of states, if each has its own values of the parameters.
@@ -116,7 +116,7 @@ impl Robot {
         self.sets.as_ref().map(|(count, _)| *count)
     }
 
-    /// Returns the values of the parameters, one row for each state; NaN for parameters without a value.
+    /// Returns the values of the parameters, one row for each set; NaN for parameters without a value.
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let own = self.robot.parameter_values();
         let (count, values) = match &self.sets {
@@ -126,7 +126,8 @@ impl Robot {
         PyArray1::from_slice(py, values).reshape([count, own.len()])
     }
 
-    /// Returns the mechanism with values of the parameters: one set, or one for each state.
+    /// Returns the mechanism with new values of the parameters: one set, or one set for each state of a
+    /// batch.
     fn with_parameters(
         &self,
         py: Python<'_>,
@@ -146,8 +147,8 @@ impl Robot {
         Ok(Robot { robot, sets })
     }
 
-    /// Returns the mechanism with a table: grid points of each axis, and values of which those of the last
-    /// axis are next to each other.
+    /// Returns the mechanism with values for an interpolation table: grid points of each axis, and function
+    /// values with the last axis contiguous.
     fn with_table(
         &self,
         py: Python<'_>,
@@ -165,7 +166,7 @@ impl Robot {
     }
 
     /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and
-    /// velocities contain the initial ones.
+    /// velocities initially contain the initial states.
     #[pyo3(signature = (q, v, inputs, *, start, h, threads))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn roll_out(
@@ -186,7 +187,7 @@ impl Robot {
         let stepper = Stepper::new(&self.robot).map_err(|error| exception(py, &error, None))?;
         let sets = self.sets.as_ref();
         let zeros = vec![0.0; nu];
-        let advance = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
+        let simulate_states = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
             let mut stepper = stepper.clone();
             let mut failed = None;
             let states = q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
@@ -216,13 +217,13 @@ impl Robot {
             failed
         };
         let failed = py.detach(|| {
-            let split = |count: usize| {
+            let split_leading_states = |count: usize| {
                 let (own_q, rest_q) = std::mem::take(&mut q).split_at_mut(count * rows * nq);
                 let (own_v, rest_v) = std::mem::take(&mut v).split_at_mut(count * rows * nv);
                 (q, v) = (rest_q, rest_v);
                 (own_q, own_v)
             };
-            distribute(states, threads, split, advance)
+            distribute(states, threads, split_leading_states, simulate_states)
         });
         failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
     }
@@ -259,7 +260,7 @@ pub fn roll_back(
         by_parameters.as_slice_mut()?,
     );
     type Share<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64], &'a mut [f64]);
-    let work = |first: usize, count: usize, (by_q, by_v, by_u, by_p): Share<'_>| -> Failed {
+    let pull_back_states = |first: usize, count: usize, (by_q, by_v, by_u, by_p): Share<'_>| -> Failed {
         let mut stepper = match AdjointStepper::new(jit) {
             Ok(stepper) => stepper,
             Err(error) => return Some((first, error)),
@@ -283,9 +284,10 @@ pub fn roll_back(
                     let t = start + step as f64 * h;
                     stepper.step(t, start_of_step, h, &mut derivatives).map(|_| ())
                 });
-                let add = |to: &mut [f64], more: &[f64]| to.iter_mut().zip(more).for_each(|(a, b)| *a += b);
-                add(&mut at_q, &own_q[step * nq..(step + 1) * nq]);
-                add(&mut at_v, &own_v[step * nv..(step + 1) * nv]);
+                let add_entries =
+                    |to: &mut [f64], more: &[f64]| to.iter_mut().zip(more).for_each(|(a, b)| *a += b);
+                add_entries(&mut at_q, &own_q[step * nq..(step + 1) * nq]);
+                add_entries(&mut at_v, &own_v[step * nv..(step + 1) * nv]);
             }
             own_q[..nq].copy_from_slice(&at_q);
             own_v[..nv].copy_from_slice(&at_v);
@@ -296,7 +298,7 @@ pub fn roll_back(
         None
     };
     let failed = py.detach(|| {
-        let split = |count: usize| {
+        let split_leading_states = |count: usize| {
             let (q, other_q) = std::mem::take(&mut rest.0).split_at_mut(count * rows * nq);
             let (v, other_v) = std::mem::take(&mut rest.1).split_at_mut(count * rows * nv);
             let (u, other_u) = std::mem::take(&mut rest.2).split_at_mut(count * steps * nu);
@@ -304,12 +306,12 @@ pub fn roll_back(
             rest = (other_q, other_v, other_u, other_p);
             (q, v, u, p)
         };
-        distribute(states, threads, split, work)
+        distribute(states, threads, split_leading_states, pull_back_states)
     });
     failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
 }
 
-/// Sets the parameters of a state, if each state has its own.
+/// Sets the parameters of the mechanism to those of one state, if each state has its own.
 pub fn set_parameters(
     robot: &mut linkwork_jit::Robot,
     sets: Option<&(usize, Vec<f64>)>,
@@ -342,10 +344,10 @@ fn table(
     }
 }
 
-/// Lists with the same hash.
+/// Lists of numbers that have the same hash.
 type EqualHashes = Vec<&'static [f64]>;
 
-/// Returns a list that lives as long as the process; equal lists are one.
+/// Returns a list of numbers with static lifetime. Equal lists are stored once and never freed.
 fn keep(list: &[f64]) -> &'static [f64] {
     static LISTS: Mutex<Option<HashMap<u64, EqualHashes>>> = Mutex::new(None);
     let mut hasher = DefaultHasher::new();

@@ -1,16 +1,16 @@
-//! Distribution of states over threads.
+//! Distribution of the states of a batch over threads.
 
 use linkwork_jit::Error;
 use std::any::Any;
 
-/// Index of the first state that failed, and its error.
+/// First state of a batch that failed: its index, and the error.
 pub type Failed = Option<(usize, Error)>;
 
-/// Returns the number of states per thread: all for one thread, and equal shares else. Zero threads are as
-/// many as the machine has processors.
+/// Returns the number of states per thread: equal shares of all states. Zero threads mean as many as the
+/// machine has processors.
 fn share(states: usize, threads: usize) -> usize {
-    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = if threads == 0 { processors() } else { threads };
+    let count_processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if threads == 0 { count_processors() } else { threads };
     states.div_ceil(threads.clamp(1, states.max(1))).max(1)
 }
 
@@ -46,7 +46,7 @@ pub fn distribute<P: Send>(
     })
 }
 
-/// Returns the text of a panic.
+/// Returns the message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_string())

@@ -10,10 +10,10 @@ use crate::Real;
 
 /// Body of function number `K` of a mechanism, which takes `Arguments`.
 pub trait Evaluate<const K: usize, Arguments> {
-    /// Type of the result.
+    /// Type of the result of the function body.
     type Output;
 
-    /// Evaluates the body; always inlined.
+    /// Evaluates the function body; always inlined.
     fn evaluate<A: Arithmetic>(&self, arguments: Arguments) -> Self::Output;
 }
 

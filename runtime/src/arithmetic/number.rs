@@ -11,9 +11,9 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Number<A: Registers>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Returns the nearest number to `x`.
+    /// Returns the number of this scalar type that is nearest to `x`.
     fn constant(x: f64) -> Self;
-    /// Returns `a b + c`, rounded once.
+    /// Returns `a b + c` with a single rounding.
     fn fused(a: Self, b: Self, c: Self) -> Self;
 }
 
@@ -91,8 +91,8 @@ macro_rules! elementary {
             }
 
             fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self {
-                let lane = |k: usize| x.each_ref().map(|x| x.numbers()[k]);
-                Self::from_array(core::array::from_fn(|k| table.derivative(lane(k), orders)))
+                let numbers_of_lane = |k: usize| x.each_ref().map(|x| x.numbers()[k]);
+                Self::from_array(core::array::from_fn(|k| table.derivative(numbers_of_lane(k), orders)))
             }
         }
     };

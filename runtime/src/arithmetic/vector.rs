@@ -1,4 +1,4 @@
-//! Lanes within a generated body.
+//! SIMD vectors of lanes that generated function bodies compute with.
 
 use crate::lanes::Registers;
 #[cfg(feature = "std")]
@@ -20,7 +20,7 @@ impl<A, T, const N: usize> From<Lanes<T, N>> for Vector<A, T, N> {
 }
 
 impl<A, T, const N: usize> Vector<A, T, N> {
-    /// Returns lanes as vectors.
+    /// Converts lanes to SIMD vectors without copying.
     #[inline(always)]
     pub fn from_lanes<const R: usize>(lanes: &[Lanes<T, N>; R]) -> &[Self; R] {
         #[expect(unsafe_code, reason = "no safe function converts references to transparent types")]
@@ -53,8 +53,8 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         self.0
     }
 
-    /// Returns one lane. Does not compile if there are fewer. Takes a reference, because without optimisation
-    /// every copy needs stack.
+    /// Returns lane `K` of the vector. Fails to compile if there are fewer lanes. Takes a reference, because
+    /// without optimisation every copy needs stack.
     #[inline(always)]
     pub fn lane<const K: usize>(&self) -> T {
         const { assert!(K < N, "there are fewer lanes") };

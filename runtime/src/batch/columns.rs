@@ -1,10 +1,10 @@
-//! Structures of arrays: for every entry of a vector, its values in all states one after another.
+//! Structures of arrays for batches: for every entry of a vector, the values in all states are contiguous.
 
 use super::Error;
 use crate::{Lanes, Real};
 use nalgebra::SMatrix;
 
-/// Lanes aligned to cache lines.
+/// Lanes of values, aligned to cache lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Line<T>(pub(super) T);
@@ -85,8 +85,8 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
     /// Splits into the states before index `at` and the states from `at` on.
     #[cfg(feature = "rayon")]
     pub(super) fn split(self, at: usize) -> (Self, Self) {
-        let none = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
-        let (mut before, mut after): ([[_; R]; C], [[_; R]; C]) = (none(), none());
+        let empty_columns = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
+        let (mut before, mut after): ([[_; R]; C], [[_; R]; C]) = (empty_columns(), empty_columns());
         let halves = before.iter_mut().flatten().zip(after.iter_mut().flatten());
         for (all, (before, after)) in self.entries.into_iter().flatten().zip(halves) {
             (*before, *after) = all.split_at_mut_checked(at).unwrap_or_default();
@@ -118,7 +118,7 @@ impl<T: Real, const R: usize> Output<'_, T, R, 1> {
         Line(SMatrix::from_fn(|i, _| load(self.entries[0][i], first)))
     }
 
-    /// Stores one state from a lane.
+    /// Stores the values of one state, which are in one lane.
     pub(super) fn store_one<const L: usize>(
         &mut self,
         state: usize,

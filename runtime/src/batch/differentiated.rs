@@ -8,14 +8,14 @@ use crate::lanes::{lane, set_lane};
 use crate::{Lanes, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Result of one state that is stored in a lane.
+/// Result of a function for one state, which can be stored in a lane.
 trait Laned<T: Real, const L: usize> {
-    /// Type of the results in all lanes.
+    /// Type that holds the results of all lanes.
     type All;
 
     fn none() -> Self::All;
 
-    /// Writes the result to lane `k`.
+    /// Writes the result of one state to lane `k`.
     fn write_lane(self, all: &mut Self::All, k: usize);
 }
 
@@ -58,7 +58,7 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
     }
 }
 
-/// Returns the results of all lanes.
+/// Returns the results of all lanes, each computed by `of`.
 fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
     let mut all = R::none();
     for k in 0..L {

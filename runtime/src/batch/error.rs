@@ -1,4 +1,4 @@
-//! Errors of batches.
+//! Errors of batch functions and rollouts.
 
 use crate::integrate;
 use core::fmt;
@@ -9,32 +9,32 @@ use core::fmt;
 pub enum Error {
     /// The length of a slice does not match the number of states. Nothing was written.
     Length {
-        /// Name of the argument.
+        /// Name of the argument with the wrong length.
         name: &'static str,
-        /// Expected length.
+        /// Expected length of the argument.
         expected: usize,
-        /// Length of the slice.
+        /// Actual length of the argument.
         found: usize,
     },
     /// A setting of the method is invalid. Nothing was written.
     Method(integrate::Error),
     /// The motion of some states failed before the end. These states are unchanged; all others are done.
     Motion {
-        /// Index of the first failed state.
+        /// Index of the first state that failed.
         state: usize,
-        /// Number of failed states.
+        /// Number of states that failed.
         count: usize,
-        /// Error of the first failed state.
+        /// Error of the first state that failed.
         source: integrate::Error,
     },
     /// The caller cancelled the rollout. Every state is either done or unchanged.
     Cancelled {
-        /// Number of states that are done.
+        /// Number of states that were done before the cancellation.
         done: usize,
     },
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

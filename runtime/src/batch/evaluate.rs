@@ -5,7 +5,7 @@ use super::{Batch, Error, Lanewise};
 use crate::{Lanes, Mechanism};
 use nalgebra::SMatrix;
 
-/// Defines the method of one function, given the names and numbers of entries of its arguments and result.
+/// Defines the batch method of each listed function, from the names and lengths of its arguments and result.
 macro_rules! evaluations {
     ($(
         $(#[$doc:meta])*
@@ -49,21 +49,22 @@ macro_rules! evaluations {
 /// [`Error::Length`] for a slice of the wrong length; nothing is written then.
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
-        /// Computes `q ⊕ dv` ([`Mechanism::integrate`]).
+        /// Computes configurations `q ⊕ dv` for many states ([`Mechanism::integrate`]).
         integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector;
         /// Computes mass matrices ([`Mechanism::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
         mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector;
-        /// Computes bias forces ([`Mechanism::bias_forces`]).
+        /// Computes bias forces for many states ([`Mechanism::bias_forces`]).
         bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector;
-        /// Computes inverse dynamics ([`Mechanism::inverse_dynamics`]).
+        /// Computes inverse dynamics for many states ([`Mechanism::inverse_dynamics`]).
         inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector;
-        /// Computes forward dynamics ([`Mechanism::forward_dynamics`]).
+        /// Computes forward dynamics for many states ([`Mechanism::forward_dynamics`]).
         forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector;
-        /// Computes generalized forces of inputs ([`Mechanism::generalized_forces`]).
+        /// Computes generalized forces of inputs for many states ([`Mechanism::generalized_forces`]).
         generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector;
-        /// Computes kinetic energies ([`Mechanism::kinetic_energy`]), one number per state.
+        /// Computes kinetic energies for many states ([`Mechanism::kinetic_energy`]), one number per state.
         kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar;
-        /// Computes potential energies ([`Mechanism::potential_energy`]), one number per state.
+        /// Computes potential energies for many states ([`Mechanism::potential_energy`]), one number per
+        /// state.
         potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar;
     }
 }

@@ -1,4 +1,4 @@
-//! Mechanisms with lanes as their scalar type.
+//! Adapter that makes a mechanism evaluate several states in SIMD lanes as its scalar type.
 
 use super::{Batch, Column};
 use crate::blocks::zeros;
@@ -10,8 +10,8 @@ use crate::{ByMotion, ConstraintError, Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// Mechanism with `L` lanes as its scalar type, made by [`Batch::lanes`], which evaluates several states in
-/// one call. It is itself a [`Mechanism`].
+/// Mechanism whose scalar type is `L` SIMD lanes, created by [`Batch::lanes`]. It evaluates several states in
+/// one call, and is itself a [`Mechanism`].
 #[derive(Debug)]
 pub struct Lanewise<'m, M, const L: usize> {
     pub(super) mechanism: &'m M,
@@ -26,7 +26,7 @@ impl<M, const L: usize> Clone for Lanewise<'_, M, L> {
 impl<M, const L: usize> Copy for Lanewise<'_, M, L> {}
 
 impl<'m, M, const L: usize> Lanewise<'m, M, L> {
-    /// Returns `mechanism.lanes::<L>()`.
+    /// Wraps a mechanism for evaluation in lanes, as `mechanism.lanes::<L>()` does.
     pub fn new(mechanism: &'m M) -> Self {
         Self { mechanism }
     }
@@ -117,11 +117,11 @@ where
             return Err(*error);
         }
         let nothing = M::Scalar::zero() / M::Scalar::zero();
-        let state = |k: usize| match &results[k] {
+        let state_of_lane = |k: usize| match &results[k] {
             Ok(state) => *state,
             Err(_) => (SVector::repeat(nothing), SVector::repeat(nothing)),
         };
-        Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
+        Ok((lane_by_lane(|k| state_of_lane(k).0), lane_by_lane(|k| state_of_lane(k).1)))
     }
 
     /// Whether the state of any lane is nearly singular; all lanes then use accelerations.
@@ -134,7 +134,7 @@ where
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
 
-    /// Computes the derivatives lane by lane.
+    /// Computes the derivatives of the accelerations for each lane separately.
     fn acceleration_derivatives(
         &self,
         t: Lanes<M::Scalar, L>,
@@ -153,7 +153,7 @@ where
         Some(all)
     }
 
-    /// Transports the velocity lane by lane.
+    /// Computes the transported velocity for each lane separately.
     fn carry(
         &self,
         t: Lanes<M::Scalar, L>,
@@ -164,8 +164,8 @@ where
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
-    /// Computes the start lane by lane; an error in any lane, such as overlapping surfaces, is an error of
-    /// all.
+    /// Computes the initial configuration of motion with contacts for each lane separately. An error in one
+    /// lane, such as overlapping surfaces, is an error of all lanes.
     fn contact_start(
         &self,
         t: Lanes<M::Scalar, L>,
@@ -208,11 +208,11 @@ where
         }
         let nothing = M::Scalar::zero() / M::Scalar::zero();
         let lost = Touched::free(SVector::repeat(nothing), SVector::repeat(nothing));
-        let result = |k: usize| results[k].unwrap_or(lost);
-        let [v, held] = [lane_by_lane(|k| result(k).v), lane_by_lane(|k| result(k).held)];
-        let violation = Lanes(core::array::from_fn(|k| result(k).violation));
-        let impulses = Impulses::from_lists(|i| lane_by_lane(|k| result(k).impulses.list(i)));
-        Ok(Touched { q: lane_by_lane(|k| result(k).q), v, held, impulses, violation })
+        let result_of_lane = |k: usize| results[k].unwrap_or(lost);
+        let [v, held] = [lane_by_lane(|k| result_of_lane(k).v), lane_by_lane(|k| result_of_lane(k).held)];
+        let violation = Lanes(core::array::from_fn(|k| result_of_lane(k).violation));
+        let impulses = Impulses::from_lists(|i| lane_by_lane(|k| result_of_lane(k).impulses.list(i)));
+        Ok(Touched { q: lane_by_lane(|k| result_of_lane(k).q), v, held, impulses, violation })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

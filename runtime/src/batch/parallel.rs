@@ -1,4 +1,4 @@
-//! Rollouts on all processors.
+//! Rollouts of many states on all processors.
 
 use super::rollout::{Part, Tally};
 use super::{Batch, Error, Lanewise, Lockstep, Progress, Rollout};
@@ -7,10 +7,10 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use nalgebra::SVector;
 
-/// Number of groups of lanes that one thread processes without further splitting.
+/// Number of lane groups that one thread processes without splitting them among further threads.
 const GRAIN: usize = 4;
 
-/// Data shared by all threads.
+/// Progress and cancellation flag of a rollout, shared by all threads.
 struct Shared<W> {
     watch: W,
     done: AtomicUsize,

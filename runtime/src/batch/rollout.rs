@@ -9,13 +9,13 @@ use crate::{Lanes, Real};
 use core::ops::ControlFlow;
 use nalgebra::{ComplexField, SVector};
 
-/// Method whose sequence of operations does not depend on the values, so that states can be advanced together
-/// in lanes: one with fixed steps and without iteration.
+/// Integration method whose sequence of operations does not depend on the values, so that several states can
+/// be advanced together in SIMD lanes: fixed steps and no iteration.
 pub trait Lockstep<T: Real>: Method<T> {
-    /// Whether steps of constrained mechanisms iterate, so that their states are advanced one by one.
+    /// Whether steps of constrained mechanisms iterate. Their states are then advanced one by one.
     const ITERATES_CONSTRAINTS: bool = false;
 
-    /// Method with lanes as its scalar type.
+    /// Same integration method with SIMD lanes as its scalar type.
     type Wide<const L: usize>: Method<Lanes<T, L>>;
 
     /// Returns the method with the same step in all lanes.
@@ -54,19 +54,19 @@ impl<T: Real, S: Lockstep<T>> Rollout<T, S> {
         Self { method, steps, start: T::zero() }
     }
 
-    /// Sets the start time `t`, s.
+    /// Sets the initial time `t` of the rollout, s.
     #[must_use]
     pub fn from_time(self, t: T) -> Self {
         Self { start: t, ..self }
     }
 }
 
-/// Progress of a rollout.
+/// Progress of a rollout: how many states are done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Number of states that are done.
     pub done: usize,
-    /// Total number of states.
+    /// Total number of states in the rollout.
     pub count: usize,
 }
 
@@ -75,14 +75,14 @@ pub fn unwatched(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Outcome of a range of the states.
+/// Outcome of a rollout for a range of states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
-    /// Number of states that are done, including failed ones.
+    /// Number of states in the range that are done, including failed ones.
     pub(super) done: usize,
-    /// Number of states that failed.
+    /// Number of states in the range that failed.
     pub(super) failed: usize,
-    /// Index of the first failed state, and its error.
+    /// Index of the first state that failed, and the error.
     pub(super) first: Option<(usize, integrate::Error)>,
     /// Whether the caller cancelled the rollout.
     pub(super) cancelled: bool,
@@ -193,8 +193,8 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count })).result()
     }
 
-    /// Rolls out one group of lanes after another; `watch` receives the number of states of the range that
-    /// are done.
+    /// Rolls out a range of states, one group of lanes after another. `watch` receives the number of states
+    /// of the range that are done.
     pub(super) fn roll_out_part<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
@@ -285,7 +285,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         group
     }
 
-    /// Advances the states of a group one after another.
+    /// Advances the states of a group one after another, instead of together in lanes.
     fn one_by_one<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,

@@ -7,7 +7,7 @@ use crate::arithmetic::{Arithmetic, Compiled, Vector};
 use crate::multiplication::part;
 use nalgebra::SMatrix;
 
-/// Matrix that equals the identity outside one contiguous range of rows and columns.
+/// Matrix `D` that equals the identity outside one contiguous range of rows and columns.
 pub struct NearlyIdentity<'a, T, const N: usize> {
     matrix: &'a SMatrix<T, N, N>,
     first: usize,
@@ -56,7 +56,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         NearlyIdentity { matrix: into, first: self.first, end: self.end }
     }
 
-    /// Replaces `A` by `A D`.
+    /// Replaces a matrix `A` by the product `A D` with this matrix `D`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
             self.follow_by::<R, N>(a)
@@ -83,7 +83,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Replaces `A` by `D A`.
+    /// Replaces a matrix `A` by the product `D A` with this matrix `D`.
     pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         if self.end - self.first.min(self.end) > 8 {
             return self.lead_many(a);
@@ -94,7 +94,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Writes `s D A` to a matrix.
+    /// Writes the product `s D A` with this matrix `D` to another matrix.
     pub fn lead_multiple_into<const C: usize>(
         &self,
         s: T,
@@ -122,7 +122,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
 
-    /// Replaces a column for [`lead`](Self::lead).
+    /// Replaces one column `x` by `D x`, as a step of [`lead`](Self::lead).
     #[inline(always)]
     fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
         let sum = self.rows(column, start);

@@ -17,8 +17,8 @@ pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize
     if R > 4 { columns::<A, T, 2, R, K>(sums, a, b) } else { columns::<A, T, 1, R, K>(sums, a, b) }
 }
 
-/// Computes the product with rows in `V` registers of four. The last register overlaps the previous one if
-/// fewer rows remain; all rows are read before any is written.
+/// Computes columns of a matrix product with their rows in `V` registers of four. If fewer rows remain, the
+/// last register overlaps the previous one; all rows are read before any is written.
 #[inline(always)]
 fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
     sums: &mut [[T; R]],
@@ -43,7 +43,7 @@ fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usiz
     }
 }
 
-/// Reads a column into registers.
+/// Reads a matrix column into registers of four.
 #[inline(always)]
 fn read<A: Arithmetic, T: Real, const V: usize>(column: &[T]) -> [Vector<A, T, 4>; V] {
     let mut registers = [A::splat(T::zero()); V];

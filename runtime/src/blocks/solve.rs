@@ -1,4 +1,5 @@
-//! Solution of symmetric linear systems for many right-hand sides, one register of them at a time.
+//! Solution of symmetric linear systems for many right-hand sides, one SIMD register of right-hand sides at a
+//! time.
 
 use super::{transposed, zeros};
 use crate::Real;
@@ -7,8 +8,8 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::multiplication::{part, registers_of_eight, registers_of_four, write_entries};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Returns `L` (below the diagonal) and `1/D` of the factorisation `H + r = L D Lᵀ`, with ones on the
-/// diagonal of `L`; the error is the index of a pivot that is not positive.
+/// Returns the factors `L` (below the diagonal) and `1/D` of `H + r = L D Lᵀ`, where `L` has ones on its
+/// diagonal. The error is the index of a pivot that is not positive.
 pub fn factors<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
     regularisation: T,
@@ -31,11 +32,11 @@ pub fn factors<T: Real, const N: usize>(
         }
         l[j] = scaled;
     }
-    let storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
-    Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
+    let matrix_from_storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
+    Ok((matrix_from_storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// Replaces `B` by `−(L D Lᵀ)⁻¹ B`.
+/// Replaces the matrix `B` by `−(L D Lᵀ)⁻¹ B`.
 pub fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -44,7 +45,7 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
     *b = transposed(&solved_rows(l, inverse, &transposed(b)));
 }
 
-/// Returns `−B (L D Lᵀ)⁻¹`.
+/// Returns the matrix `−B (L D Lᵀ)⁻¹`.
 fn solved_rows<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -66,7 +67,7 @@ pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
 }
 
-/// Factors and right-hand sides of a linear system.
+/// Factors and right-hand sides of a symmetric linear system.
 pub(super) struct Solve<'a, T, const N: usize, const R: usize> {
     pub(super) l: &'a SMatrix<T, N, N>,
     pub(super) inverse: &'a SVector<T, N>,
@@ -95,7 +96,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
 }
 
 impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
-    /// Solves for one register of right-hand sides, from a given one on.
+    /// Solves the linear system for one register of right-hand sides, beginning with the one at index `from`.
     #[inline(always)]
     fn some<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
         let (l, inverse) = (&self.l.data.0, &self.inverse.data.0[0]);

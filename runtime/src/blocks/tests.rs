@@ -4,7 +4,8 @@ use super::solve::Solve;
 use super::*;
 use crate::multiplication::testing::numbers;
 
-/// Checks a product of `R` rows, added to a matrix, and solutions for `R` right-hand sides.
+/// Checks the product of a matrix of `R` rows that is added to another matrix, and solutions of linear
+/// systems for `R` right-hand sides.
 fn check<A: Arithmetic, const R: usize, const C: usize>() {
     let (a, b, start) = (numbers::<R, 5>(0.0), numbers::<5, C>(1.0), numbers::<R, C>(2.0));
     let mut found = start;

@@ -5,11 +5,11 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// Maximum number of steps of one descent.
+/// Maximum number of steps of one descent from a starting point towards an assembled configuration.
 const MOST_STEPS: usize = 200;
 
-/// Maximum change of an angle in one step, rad. Short steps from a guess near an assembly mode lead to this
-/// mode.
+/// Maximum change of an angle in one step of assembly, rad. With short steps, a guess near an assembly mode
+/// leads to this mode.
 const LONGEST: f64 = 0.3;
 
 /// Number of further starting points around the guess. Their distances grow from `NEAR` to `FAR`, m or rad.
@@ -21,7 +21,7 @@ const ROUNDS: usize = 8;
 
 /// Constraints of a mechanism with or without inertia, for assembly.
 pub struct Loops<'a, R, J, I, const NV: usize, const NC: usize> {
-    /// Names of the constraints.
+    /// Names of the constraints that assembly satisfies.
     pub names: [&'static str; NC],
     /// Indices of the entries of `q` that are angles.
     pub angles: &'a [usize],
@@ -99,8 +99,8 @@ pub fn assemble<
 
 /// Returns the number of revolutions by which an angle differs from that of the guess.
 fn turns<T: Real, const NQ: usize>(guess: &SVector<T, NQ>, q: &SVector<T, NQ>, k: usize) -> T {
-    let entry = |q: &SVector<T, NQ>| q.get(k).copied().unwrap_or(T::zero());
-    (entry(q) - entry(guess)) / T::two_pi()
+    let coordinate_entry = |q: &SVector<T, NQ>| q.get(k).copied().unwrap_or(T::zero());
+    (coordinate_entry(q) - coordinate_entry(guess)) / T::two_pi()
 }
 
 /// Subtracts whole revolutions from angles that are more than half a revolution from the guess, if the result
@@ -119,7 +119,7 @@ fn unwind<
     guess: &SVector<T, NQ>,
     q: SVector<T, NQ>,
 ) -> SVector<T, NQ> {
-    let unwind = |mut q: SVector<T, NQ>, angles: &[usize]| {
+    let remove_whole_turns = |mut q: SVector<T, NQ>, angles: &[usize]| {
         for k in angles {
             let whole = turns(guess, &q, *k).round();
             if let Some(angle) = q.get_mut(*k) {
@@ -128,16 +128,16 @@ fn unwind<
         }
         q
     };
-    let holds = |q: &SVector<T, NQ>| {
+    let satisfies_constraints = |q: &SVector<T, NQ>| {
         largest(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_acceptable(residual, q))
     };
-    let all = unwind(q, loops.angles);
-    if all == q || holds(&all) {
+    let all = remove_whole_turns(q, loops.angles);
+    if all == q || satisfies_constraints(&all) {
         return all;
     }
     loops.angles.chunks(1).fold(q, |q, angle| {
-        let next = unwind(q, angle);
-        if holds(&next) { next } else { q }
+        let next = remove_whole_turns(q, angle);
+        if satisfies_constraints(&next) { next } else { q }
     })
 }
 
@@ -214,7 +214,7 @@ pub fn least_violation<
     Ok(q)
 }
 
-/// Returns the step, scaled such that no angle changes by more than [`LONGEST`].
+/// Returns an assembly step that is scaled such that no angle changes by more than [`LONGEST`].
 fn bounded<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bool; NV]) -> SVector<T, NV> {
     let angles = step.iter().zip(turns).filter(|(_, turns)| **turns);
     let longest = angles.fold(T::zero(), |longest, (angle, _)| longest.max(angle.abs()));
@@ -253,14 +253,14 @@ where
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
 {
     let [holonomic, velocities] = loops.sizes;
-    let is_held = |k: usize| held.contains(&k) || k >= velocities;
-    if holonomic + (0..NV).filter(|k| is_held(*k)).count() != NV {
+    let is_held_velocity = |k: usize| held.contains(&k) || k >= velocities;
+    if holonomic + (0..NV).filter(|k| is_held_velocity(*k)).count() != NV {
         return None;
     }
     // One row per constraint, then one per held velocity.
     let open = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
     let mut rows = [[T::zero(); NV]; NV];
-    let mut fixed = (0..NV).filter(|k| is_held(*k));
+    let mut fixed = (0..NV).filter(|k| is_held_velocity(*k));
     for (i, row) in rows.iter_mut().enumerate() {
         if i < NH && i < holonomic {
             *row = core::array::from_fn(|j| open[(i, j)]);

@@ -1,5 +1,6 @@
-//! Rank-revealing solution for accelerations and multipliers. It is used where straight-line elimination
-//! would lose digits: with light and heavy bodies in one loop, and in or near singular configurations.
+//! Rank-revealing solution for accelerations and multipliers of constrained motion. It is used where
+//! elimination with a fixed order of pivots would lose digits: with light and heavy bodies in one loop, and
+//! in or near singular configurations.
 
 mod passing;
 
@@ -13,7 +14,7 @@ use passing::size;
 /// Structure of a mechanism's constraints, which does not depend on the state.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure<'a, const NC: usize> {
-    /// Group of each constraint. Constraints of one group are components of one vector.
+    /// Group of each constraint. Constraints of one group are components of one vector equation.
     pub groups: [usize; NC],
     /// Indices of the constraints that determine coordinates without inertia.
     pub determining: &'a [usize],
@@ -75,8 +76,9 @@ where
     system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
 }
 
-/// Returns the relative magnitude above which rows are well-conditioned: entries relative to the numbers that
-/// they were computed from. A configuration is regular if all independent rows are well-conditioned.
+/// Returns the relative magnitude above which constraint rows are well-conditioned; entries are relative to
+/// the numbers that they were computed from. A configuration is regular if all independent rows are
+/// well-conditioned.
 fn zone<T: Real>() -> T {
     epsilon::<T>().cbrt().sqrt()
 }
@@ -137,15 +139,15 @@ where
     (answer.0 + correction.0, answer.1 + correction.1)
 }
 
-/// Returns the minimum relative magnitude near a singular configuration of rows with known directions, for
-/// the residuals `left`. With a residual `r`, the configuration is off its branch by `r` / σ. Directions
-/// rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
+/// Returns the minimum relative magnitude of constraint rows with known directions near a singular
+/// configuration, for the residuals `left`. With a residual `r`, the configuration is off its branch by `r` /
+/// σ. Directions rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
 pub(super) fn minimum_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
 }
 
 /// Returns whether a configuration is singular, or so close to a singular one that a step by `dv` changes the
-/// constraints as much as they differ from dependent ones.
+/// constraint rows as much as they differ from linearly dependent ones.
 #[cold]
 #[inline(never)]
 pub fn nearly_singular<
@@ -170,7 +172,7 @@ where
     let still = System { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
     let metric = Metric::new(&still.loaded(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
-    let length = |j: &SMatrix<T, NC, NV>, k: usize| {
+    let weighted_column_length = |j: &SMatrix<T, NC, NV>, k: usize| {
         norm(&metric.half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
     };
     // A configuration is nearly singular if a few such steps would rotate the constraints more than they
@@ -179,8 +181,8 @@ where
     let (steps, most) = (constant::<T>(3.0), constant::<T>(0.2));
     let change = later - jacobian;
     let turn = (0..NC).fold(T::zero(), |most, k| {
-        let own = length(&jacobian, k);
-        if own > T::zero() { most.max(length(&change, k) / own) } else { most }
+        let own = weighted_column_length(&jacobian, k);
+        if own > T::zero() { most.max(weighted_column_length(&change, k) / own) } else { most }
     });
     // In single precision, rows of this magnitude are dropped anyway.
     let least = safe_distance::<T>().min(constant(0.07));
@@ -203,20 +205,20 @@ fn beyond<T: Real>() -> T {
     if epsilon::<T>() < constant(1e-10) { constant(1e-4) } else { constant(1e-2) }
 }
 
-/// Treatment of nearly dependent rows.
+/// Treatment of nearly dependent constraint rows in the rank-revealing solution.
 #[derive(Clone, Copy)]
 enum Weak<T, const NV: usize> {
     /// Accelerations that well-conditioned rows do not determine are these.
     Known(SVector<T, NV>),
-    /// All rows above rounding errors are used.
+    /// Uses all constraint rows above rounding errors.
     Taken,
-    /// Rows above this relative magnitude are used.
+    /// Uses the constraint rows above this relative magnitude.
     Down(T),
-    /// Nearly dependent rows are dropped.
+    /// Drops nearly dependent constraint rows.
     Dropped,
 }
 
-/// Linear equations for accelerations and multipliers.
+/// Linear equations for the accelerations and multipliers of constrained motion.
 #[derive(Clone, Copy)]
 struct System<T, const NV: usize, const NC: usize> {
     mass: SMatrix<T, NV, NV>,
@@ -335,7 +337,7 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 /// Triangular factor `R` of the columns, relative to their lengths; `Rᵀ = U S` if not all columns are in the
 /// basis.
 struct Triangle<T, const NC: usize> {
-    /// Whether all rows but those of zeros are in the basis.
+    /// Whether all nonzero rows are in the basis.
     full: bool,
     base: [[T; NC]; NC],
     upper: [[T; NC]; NC],

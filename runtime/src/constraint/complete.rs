@@ -1,12 +1,13 @@
 //! Completion of velocities and accelerations: some entries are prescribed, and the others follow from the
-//! constraints. Also the drive forces for such a motion.
+//! constraints. Also computes the drive forces for such a motion.
 
 use super::{Constrained, ConstraintError, farthest, is_acceptable, largest, reach, rounding};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// Maximum number of corrections: the first one solves the equations, the others remove its rounding errors.
+/// Maximum number of corrections in a completion: the first one solves the equations, the others remove its
+/// rounding errors.
 const MAX_CORRECTIONS: usize = 3;
 
 /// Returns an error for the first of the indices `held` that is not less than `NV`.
@@ -59,8 +60,9 @@ where
 {
     check::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
-    let rates = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
-    let (v, (worst, size)) = corrected(&mass, &jacobian, held, *v, rates, |size, v| size <= rounding(v))?;
+    let constraint_rates_of_velocity = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
+    let (v, (worst, size)) =
+        corrected(&mass, &jacobian, held, *v, constraint_rates_of_velocity, |size, v| size <= rounding(v))?;
     if is_acceptable(size, &v) {
         return Ok(v);
     }
@@ -93,18 +95,18 @@ where
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let bias = mechanism.constraint_bias(t, q, v);
     // Magnitude of the terms of the gap, relative to which it is rounded.
-    let scale = |a: &SVector<T, NV>| reach(&bias).max(reach(a) * farthest(&jacobian));
-    let gap = |a: &SVector<T, NV>| jacobian * a + bias;
-    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * scale(a);
-    let (a, (worst, size)) = corrected(&mass, &jacobian, held, *a, gap, is_exact)?;
-    if size <= epsilon::<T>().sqrt() * scale(&a) {
+    let scale_of_acceleration = |a: &SVector<T, NV>| reach(&bias).max(reach(a) * farthest(&jacobian));
+    let acceleration_residual = |a: &SVector<T, NV>| jacobian * a + bias;
+    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * scale_of_acceleration(a);
+    let (a, (worst, size)) = corrected(&mass, &jacobian, held, *a, acceleration_residual, is_exact)?;
+    if size <= epsilon::<T>().sqrt() * scale_of_acceleration(&a) {
         return Ok(a);
     }
     let constraint = constraint_name::<M, NQ, NV, NU, NH, NC>(worst);
     Err(ConstraintError::Acceleration { constraint, acceleration: to_f64(size) })
 }
 
-/// Returns the name of a constraint.
+/// Returns the name of a constraint by its index.
 fn constraint_name<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     index: usize,
 ) -> &'static str
@@ -188,7 +190,7 @@ fn dot<T: Real, const N: usize>(a: &Row<T, N>, b: &Row<T, N>) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
-/// Adds `factor · b` to `a`.
+/// Adds a multiple of a row to another row, `a += factor · b`.
 fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
 }
@@ -204,7 +206,7 @@ fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], di
     }
 }
 
-/// Returns the row with the largest `size` among those that are not taken.
+/// Returns the row with the largest `size` among the rows that are not yet taken, and this size.
 fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) -> T) -> Option<(usize, T)> {
     let mut best = None;
     for k in (0..K).filter(|k| !taken[*k]) {
@@ -243,8 +245,9 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     for direction in directions.iter().flatten() {
         remove(&mut axes, direction);
     }
-    let scaled = |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
-    least_energy(&core::array::from_fn(scaled), axes, &mut y);
+    let scaled_mass_row =
+        |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
+    least_energy(&core::array::from_fn(scaled_mass_row), axes, &mut y);
     SVector::from_fn(|i, _| y[i] * scale[i])
 }
 
@@ -295,7 +298,7 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
     let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
     // A = L D Lᵀ. Motions without inertia keep their value.
     let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
-    let quotient = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
+    let quotient_or_zero = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
     for i in 0..N {
         for j in 0..=i {
             let own = dot(&heavy[i], &basis[j]);
@@ -303,13 +306,13 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
             if i == j {
                 pivots[i] = left;
             } else {
-                lower[i][j] = quotient(left, pivots[j]);
+                lower[i][j] = quotient_or_zero(left, pivots[j]);
             }
         }
         rest[i] = (0..i).fold(rest[i], |sum, k| sum - lower[i][k] * rest[k]);
     }
     for i in (0..N).rev() {
-        rest[i] = (i + 1..N).fold(quotient(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
+        rest[i] = (i + 1..N).fold(quotient_or_zero(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
         add(y, rest[i], &basis[i]);
     }
 }

@@ -7,7 +7,8 @@ use crate::blocks::zeros;
 use crate::{At, ByMotion, Derivatives, Real};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Derivatives `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers, one row for each of the `NC` constraints.
+/// Derivatives `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the constraint multipliers, one row for each of the `NC`
+/// constraints.
 pub type MultiplierDerivatives<T, const NV: usize, const NC: usize> =
     (SMatrix<T, NC, NV>, SMatrix<T, NC, NV>, SMatrix<T, NC, NV>);
 
@@ -65,11 +66,11 @@ pub struct EquationDerivatives<T, const NV: usize, const NC: usize> {
     pub forces_by_q: SMatrix<T, NV, NV>,
     /// Derivative `∂(M a + h − Jᵀ λ)/∂v`.
     pub forces_by_v: SMatrix<T, NV, NV>,
-    /// Derivative `∂(J a + b)/∂q`.
+    /// Derivative `∂(J a + b)/∂q` of the constraint accelerations.
     pub accelerations_by_q: SMatrix<T, NC, NV>,
-    /// Derivative `∂(J a + b)/∂v`.
+    /// Derivative `∂(J a + b)/∂v` of the constraint accelerations.
     pub accelerations_by_v: SMatrix<T, NC, NV>,
-    /// Derivative `∂(J v + …)/∂q`.
+    /// Derivative `∂(J v + …)/∂q` of the constraint velocities.
     pub rates_by_q: SMatrix<T, NC, NV>,
 }
 
@@ -87,7 +88,7 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
     }
 }
 
-/// Derivatives of accelerations and multipliers.
+/// Derivatives of accelerations, and derivatives of constraint multipliers.
 type Changes<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
 
 /// Accelerations and multipliers of constrained motion, with their derivatives.
@@ -122,7 +123,7 @@ where
     let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
     let parts = m.equation_derivatives(t, q, v, &a, &lambda);
     let mass = m.mass_matrix(t, q);
-    let columns = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
+    let solve_derivative_columns = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
         let (mut changes, mut multipliers) = (zeros(), zeros());
         for j in 0..NV {
             let p = -column(forces, j);
@@ -135,9 +136,9 @@ where
         (changes, multipliers)
     };
     let by = [
-        columns(&parts.forces_by_q, &parts.accelerations_by_q),
-        columns(&parts.forces_by_v, &parts.accelerations_by_v),
-        columns(&-SMatrix::identity(), &SMatrix::zeros()),
+        solve_derivative_columns(&parts.forces_by_q, &parts.accelerations_by_q),
+        solve_derivative_columns(&parts.forces_by_v, &parts.accelerations_by_v),
+        solve_derivative_columns(&-SMatrix::identity(), &SMatrix::zeros()),
     ];
     Solved { a, lambda, by }
 }
@@ -170,10 +171,10 @@ where
 /// [`visit_constraints`](crate::Derivatives::visit_constraints) calls it, so that generic code without the
 /// number of constraints in its types can use the constraints.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// Result of the operation.
+    /// Type of the result of the operation.
     type Output;
 
-    /// Applies the operation to a mechanism.
+    /// Applies the operation to a mechanism with constraints.
     fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
@@ -311,7 +312,7 @@ pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// Returns the matrix with these columns.
+/// Returns the matrix whose columns are given by a function of the column index.
 pub(crate) fn each_column<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {

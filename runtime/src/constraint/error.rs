@@ -1,4 +1,4 @@
-//! Errors of constrained mechanisms.
+//! Errors of functions of constrained mechanisms.
 
 use core::fmt;
 
@@ -6,11 +6,11 @@ use core::fmt;
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ConstraintError {
-    /// No configuration near the initial one satisfies the constraints.
+    /// Error: no configuration near the initial one satisfies the constraints.
     Configuration {
         /// Name of the constraint with the largest residual.
         constraint: &'static str,
-        /// Residual of this constraint, m or rad.
+        /// Residual of the constraint with the largest residual, m or rad.
         residual: f64,
     },
     /// No velocity satisfies the constraints: prescribed motions contradict them, or the configuration is
@@ -32,7 +32,7 @@ pub enum ConstraintError {
     /// No configuration of the requested assembly mode was found near the guess
     /// ([`assemble_in_mode`](crate::Constrained::assemble_in_mode)).
     Mode {
-        /// Requested assembly mode.
+        /// Assembly mode that was requested but not found.
         mode: i8,
     },
     /// Forces at the driven velocities cannot cause the motion; further velocities must be driven
@@ -49,7 +49,7 @@ pub enum ConstraintError {
     /// Friction jams: a normal force on which friction depends does not follow from the motion (Painlevé's
     /// paradox), or contacts can share it in several ways.
     Jammed {
-        /// Name of the contact.
+        /// Name of the contact whose friction jams.
         constraint: &'static str,
     },
     /// No impulses satisfy the contact conditions: constraints or prescribed motions force surfaces to
@@ -61,26 +61,26 @@ pub enum ConstraintError {
     /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
     /// and 1.
     Coefficient {
-        /// Name of the contact.
+        /// Name of the contact with the invalid coefficient.
         constraint: &'static str,
         /// Value of the coefficient for the parameters of the mechanism.
         value: f64,
     },
-    /// Surfaces that must be separated overlap.
+    /// Error: surfaces that must be separated overlap.
     Overlap {
         /// Name of the contact with the largest overlap.
         constraint: &'static str,
-        /// Overlap, m or rad.
+        /// Depth of the largest overlap, m or rad.
         depth: f64,
     },
     /// An index in `held` is out of range; velocities are counted from zero.
     Held {
-        /// Index in `held`.
+        /// Index in `held` that is out of range.
         index: usize,
-        /// Number of velocities.
+        /// Number of velocities of the mechanism.
         velocities: usize,
     },
-    /// Residuals or rates are infinite or NaN.
+    /// Error: constraint residuals or constraint velocities are infinite or NaN.
     NotFinite,
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
     if span.rank < held.iter().filter(|held| **held).count() {
         return None;
     }
-    let solve = |changes: &SVector<T, NC>| {
+    let solve_for_impulses = |changes: &SVector<T, NC>| {
         // `Rᵀ z = changes`, then `R λ = z`, by columns in the order in which they joined the basis.
         let mut z = [T::zero(); NV];
         for step in 0..span.rank {
@@ -46,8 +46,8 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
         }
         Some((SVector::from(metric.back(span.backward(z))), impulses))
     };
-    let (x, impulses) = solve(changes)?;
+    let (x, impulses) = solve_for_impulses(changes)?;
     // Velocities of light bodies are much larger than their rounding errors, because the rows determine them.
-    let (rest, more) = solve(&(changes - rows * x))?;
+    let (rest, more) = solve_for_impulses(&(changes - rows * x))?;
     Some((x + rest, impulses + more))
 }

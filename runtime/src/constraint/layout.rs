@@ -1,16 +1,17 @@
-//! Results that generated functions pass to the runtime, as structs with named fields. Generated code
-//! constructs them field by field, so that neither side depends on positions in arrays.
+//! Structs with named fields in which generated functions return their results to the runtime. Generated code
+//! fills them field by field, so that neither side depends on positions in arrays.
 
 use crate::Real;
 
-/// Result of an elimination for accelerations and multipliers, with data to judge its accuracy.
+/// Result of the elimination that solves for accelerations and constraint multipliers, with pivots to judge
+/// its accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Elimination<T, const NV: usize, const NC: usize> {
-    /// Accelerations.
+    /// Accelerations that the elimination found, one per velocity.
     pub accelerations: [T; NV],
-    /// Multipliers of the constraints.
+    /// Multipliers that the elimination found, one per constraint.
     pub multipliers: [T; NC],
-    /// Pivot of each constraint.
+    /// Pivot of each constraint in the elimination.
     pub pivots: [T; NC],
     /// Value of each pivot before the elimination of other constraints.
     pub before: [T; NC],
@@ -19,11 +20,11 @@ pub struct Elimination<T, const NV: usize, const NC: usize> {
 /// Data for accelerations and multipliers of mechanisms with redundant constraints.
 #[derive(Clone, Copy, Debug)]
 pub struct Responses<T, const NV: usize, const NC: usize> {
-    /// Accelerations without multipliers.
+    /// Accelerations that the forces would cause if all constraint multipliers were zero.
     pub free: [T; NV],
     /// Negative constraint accelerations `−(J a + b)` for these accelerations.
     pub lacking: [T; NC],
-    /// Rows of `J M⁻¹ Jᵀ`.
+    /// Rows of the matrix `J M⁻¹ Jᵀ` (Delassus matrix) of the constraints.
     pub gram: [[T; NC]; NC],
     /// Accelerations due to a unit of each multiplier.
     pub given: [[T; NV]; NC],
@@ -49,11 +50,11 @@ pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
 /// Second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintCurvature<T, const NV: usize, const NC: usize> {
-    /// Derivatives with respect to `q` twice.
+    /// Block of the Hessian: second derivatives with respect to `q`.
     pub qq: [[T; NV]; NV],
     /// Derivatives with respect to `q` (rows) and `v`.
     pub qv: [[T; NV]; NV],
-    /// Derivatives with respect to `v` twice.
+    /// Block of the Hessian: second derivatives with respect to `v`.
     pub vv: [[T; NV]; NV],
     /// Derivatives with respect to `q` (rows) and `a`.
     pub qa: [[T; NV]; NV],
@@ -64,7 +65,7 @@ pub struct ConstraintCurvature<T, const NV: usize, const NC: usize> {
 /// Generalized forces of the inputs with their derivatives. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
-    /// Generalized forces `τ`.
+    /// Generalized forces `τ` that the inputs exert.
     pub forces: [T; NV],
     /// Derivatives of the forces with respect to `q`.
     pub by_q: [[T; NV]; NV],
@@ -77,13 +78,13 @@ pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
 impl<T: Real, const NV: usize, const NC: usize> MotionDerivatives<T, NV, NC> {
     /// Returns the derivatives with the inputs' forces included; these forces may depend on the state.
     pub fn with_inputs<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
-        let subtract = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
+        let subtract_matrix = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
             for (entry, other) in from.iter_mut().flatten().zip(what.iter().flatten()) {
                 *entry -= *other;
             }
         };
-        subtract(&mut self.forces_by_q, &inputs.by_q);
-        subtract(&mut self.forces_by_v, &inputs.by_v);
+        subtract_matrix(&mut self.forces_by_q, &inputs.by_q);
+        subtract_matrix(&mut self.forces_by_v, &inputs.by_v);
         self
     }
 }

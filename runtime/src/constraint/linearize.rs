@@ -18,13 +18,13 @@ use nalgebra::{SMatrix, SVector};
 /// slide (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, const NS: usize> {
-    /// System matrix `A`.
+    /// System matrix `A` of the linearised motion `ẋ = A x + B δu`.
     pub a: SMatrix<T, NX, NX>,
-    /// Input matrix `B`.
+    /// Input matrix `B` of the linearised motion `ẋ = A x + B δu`.
     pub b: SMatrix<T, NX, NU>,
     /// Independent coordinates, as indices of their rates in `v`.
     pub coordinates: [usize; NP],
-    /// Independent speeds, as indices in `v`.
+    /// Independent generalized speeds of the linearised motion, as indices in `v`.
     pub speeds: [usize; NS],
 }
 
@@ -34,13 +34,17 @@ pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
     parts: &MotionDerivatives<T, NV, NC>,
     solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
 ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>) {
-    let answer = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
+    let response_columns = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
         each_column(|j| solve(&forces[j].map(|f| -f), &bias[j]))
     };
     let by_force = each_column(|j| {
         solve(&core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }), &[T::zero(); NC])
     });
-    (answer(&parts.forces_by_q, &parts.bias_by_q), answer(&parts.forces_by_v, &parts.bias_by_v), by_force)
+    (
+        response_columns(&parts.forces_by_q, &parts.bias_by_q),
+        response_columns(&parts.forces_by_v, &parts.bias_by_v),
+        by_force,
+    )
 }
 
 fn each_column<T: Real, const R: usize, const C: usize>(
@@ -74,22 +78,22 @@ pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
     pub by_v: SMatrix<T, NV, NV>,
     /// Derivatives of the accelerations with respect to the inputs.
     pub by_u: SMatrix<T, NV, NU>,
-    /// Constraint Jacobian.
+    /// Jacobian `J` of the constraints, one row per constraint.
     pub jacobian: SMatrix<T, NC, NV>,
     /// Derivatives of the constraint rates with respect to `q`.
     pub rates_by_q: SMatrix<T, NC, NV>,
     /// Contribution of displacements in rotating axes to their own rates.
     pub turning: SMatrix<T, NV, NV>,
-    /// Number of holonomic constraints.
+    /// Number of holonomic constraints, which come first among the rows of the constraints.
     pub holonomic: usize,
     /// Indices of the velocities that should be independent.
     pub preferred: &'a [usize],
 }
 
 impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, NV, NC, NU> {
-    /// Returns the linear system in independent coordinates and speeds. Returns [`ConstraintError::Singular`]
-    /// if the constraints have less than their usual rank, because there are more than `NP` and `NS`
-    /// independent ones then.
+    /// Returns the linearised motion in independent coordinates and generalized speeds. Returns
+    /// [`ConstraintError::Singular`] if the constraints lose rank, because more than `NP` coordinates and
+    /// `NS` speeds are then independent.
     pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
         &self,
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
@@ -134,7 +138,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
 struct Dependence<T, const NV: usize, const NC: usize> {
     left: SMatrix<T, NC, NV>,
     right: SMatrix<T, NC, NV>,
-    /// Column of the pivot in each row.
+    /// Column of the pivot in each row of the elimination; `None` for a row without a pivot.
     pivots: [Option<usize>; NC],
 }
 
@@ -143,7 +147,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         let mut pivots = [None; NC];
         let small = constant::<T>(1e6) * epsilon() * left.amax();
         for _ in 0..NC {
-            let largest = |spare: bool| {
+            let largest_pivot = |spare: bool| {
                 let mut best = (0, 0, T::zero());
                 for j in (0..NV).filter(|j| !(spare && preferred.contains(j))) {
                     for i in (0..NC).filter(|i| pivots[*i].is_none()) {
@@ -155,7 +159,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
                 }
                 Some(best).filter(|best| best.2 > small)
             };
-            let Some((row, column, _)) = largest(true).or_else(|| largest(false)) else { break };
+            let Some((row, column, _)) = largest_pivot(true).or_else(|| largest_pivot(false)) else { break };
             if let Some(pivot) = pivots.get_mut(row) {
                 *pivot = Some(column);
             }
@@ -176,12 +180,12 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
 
     /// Returns the independent entries, and all entries as linear functions of them.
     fn free<const N: usize>(&self) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
-        let is_free = |j: &usize| !self.pivots.contains(&Some(*j));
-        if (0..NV).filter(is_free).count() != N {
+        let is_not_pivot = |j: &usize| !self.pivots.contains(&Some(*j));
+        if (0..NV).filter(is_not_pivot).count() != N {
             return Err(ConstraintError::Singular);
         }
         let mut indices = [0; N];
-        indices.iter_mut().zip((0..NV).filter(is_free)).for_each(|(slot, j)| *slot = j);
+        indices.iter_mut().zip((0..NV).filter(is_not_pivot)).for_each(|(slot, j)| *slot = j);
         let shape = SMatrix::from_fn(|i, j| {
             let index = indices.get(j).copied().unwrap_or_default();
             match self.pivots.iter().position(|p| *p == Some(i)) {

@@ -49,11 +49,11 @@ pub trait ConstrainedSecondDerivatives<
 /// zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationSecondDerivatives<T, const NV: usize, const NC: usize> {
-    /// Derivatives with respect to configuration twice.
+    /// Block of the contracted Hessian: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
     /// Derivatives with respect to configuration (rows) and velocity.
     pub qv: SMatrix<T, NV, NV>,
-    /// Derivatives with respect to velocity twice.
+    /// Block of the contracted Hessian: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
     /// Derivatives with respect to configuration (rows) and acceleration.
     pub qa: SMatrix<T, NV, NV>,
@@ -66,12 +66,12 @@ pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
     (qq, qv, vv, qa): SecondOrder<T, NV>,
     found: ConstraintCurvature<T, NV, NC>,
 ) -> EquationSecondDerivatives<T, NV, NC> {
-    let square = |columns| SMatrix::from_array_storage(ArrayStorage(columns));
+    let matrix_from_columns = |columns| SMatrix::from_array_storage(ArrayStorage(columns));
     EquationSecondDerivatives {
-        qq: qq + square(found.qq),
-        qv: qv + square(found.qv),
-        vv: vv + square(found.vv),
-        qa: qa + square(found.qa),
+        qq: qq + matrix_from_columns(found.qq),
+        qv: qv + matrix_from_columns(found.qv),
+        vv: vv + matrix_from_columns(found.vv),
+        qa: qa + matrix_from_columns(found.qa),
         q_lambda: SMatrix::from_array_storage(ArrayStorage(found.q_lambda)),
     }
 }
@@ -135,7 +135,7 @@ where
     (with_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
 }
 
-/// Returns `A + B + Bᵀ`.
+/// Returns the matrix `A + B + Bᵀ` of two square matrices.
 pub(crate) fn with_transpose<T: Real, const N: usize>(
     mut a: SMatrix<T, N, N>,
     b: &SMatrix<T, N, N>,
@@ -148,10 +148,10 @@ pub(crate) fn with_transpose<T: Real, const N: usize>(
 /// Operation on a mechanism with any number of constraints and with second derivatives.
 /// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature) calls it.
 pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// Result of the operation.
+    /// Type of the value that the operation returns.
     type Output;
 
-    /// Applies the operation to a mechanism.
+    /// Applies the operation to a constrained mechanism with second derivatives and returns the result.
     fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;

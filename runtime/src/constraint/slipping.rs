@@ -19,13 +19,14 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usi
     names: &[&'static str; NC],
     solve: impl Fn(&[T; K]) -> Elimination<T, NV, NC>,
 ) -> Result<Solution<T, NV, NC>, ConstraintError> {
-    let jammed = |row: usize| ConstraintError::Jammed { constraint: names.get(row).copied().unwrap_or("") };
+    let jammed_error =
+        |row: usize| ConstraintError::Jammed { constraint: names.get(row).copied().unwrap_or("") };
     let mut sides = [T::one(); K];
     for _ in 0..=2 * K {
         let found = solve(&sides);
         for row in 0..NC {
             if !determined(groups, &found, row) {
-                return Err(if rows.contains(&row) { jammed(row) } else { ConstraintError::Singular });
+                return Err(if rows.contains(&row) { jammed_error(row) } else { ConstraintError::Singular });
             }
         }
         let mut settled = true;
@@ -40,7 +41,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usi
             return Ok(found.solution());
         }
     }
-    Err(jammed(rows.first().copied().unwrap_or(0)))
+    Err(jammed_error(rows.first().copied().unwrap_or(0)))
 }
 
 /// Returns the solution for lanes if all sliding contacts have positive normal forces in every lane.
@@ -51,8 +52,8 @@ pub fn pressing_solution<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
     let solution = regular_solution(groups, found)?;
-    let presses = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
-    rows.iter().all(presses).then_some(solution)
+    let has_positive_force = |row: &usize| solution.1.get(*row).is_some_and(|force| *force > T::zero());
+    rows.iter().all(has_positive_force).then_some(solution)
 }
 
 /// Returns accelerations as a function of forces and biases, with the signs of the multipliers fixed. This is

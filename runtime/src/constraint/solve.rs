@@ -36,7 +36,7 @@ pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
-    /// Returns accelerations and multipliers.
+    /// Returns the accelerations and multipliers of the elimination as vectors.
     #[inline]
     pub(super) fn solution(&self) -> Solution<T, NV, NC> {
         (SVector::from(self.accelerations), SVector::from(self.multipliers))
@@ -46,8 +46,8 @@ impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
     /// range.
     #[inline]
     fn pivot(&self, k: usize) -> (T, T) {
-        let entry = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
-        (entry(&self.pivots), entry(&self.before))
+        let entry_or_zero = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
+        (entry_or_zero(&self.pivots), entry_or_zero(&self.before))
     }
 }
 
@@ -62,7 +62,8 @@ fn regular<T: Real, const NV: usize, const NC: usize>(
     pivot > tolerance::<T>() * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
-/// Returns whether the pivot of a sliding contact is sufficiently accurate: it must keep its sign.
+/// Returns whether the pivot of a sliding contact is accurate enough: it must be positive and clearly above
+/// rounding error, so that rounding cannot change its sign.
 #[inline]
 pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -81,13 +82,13 @@ pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
 pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    let share = |k: usize| {
+    let relative_pivot = |k: usize| {
         let (pivot, before) = found.pivot(k);
         constant::<T>(9.0) * pivot / before
     };
     // A ratio of NaN must not be skipped.
     let product = (0..NC).fold(T::one(), |product, k| {
-        let share = share(k);
+        let share = relative_pivot(k);
         product * if share > T::one() { T::one() } else { share }
     });
     (product > tolerance::<T>() * constant(1e-2)).then(|| found.solution())
@@ -119,8 +120,8 @@ fn least_norm<T: Real, const N: usize>(
     b: [T; N],
 ) -> Option<[T; N]> {
     let before: [T; N] = core::array::from_fn(|k| a[k][k]);
-    let is_more = |k: usize| before[k] >= of_group(groups, k, |i| before[i]) * noise();
-    let sound = (0..N).all(|k| before[k] == T::zero() || is_more(k));
+    let is_above_noise = |k: usize| before[k] >= of_group(groups, k, |i| before[i]) * noise();
+    let sound = (0..N).all(|k| before[k] == T::zero() || is_above_noise(k));
     if !sound {
         return None;
     }

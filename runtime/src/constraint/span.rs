@@ -59,7 +59,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         Self { lower, root: inverse.map(|x| x.sqrt()) }
     }
 
-    /// Returns `L⁻¹ x`.
+    /// Returns `L⁻¹ x` for the factorisation `M = L Lᵀ` of the mass matrix.
     pub fn half(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i][k] * x[k]);
@@ -77,7 +77,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         x
     }
 
-    /// Returns `Lᵀ x`.
+    /// Returns `Lᵀ x` for the factorisation `M = L Lᵀ` of the mass matrix.
     pub fn upper(&self, x: &[T; N]) -> [T; N] {
         let mut out = *x;
         for i in 0..N {
@@ -86,7 +86,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         out
     }
 
-    /// Returns `L⁻ᵀ x`.
+    /// Returns `L⁻ᵀ x` for the factorisation `M = L Lᵀ` of the mass matrix.
     pub fn back(&self, mut x: [T; N]) -> [T; N] {
         x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
         for i in (0..N).rev() {
@@ -96,10 +96,10 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 }
 
-/// Column of `W`, scaled to unit length.
+/// Column of the matrix `W = L⁻¹ Jᵀ` (one constraint, with `M = L Lᵀ`), scaled to unit length.
 #[derive(Clone, Copy)]
 pub(super) struct Column<T, const N: usize> {
-    /// Entries after the reflections.
+    /// Entries of the column after the Householder reflections that have been applied so far.
     pub x: [T; N],
     /// Largest number that each entry was computed from.
     size: [T; N],
@@ -110,8 +110,8 @@ pub(super) struct Column<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Column<T, N> {
-    /// Returns the length of the column without its first entries, and the largest ratio of its entries to
-    /// the numbers that they were computed from.
+    /// Returns the length of a column without its first `first` entries. Also returns the largest ratio of a
+    /// remaining entry to the largest number that it was computed from.
     fn remainder(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
@@ -134,13 +134,13 @@ impl<T: Real, const N: usize> Column<T, N> {
 
 /// Space that columns span, represented by the reflections that make them triangular.
 pub(super) struct Span<T, const NV: usize, const NC: usize> {
-    /// Columns of the constraints.
+    /// Columns of `W = L⁻¹ Jᵀ`, one per constraint, to which the reflections are applied.
     pub columns: [Column<T, NV>; NC],
-    /// Number of columns in the basis.
+    /// Rank found so far: the number of constraint columns in the basis.
     pub rank: usize,
     /// Permutation of the entries: original index of each position.
     order: [usize; NV],
-    /// Normals of the reflections, of length √2.
+    /// Normals of the Householder reflections, each of length √2.
     normals: [[T; NV]; NV],
 }
 
@@ -234,7 +234,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         self.rank += 1;
     }
 
-    /// Exchanges two positions after those of the basis.
+    /// Exchanges two rows of all columns and normals; both are rows that no basis vector occupies yet.
     fn exchange(&mut self, i: usize, j: usize) {
         exchange(&mut self.order, i, j);
         self.normals.iter_mut().for_each(|normal| exchange(normal, i, j));
@@ -244,7 +244,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         }
     }
 
-    /// Returns `Qᵀ x`.
+    /// Returns `Qᵀ x`: permutes the entries of a vector and applies the Householder reflections.
     pub fn forward(&self, x: &[T; NV]) -> [T; NV] {
         let mut x = self.arranged(x);
         for normal in self.normals.iter().take(self.rank) {
@@ -253,7 +253,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         x
     }
 
-    /// Returns `Q x`.
+    /// Returns `Q x`: applies the Householder reflections in reverse order and undoes the permutation of the
+    /// entries.
     pub fn backward(&self, mut x: [T; NV]) -> [T; NV] {
         for normal in self.normals.iter().take(self.rank).rev() {
             reflect(&mut x, normal);

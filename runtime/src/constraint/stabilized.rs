@@ -56,7 +56,7 @@ where
 }
 
 impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
-    /// Returns the acceleration that lets violations decay.
+    /// Returns the acceleration that stabilisation adds so that constraint violations decay.
     fn correction<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
@@ -109,15 +109,16 @@ where
     for (mut row, of_rate) in gap_by_q.row_iter_mut().zip(gap_by_v.row_iter()).take(NH) {
         row += of_rate * (rate * constant(0.5));
     }
-    let responses = |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
-        each_column(|j| m.constraint_response(t, q, &-column(forces, j), &column(gaps, j)))
-    };
-    let by_q = responses(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
-    let by_v = responses(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
-    (a, (by_q, by_v, responses(&-SMatrix::identity(), &SMatrix::zeros())))
+    let constraint_response_columns =
+        |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
+            each_column(|j| m.constraint_response(t, q, &-column(forces, j), &column(gaps, j)))
+        };
+    let by_q = constraint_response_columns(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
+    let by_v = constraint_response_columns(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
+    (a, (by_q, by_v, constraint_response_columns(&-SMatrix::identity(), &SMatrix::zeros())))
 }
 
-/// Implements [`Constrained::stabilized_derivatives`] for mechanisms with derivatives.
+/// Computes [`Constrained::stabilized_derivatives`] for mechanisms with derivatives.
 pub fn stabilized_derivatives<
     M,
     const NQ: usize,

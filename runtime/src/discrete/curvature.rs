@@ -71,9 +71,9 @@ fn add_both<T: Real, const R: usize, const K: usize, const C: usize>(
 /// Displacement of a configuration to second order. A change `δq` of the start and a change of `dv` move the
 /// end of `q ⊕ dv` by `ξ`: it becomes `q ⊕ dv ⊕ ξ`.
 pub(super) struct Displacement<T, const NV: usize> {
-    /// Derivative of `ξ` with respect to `δq`.
+    /// Derivative of the displacement `ξ` of the end with respect to the displacement `δq` of the start.
     pub(super) by_q: Square<T, NV>,
-    /// Derivative of `ξ` with respect to `dv`.
+    /// Derivative of the displacement `ξ` of the end with respect to `dv`.
     pub(super) by_dv: Square<T, NV>,
     dv: SVector<T, NV>,
 }

@@ -1,4 +1,4 @@
-//! Derivatives of explicit steps, propagated forwards through their stages.
+//! Jacobians of explicit integration steps, computed by propagating derivatives forwards through the stages.
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
@@ -20,7 +20,8 @@ pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
-    /// Returns the velocity at the start.
+    /// Returns the velocity at the start of the step, with its derivatives: the identity with respect to
+    /// itself, otherwise zero.
     pub(super) fn velocity(v: &SVector<T, NV>) -> Self {
         let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
@@ -32,7 +33,7 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
     }
 
-    /// Returns `self + s other`.
+    /// Returns the vector `self + s other` together with its derivatives.
     pub(super) fn plus(&self, s: T, other: &Self) -> Self {
         Self {
             value: self.value + other.value * s,
@@ -46,8 +47,8 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
-    /// Returns a function of two such vectors, given its value and its derivatives with respect to both
-    /// (chain rule).
+    /// Returns a function of two vectors with derivatives, by the chain rule; `by_a` and `by_b` are the
+    /// Jacobians of the function.
     pub(super) fn compose(
         value: SVector<T, NV>,
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
@@ -76,7 +77,8 @@ where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    /// Returns the configuration `q ⊕ displacement` and the derivatives of its motion.
+    /// Returns the configuration `q ⊕ displacement`, and the displacement of that configuration with
+    /// derivatives with respect to the start and the inputs.
     pub(super) fn displace(
         &self,
         displacement: &Sensitive<T, NV, NU>,
@@ -294,22 +296,23 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
             return Ok(plain::runge_kutta(&start, v, h));
         }
         let v = Sensitive::velocity(v);
-        let stage = |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
-            let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
-            let (by_q, by_dv, by_v) =
-                mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
-            let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
-            let mut rate = Sensitive::compose(value, (&by_dv, &displacement), (&by_v, &v));
-            if mechanism.features().speeds {
-                rate.by_q += by_q;
-            }
-            (rate, start.acceleration(h, &start.displace(&displacement), &v))
-        };
+        let stage_derivatives =
+            |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
+                let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
+                let (by_q, by_dv, by_v) =
+                    mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
+                let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
+                let mut rate = Sensitive::compose(value, (&by_dv, &displacement), (&by_v, &v));
+                if mechanism.features().speeds {
+                    rate.by_q += by_q;
+                }
+                (rate, start.acceleration(h, &start.displace(&displacement), &v))
+            };
         let half = h * constant(0.5);
         let k1 = (v, start.acceleration(T::zero(), &start.here(), &v));
-        let k2 = stage(half, &k1);
-        let k3 = stage(half, &k2);
-        let k4 = stage(h, &k3);
+        let k2 = stage_derivatives(half, &k1);
+        let k3 = stage_derivatives(half, &k2);
+        let k4 = stage_derivatives(h, &k3);
         let two = constant::<T>(2.0);
         let sixth = h / constant(6.0);
         let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);

@@ -78,7 +78,7 @@ struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     h: T,
     q: &'a SVector<T, NQ>,
     w: SVector<T, NV>,
-    /// Configuration of the midpoint.
+    /// Configuration at the midpoint of the step.
     middle: SVector<T, NQ>,
     /// Derivatives of the configurations at the midpoint and at the end, with respect to the configuration
     /// before the step and to the velocity of the midpoint.
@@ -86,7 +86,7 @@ struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     end: (SVector<T, NQ>, SVector<T, NV>),
     rate: ByMotion<T, NV, NU>,
     start: ByMotion<T, NV, NU>,
-    /// Momentum at the midpoint without the contribution of half a step of its rate.
+    /// Momentum at the midpoint, before half a step of the momentum's rate is added.
     kick: SVector<T, NV>,
 }
 
@@ -102,7 +102,7 @@ trait Answer<T, const NV: usize> {
     fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C>;
 }
 
-/// Solution without constraints.
+/// Linear solver for perturbations of an implicit step, for mechanisms without constraints.
 struct Free<T, const NV: usize> {
     matrix: SMatrix<T, NV, NV>,
     mass: SMatrix<T, NV, NV>,
@@ -123,7 +123,7 @@ impl<T: Real, const NV: usize> Answer<T, NV> for Free<T, NV> {
     }
 }
 
-/// Solution with constraints.
+/// Linear solver for perturbations of an implicit step, for mechanisms with constraints.
 struct Held<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
     m: &'a M,
     matrix: SMatrix<T, NV, NV>,
@@ -358,8 +358,8 @@ impl<T: Real> ImplicitMidpoint<T> {
     }
 }
 
-/// Returns a constrained step of the semi-implicit Euler method: forces act at its start, inertial terms at
-/// its midpoint.
+/// Returns a constrained semi-implicit Euler step with its Jacobians. Forces are evaluated at the start of
+/// the step, inertial terms at the midpoint.
 pub(super) fn pushed<
     M,
     T,

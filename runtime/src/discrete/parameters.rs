@@ -105,7 +105,7 @@ impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
         Self { value: *value, by: SMatrix::zeros() }
     }
 
-    /// Returns `self + s other`.
+    /// Returns the vector `self + s other` together with its parameter derivatives.
     fn plus(&self, s: T, other: &Self) -> Self {
         Self { value: self.value + other.value * s, by: self.by + other.by * s }
     }
@@ -190,7 +190,7 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     {
         let (h, v) = (self.length(), Changing::fixed(v));
         let half = h * constant(0.5);
-        let stage = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
+        let stage_derivatives = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
             let (displacement, v) = (rate.scaled(after), v.plus(after, change));
             let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = m.displacement_rate(q, &displacement.value, &v.value);
@@ -199,9 +199,9 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
             (Changing { value, by }, acceleration(m, t + after, (q, &displacement), &v, u))
         };
         let k1 = (v, acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
-        let k2 = stage(half, &k1);
-        let k3 = stage(half, &k2);
-        let k4 = stage(h, &k3);
+        let k2 = stage_derivatives(half, &k1);
+        let k3 = stage_derivatives(half, &k2);
+        let k4 = stage_derivatives(h, &k3);
         let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
         let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
         let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);

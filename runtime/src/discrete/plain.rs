@@ -15,7 +15,7 @@ use crate::derivatives::Derivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
-/// Acceleration of an earlier stage with its derivatives, and its coefficient.
+/// Coefficient and acceleration (with derivatives) of an earlier Runge–Kutta stage.
 type Part<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
@@ -27,8 +27,9 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     }
 }
 
-/// Returns the acceleration `after` seconds after the start, with its derivatives. The accelerations `near`
-/// change the velocity of the stage, the accelerations `far` its displacement.
+/// Returns the acceleration of a Runge–Kutta stage `after` seconds after the start, with derivatives.
+/// Multiples of the earlier accelerations `near` and `far` are added to the velocity and to the displacement
+/// of the stage.
 fn stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
@@ -97,7 +98,7 @@ where
     }
 }
 
-/// Returns `s Σ weight · term`.
+/// Returns the weighted sum `s Σ weight · term` of vectors with derivatives.
 fn sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
     s: T,
     terms: [(f64, &Sensitive<T, NV, NU>); N],

@@ -17,19 +17,19 @@ pub(super) const MOST_CORRECTIONS: usize = 8;
 /// First derivatives of a Newton correction `x` of a configuration: `M x = Jᵀ λ`, `J x = −φ`.
 pub(super) struct Correction<T, const NV: usize, const NC: usize> {
     pub(super) x: SVector<T, NV>,
-    /// Multipliers `λ` of the correction.
+    /// Multipliers `λ` of the Newton correction of the configuration.
     pub(super) own: SVector<T, NC>,
     /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
     pub(super) forces: SMatrix<T, NV, NV>,
     /// Derivatives of the correction with respect to the configuration.
     pub(super) change: SMatrix<T, NV, NV>,
-    /// Whether the correction is at rounding level.
+    /// Whether the Newton correction is at rounding level, so that the iteration ends.
     pub(super) done: bool,
 }
 
 /// First derivatives of the correction `x` of a velocity: `M x = Jᵀ λ`, `J (v + x) + … = 0`.
 pub(super) struct Stop<T, const NV: usize, const NC: usize> {
-    /// Multipliers `λ` of the correction.
+    /// Multipliers `λ` of the correction of the velocity.
     pub(super) own: SVector<T, NC>,
     /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
     pub(super) forces: SMatrix<T, NV, NV>,
@@ -39,7 +39,7 @@ pub(super) struct Stop<T, const NV: usize, const NC: usize> {
     pub(super) kept: SMatrix<T, NV, NV>,
 }
 
-/// Corrections that project a step onto constraints, with their derivatives.
+/// Newton corrections that project the end of a step onto the constraints, with their derivatives.
 pub(super) trait Corrections<
     T: Real,
     const NQ: usize,
@@ -136,8 +136,8 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let failed = |reason| Error::Constraint { t: to_f64(t), reason };
-    let (q, v) = m.project(t, &free.q, &free.v).map_err(failed)?;
+    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, &free.q, &free.v).map_err(constraint_error)?;
     m.check_regular(t, &q)?;
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();

@@ -15,9 +15,10 @@ use nalgebra::{SMatrix, SVector};
 /// Derivatives of a projection contracted with factors of the projected configuration and velocity, with
 /// respect to the state before the projection.
 pub(super) struct Contraction<T, const NV: usize> {
-    /// Gradient with respect to configuration and velocity.
+    /// Gradient of the contracted projection with respect to the configuration and the velocity before it.
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
-    /// Second derivatives; those with respect to the velocity twice are zero.
+    /// Second derivatives of the contracted projection; the block of second derivatives with respect to the
+    /// velocity is zero.
     pub(super) second: Curvature<T, NV>,
 }
 
@@ -32,8 +33,8 @@ struct Contracted<'a, T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
-    /// Returns the second derivatives of the contracted equations: those of the equations of motion with `x`
-    /// as the acceleration, minus those at zero acceleration.
+    /// Returns the second derivatives of the contracted correction equations: those of the equations of
+    /// motion with acceleration `x`, minus those at zero acceleration.
     fn curvature<M, const NQ: usize, const NU: usize, const NH: usize>(
         &self,
         m: &M,
@@ -53,8 +54,8 @@ impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
     }
 }
 
-/// Returns the derivatives of the multipliers, given those of the correction and additional derivatives
-/// `forces` of `M x − Jᵀ λ`.
+/// Returns the derivatives of the multipliers `λ` of a correction, given the derivatives of the correction
+/// `x` and the additional derivatives `forces` of `M x − Jᵀ λ`.
 fn multiplier_changes<
     M,
     T,
@@ -128,19 +129,19 @@ where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let failed = |reason| Error::Constraint { t: to_f64(t), reason };
-    let (q, v) = m.project(t, q_free, v_free).map_err(failed)?;
+    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, q_free, v_free).map_err(constraint_error)?;
     m.check_regular(t, &q)?;
     // Intermediate configurations of the projection, with their derivatives with respect to the first. In
     // coordinates that are a vector space, the derivative of a displacement is the identity.
-    let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::new(m, x));
+    let displacement_if_on_manifold = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::new(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
     for stage in &mut way {
         *stage = (near, moved);
         count += 1;
         let found = m.correction(t, &near);
-        moved = match displaced(&found.x) {
+        moved = match displacement_if_on_manifold(&found.x) {
             Some(along) => product(&(along.by_q + product(&along.by_dv, &found.change)), &moved),
             None => moved + product(&found.change, &moved),
         };
@@ -171,7 +172,7 @@ where
         let found = m.correction(t, near);
         let mut of_x = gradient;
         let mut own = SMatrix::zeros();
-        if let Some(along) = displaced(&found.x) {
+        if let Some(along) = displacement_if_on_manifold(&found.x) {
             of_x = along.by_dv.tr_mul(&gradient);
             let Curvature { mixed, second, .. } = along.curvature(m, &gradient);
             let twice =

@@ -117,25 +117,25 @@ where
         let added = projection::curvature(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
-        let sensitive = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
-        let displacement = sensitive(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
-        let velocity = sensitive(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
+        let new_sensitive = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
+        let displacement = new_sensitive(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
+        let velocity = new_sensitive(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
         added.second.add_to(&mut sum, &displacement, &velocity);
         Ok(sum)
     }
 }
 
-/// Methods whose steps have second derivatives.
+/// Integration methods for whose steps second derivatives are available.
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no second derivatives",
     note = "those of `Rk4` and `SemiImplicitEuler` have"
 )]
 pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
-    /// Whether steps under constraints have second derivatives: they do if the step ignores the constraints
-    /// and is projected onto them at its end.
+    /// Whether constrained steps have second derivatives. They do if the method takes an unconstrained step
+    /// and projects its end onto the constraints.
     const UNDER_CONSTRAINTS: bool;
 
-    /// Returns the period of a step, s.
+    /// Returns the length of a step of the method, s.
     fn period(&self) -> T;
 
     /// Returns the second derivatives of a step before its projection onto constraints.
@@ -222,13 +222,13 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         let half = h * constant(0.5);
         let first = Sensitive::velocity(v);
         let begin = Stage::new(&start, T::zero(), first.scaled(T::zero()), first);
-        let next = |after: T, stage: &Stage<T, NQ, NV, NU>| {
+        let next_stage = |after: T, stage: &Stage<T, NQ, NV, NU>| {
             let v = first.plus(after, &stage.acceleration());
             Stage::new(&start, after, stage.rate(&start).scaled(after), v)
         };
-        let second = next(half, &begin);
-        let third = next(half, &second);
-        let fourth = next(h, &third);
+        let second = next_stage(half, &begin);
+        let third = next_stage(half, &second);
+        let fourth = next_stage(h, &third);
         let (sixth, third_part) = (h / constant(6.0), h / constant(3.0));
         let mut sum = zeros();
         let mut of_end = *by_q;

@@ -1,4 +1,4 @@
-//! Bodies and particles.
+//! Elements of the language that declare bodies and particles.
 
 /// Rigid body (link).
 ///

@@ -1,4 +1,4 @@
-//! Constraints, contacts and limits.
+//! Elements of the language that declare constraints, contacts and limits.
 
 /// Limits of a coordinate, its velocity and the generalized force on it, for controllers and planners;
 /// optionally stops.

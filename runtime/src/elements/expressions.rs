@@ -1,4 +1,5 @@
-//! Points, frames, coordinates, states, and named expressions.
+//! Elements of the language that declare points, frames, coordinates, first-order states and named
+//! expressions.
 
 /// Generalized coordinate without a joint.
 ///

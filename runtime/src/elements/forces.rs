@@ -1,4 +1,4 @@
-//! Force elements, inputs and energies.
+//! Elements of the language that declare springs, dashpots, other forces, inputs and energies.
 
 /// Spring, linear or with any force law, on a coordinate, between two points, or on a length.
 ///

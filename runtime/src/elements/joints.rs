@@ -1,4 +1,4 @@
-//! Joints.
+//! Elements of the language that declare joints.
 
 /// Revolute joint (hinge) about one axis: one degree of freedom.
 ///

@@ -1,4 +1,5 @@
-//! Derivatives of mechanisms with first-order states among their velocities.
+//! Derivatives of the dynamics of `Extended` mechanisms, whose velocity vector also contains the first-order
+//! states.
 
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, split, with_diagonal};
@@ -67,8 +68,8 @@ where
         let (dv, v) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v).0);
         let (by_q, by_dv, by_v) = self.mechanism.displacement_rate_derivatives(q, &dv, &v);
         let (zero, one) = (nalgebra::zero(), nalgebra::one());
-        let square = |m, diagonal| with_diagonal::<_, NV, NX, NE>(&m, diagonal);
-        (square(by_q, zero), square(by_dv, zero), square(by_v, one))
+        let extend_with_diagonal = |m, diagonal| with_diagonal::<_, NV, NX, NE>(&m, diagonal);
+        (extend_with_diagonal(by_q, zero), extend_with_diagonal(by_dv, zero), extend_with_diagonal(by_v, one))
     }
 
     fn turning(&self, q: &SVector<M::Scalar, NQ>, v: &SVector<M::Scalar, NE>) -> SMatrix<M::Scalar, NE, NE> {

@@ -1,4 +1,4 @@
-//! Mechanism with its first-order states among its velocities.
+//! Extended mechanism, whose velocity vector `[v, x]` also contains its first-order states `x`.
 
 use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
@@ -21,15 +21,15 @@ pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
     pub(super) mechanism: &'m M,
 }
 
-/// Splits a vector into velocities and states.
+/// Splits the extended velocity vector `[v, x]` into velocities `v` and first-order states `x`.
 pub fn split<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     all: &SVector<T, NE>,
 ) -> (SVector<T, NV>, SVector<T, NX>) {
-    let value = |k: usize| all.get(k).copied().unwrap_or(T::zero());
-    (SVector::from_fn(|k, _| value(k)), SVector::from_fn(|k, _| value(NV + k)))
+    let entry_or_zero = |k: usize| all.get(k).copied().unwrap_or(T::zero());
+    (SVector::from_fn(|k, _| entry_or_zero(k)), SVector::from_fn(|k, _| entry_or_zero(NV + k)))
 }
 
-/// Joins velocities and states to one vector.
+/// Concatenates velocities `v` and first-order states `x` to the extended velocity vector `[v, x]`.
 pub fn join<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     v: &SVector<T, NV>,
     x: &SVector<T, NX>,
@@ -327,8 +327,8 @@ where
         let (given, added) = split::<_, NV, NX, NE>(given);
         let impulses = impulses.map(|list| split::<_, NV, NX, NE>(list).0);
         let touched = m.contact_step(t, (q, &v), (end, &free), (&given, &impulses), h)?;
-        let padded = |list: &SVector<_, NV>| join(list, &SVector::<_, NX>::zeros());
-        let (held, impulses) = (padded(&touched.held), touched.impulses.map(padded));
+        let append_zeros = |list: &SVector<_, NV>| join(list, &SVector::<_, NX>::zeros());
+        let (held, impulses) = (append_zeros(&touched.held), touched.impulses.map(append_zeros));
         let Touched { q, v, violation, .. } = touched;
         Ok(Touched { q, v: join(&v, &(x + added)), held, impulses, violation })
     }

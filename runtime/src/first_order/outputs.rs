@@ -1,4 +1,4 @@
-//! Outputs of mechanisms with first-order states.
+//! Outputs of mechanisms with first-order states, and their derivatives with respect to these states.
 
 use super::FirstOrder;
 use super::extended::{Extended, split};
@@ -6,7 +6,7 @@ use crate::{OutputDerivatives, OutputJacobians, Outputs, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Derivatives of all outputs with respect to first-order states. `#[mechanism(…, derivatives)]` implements
-/// the trait for mechanisms with such states and [`Outputs`], without constraints.
+/// the trait for mechanisms that have both first-order states and [`Outputs`], but no constraints.
 #[diagnostic::on_unimplemented(
     message = "the outputs of `{Self}` have no derivatives by states of first order",
     note = "enable them with the option: `#[mechanism(…, derivatives)]`; mechanisms with constraints have \
@@ -15,7 +15,8 @@ use nalgebra::{SMatrix, SVector};
 pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NY: usize>:
     OutputDerivatives<NQ, NV, NU, NY>
 {
-    /// Returns the partial derivatives `∂y/∂x` of [`outputs`](Outputs::outputs).
+    /// Returns the partial derivatives `∂y/∂x` of the [`outputs`](Outputs::outputs) with respect to the
+    /// first-order states `x`.
     fn outputs_by_states(
         &self,
         t: Self::Scalar,
@@ -92,7 +93,8 @@ where
     }
 }
 
-/// Joins the columns of the velocities and those of the states.
+/// Concatenates the derivatives with respect to velocities (left columns) and with respect to first-order
+/// states (right columns).
 fn join_columns<T: Real, const R: usize, const NV: usize, const NX: usize, const NE: usize>(
     left: &SMatrix<T, R, NV>,
     right: &SMatrix<T, R, NX>,

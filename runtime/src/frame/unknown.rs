@@ -1,17 +1,17 @@
 //! Compile-time error messages for unknown names, built without allocation: the name, and the names most
 //! similar to it.
 
-/// Message assembled at compile time.
+/// Error message that a `const` function assembles at compile time.
 pub struct Message {
     text: [u8; Message::CAPACITY],
     length: usize,
 }
 
-/// Maximum length of names that are compared.
+/// Maximum length of names whose edit distance is computed, bytes.
 const LETTERS: usize = 64;
-/// Maximum edit distance between similar names.
+/// Maximum edit distance at which two names count as similar.
 const EDITS: usize = 3;
-/// Maximum number of names that are listed.
+/// Maximum number of existing names that the message lists.
 const LISTED: usize = 8;
 
 impl Message {
@@ -70,7 +70,7 @@ impl Message {
         (if names.is_empty() { message } else { message.add("`") }, true)
     }
 
-    /// Returns the text of the message.
+    /// Returns the text of the message as a string.
     pub const fn text(&self) -> &str {
         // A message that is too long ends at the end of a piece.
         match core::str::from_utf8(self.text.split_at(self.length).0) {
@@ -94,8 +94,8 @@ impl Message {
     }
 }
 
-/// Returns the edit distance of two names, ignoring case, if it is at most three and at most a third of the
-/// length; otherwise `EDITS + 1` if one name contains the other, and `EDITS + 2` if not.
+/// Returns the edit distance of two names, ignoring case, if it is at most `EDITS` and a third of the length
+/// of `b`. Otherwise returns `EDITS + 1` if one name contains the other, and `EDITS + 2` if not.
 const fn distance(a: &[u8], b: &[u8]) -> usize {
     let least = if a.len() < b.len() { a.len() } else { b.len() };
     let mut limit = b.len() / 3;

@@ -6,7 +6,7 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
 
-/// Settings of the user.
+/// Settings of an adaptive method: tolerances, limits of the step length, and maximum number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Settings<T> {
     pub relative: T,
@@ -27,11 +27,11 @@ pub(super) struct Control {
     pub factors: [f64; 2],
 }
 
-/// Data passed from one adaptive step to the next.
+/// Memory of an adaptive method: data that one step passes to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct AdaptiveMemory<T, const NV: usize> {
-    /// Acceleration at the start of the step. It does not depend on the coordinate chart, so the last stage
-    /// of the previous step can be reused.
+    /// Acceleration at the start of the step, if known. It does not depend on the coordinate chart, so that
+    /// the last stage of the previous step can be reused.
     pub(super) acceleration: Option<SVector<T, NV>>,
     step: Option<T>,
     error: T,
@@ -59,7 +59,8 @@ pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
     pub step: Step<T, NQ, NV>,
     /// Acceleration at the end, if the method computes it.
     pub acceleration: Option<SVector<T, NV>>,
-    /// Estimated error: acceptable up to one, NaN if the trial is NaN.
+    /// Estimated error of the step relative to the tolerance: the step is accepted if it is at most one; NaN
+    /// if the step is NaN.
     pub error: T,
 }
 
@@ -137,7 +138,8 @@ impl<T: Real> Settings<T> {
         }
     }
 
-    /// Advances one accepted step; `attempt` computes the trials.
+    /// Repeats trial steps with adapted lengths, which `attempt` computes, until one is accepted. Returns the
+    /// accepted step.
     pub fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
         control: &Control,
@@ -209,13 +211,13 @@ macro_rules! adaptive {
                 Self { settings: Settings { longest: Some(step), ..self.settings } }
             }
 
-            /// Sets the shortest step, s: if the tolerance requires a shorter one, the run ends with
-            /// [`Error::StepTooSmall`].
+            /// Sets the minimum length of a step, s. If the tolerance requires a shorter step, the run ends
+            /// with [`Error::StepTooSmall`].
             pub fn min_step(self, step: T) -> Self {
                 Self { settings: Settings { least: Some(step), ..self.settings } }
             }
 
-            /// Sets the maximum number of trial steps in one run, accepted and rejected.
+            /// Sets the maximum number of trial steps in one run, counting both accepted and rejected ones.
             pub fn max_steps(self, steps: u64) -> Self {
                 Self { settings: Settings { most_steps: steps, ..self.settings } }
             }

@@ -22,7 +22,8 @@ use crate::private::{constant, epsilon, to_f64};
 use crate::speeds;
 use nalgebra::SVector;
 
-/// Maximum number of iterations of one step; a step well inside the region of convergence takes about ten.
+/// Maximum number of iterations for the midpoint of one step. A step well inside the region of convergence
+/// takes about ten.
 pub(super) const MOST_ITERATIONS: usize = 100;
 
 /// Returns the displacement from `q` to a midpoint after a time `half`, at which the configuration moves with
@@ -86,13 +87,13 @@ const MANY_ITERATIONS: usize = 24;
 /// another solution.
 const LEAP: f64 = 0.5;
 
-/// Solution of a midpoint.
+/// Solution of the constrained midpoint equations of one step.
 pub(super) struct Middle<T, const NV: usize> {
-    /// Velocity of the midpoint.
+    /// Velocity at the midpoint of the step.
     pub v: SVector<T, NV>,
     /// Displacement over the whole step.
     pub way: SVector<T, NV>,
-    /// Momentum after the step, before the impulse at its end.
+    /// Momentum at the end of the step, before the constraint impulse there.
     pub p: SVector<T, NV>,
     iterations: usize,
 }
@@ -111,16 +112,16 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     found: &Result<Middle<T, NV>, Error>,
     ended: &mut Ended,
 ) -> bool {
-    let singular = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
+    let is_singular_state = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
     let is_small_change = |v: &SVector<T, NV>| largest(&(v - start.v)) <= largest(&start.v) * constant(LEAP);
-    let quick = |found: &&Middle<T, NV>| {
+    let has_few_iterations = |found: &&Middle<T, NV>| {
         found.iterations <= if is_small_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
-    if let Some(found) = found.as_ref().ok().filter(quick) {
+    if let Some(found) = found.as_ref().ok().filter(has_few_iterations) {
         // Constraint impulses at a singular end do not remove the velocities that only the constraints of
         // that configuration forbid.
-        let before = ended.0.unwrap_or_else(|| singular(start.t, &start.q));
-        let after = singular(start.t + h, &system.integrate(&start.q, &found.way));
+        let before = ended.0.unwrap_or_else(|| is_singular_state(start.t, &start.q));
+        let after = is_singular_state(start.t + h, &system.integrate(&start.q, &found.way));
         ended.0 = Some(after);
         return before || after;
     }
@@ -142,7 +143,8 @@ struct Pace<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Pace<T, NV> {
-    /// Returns the relaxation factor of a change: one as long as the changes decrease clearly.
+    /// Returns the relaxation factor for the next change of an iteration: one while the changes decrease
+    /// fast.
     fn next(&mut self, change: &SVector<T, NV>) -> T {
         let (now, before) = (largest(change), largest(&self.last));
         let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);

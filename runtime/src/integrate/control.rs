@@ -32,15 +32,15 @@ impl<T: Real> Scale<T> {
         })
     }
 
-    /// Returns the root mean square over displacement and velocity, each relative to its tolerance.
+    /// Returns the root mean square of displacement and velocity entries, each divided by its tolerance.
     fn norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
         let ([x, v], [x_size, v_size]) = (x, sizes);
         let sum = self.squares(x, x_size) + self.squares(v, v_size);
         (sum / constant((2 * self.dimensions[1].max(1)) as f64)).sqrt()
     }
 
-    /// Returns the estimated error of a step relative to the tolerance; `error` is the estimate for
-    /// displacement and velocity. Up to one is acceptable; NaN if the step is NaN.
+    /// Returns the estimated error of a step relative to the tolerance: acceptable up to one; NaN if the step
+    /// is NaN. `error` is the error estimate for displacement and velocity.
     pub fn error<const NQ: usize, const NV: usize>(
         &self,
         step: &Step<T, NQ, NV>,
@@ -55,7 +55,7 @@ impl<T: Real> Scale<T> {
     }
 }
 
-/// Returns the elementwise maximum.
+/// Returns the elementwise maximum of two vectors.
 fn larger<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> SVector<T, N> {
     a.zip_map(b, |a, b| a.max(b))
 }
@@ -71,13 +71,13 @@ pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let small = constant::<T>(1e-5);
     let size = scale.sizes(&start.q);
     let speed = start.v.abs();
-    let norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
-    let (state, rate) = (norm(&size, &start.v), norm(&start.v, acceleration));
+    let scaled_state_norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
+    let (state, rate) = (scaled_state_norm(&size, &start.v), scaled_state_norm(&start.v, acceleration));
     let guess = if state < small || rate < small { constant(1e-6) } else { state / rate * constant(0.01) };
     let v = start.v + acceleration * guess;
     let q = system.integrate(&start.q, &(start.v * guess));
     let bend = system.acceleration(start.t + guess, &q, &v) - acceleration;
-    let bend = norm(&(acceleration * guess), &bend) / guess;
+    let bend = scaled_state_norm(&(acceleration * guess), &bend) / guess;
     let sharpest = bend.max(rate);
     let step = if sharpest <= constant(1e-15) {
         (guess * constant(1e-3)).max(constant(1e-6))

@@ -8,7 +8,7 @@ mod stages;
 
 use stages::stages;
 
-/// Controller constants of DOPRI5.
+/// Constants of the step-size controller of DOPRI5.
 const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
 
 /// The Dormand–Prince method of order 5 with an error estimate of order 4, adaptive steps and interpolation

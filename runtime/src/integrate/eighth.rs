@@ -11,7 +11,7 @@ mod coefficients;
 
 use coefficients::{FIFTH, STAGES, TERMS, THIRD, TIMES};
 
-/// Controller constants of DOP853.
+/// Constants of the step-size controller of DOP853.
 pub(super) const CONTROL: Control = Control { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
 
 /// Index of the stage at the end of the step.
@@ -105,13 +105,13 @@ pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
     if dense && error <= T::one() {
         reach(&mut k, END + 1..16);
         let [a, b, c, d] = TERMS.map(|weights| weighted(h, weights, &k));
-        let bend = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
+        let path_coefficients = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
             (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
         };
-        let (square, cube) = bend(&start.v, &displacement, &after.displacement);
+        let (square, cube) = path_coefficients(&start.v, &displacement, &after.displacement);
         let terms = [square, cube, a.displacement, b.displacement, c.displacement, d.displacement];
         step.displacement = step.displacement.with_terms(terms);
-        let (square, cube) = bend(acceleration, &(end.v - start.v), &after.velocity);
+        let (square, cube) = path_coefficients(acceleration, &(end.v - start.v), &after.velocity);
         step.velocity =
             step.velocity.with_terms([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
     }

@@ -1,4 +1,4 @@
-//! Errors of a simulation.
+//! Errors that end a simulation.
 
 use crate::ConstraintError;
 use core::fmt;
@@ -9,9 +9,9 @@ use core::fmt;
 pub enum Error {
     /// A step, duration or tolerance is not finite and positive. Reported before the first step.
     InvalidStep {
-        /// Name of the setting.
+        /// Name of the invalid setting.
         name: &'static str,
-        /// Value of the setting.
+        /// Value of the invalid setting.
         value: f64,
     },
     /// The run has no end: it has no duration and no event that stops it. Reported before the first step.
@@ -26,15 +26,15 @@ pub enum Error {
     StepTooSmall {
         /// Time at the start of the failed step.
         t: f64,
-        /// Step that would have been tried.
+        /// Length of the step that would have been tried, s.
         h: f64,
     },
     /// The limit on the number of steps was reached: a stiff mechanism, or too long a run for the limit.
     TooManySteps {
-        /// Time reached.
+        /// Time that the run reached, s.
         t: f64,
     },
-    /// The function of an event is NaN.
+    /// The function that defines an event is NaN.
     Event {
         /// Time at the start of the step on which the function is NaN, or of the run.
         t: f64,
@@ -48,7 +48,7 @@ pub enum Error {
     },
     /// The state at the start violates the constraints: correct it with `assemble` and `project_velocity`.
     OffConstraints {
-        /// Time of the start.
+        /// Time at the start of the run, s.
         t: f64,
         /// Name of the entry of the configuration, or otherwise of the velocity, that the constraints correct
         /// most.
@@ -59,16 +59,15 @@ pub enum Error {
     /// The constraints cannot be satisfied: the mechanism is locked, its friction jams, or a step was too
     /// long.
     Constraint {
-        /// Time of the failure.
+        /// Time at which the constraints could not be satisfied, s.
         t: f64,
         /// Violated constraint, or the reason why the motion is undetermined.
         reason: ConstraintError,
     },
-    /// An impact does not separate the colliding bodies, or impacts accumulate, as those of a ball that comes
-    /// to rest, which no contact constraint then supports. End the run there (`until`), and continue with the
-    /// contact as a constraint.
+    /// An impact does not separate the colliding bodies, or impacts accumulate, as for a ball that comes to
+    /// rest. End the run there (`until`), and continue with the contact as a constraint.
     Impacts {
-        /// Time reached.
+        /// Time that the run reached, s.
         t: f64,
         /// Index of the event, in the order of declaration.
         event: usize,
@@ -133,7 +132,7 @@ impl fmt::Display for Error {
 }
 
 impl Error {
-    /// Returns the error with `origin`, s, added to its time.
+    /// Returns the error with its time increased by `origin`, s.
     pub(super) fn shifted(mut self, origin: f64) -> Self {
         match &mut self {
             Self::NotFinite { t }

@@ -66,17 +66,18 @@ pub struct EventDriven<T> {
 
 adaptive!(EventDriven);
 
-/// Data passed from one step of [`EventDriven`] to the next.
+/// Memory of [`EventDriven`]: data that one step passes to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct EventMemory<T, const NV: usize> {
     adaptive: AdaptiveMemory<T, NV>,
     /// Number of consecutive very short steps, weighted by [`FEWER`].
     short: u32,
-    /// Number of time-stepping steps among them; each is twice as long as the previous one.
+    /// Number of consecutive time-stepping steps among the very short steps; each is twice as long as the
+    /// previous one.
     stretch: u32,
     /// Number of further steps for which sliding contacts with indeterminate forces are assumed.
     shared: u32,
-    /// Whether the last step was an impact.
+    /// Whether the previous step was an impact.
     has_struck: bool,
 }
 
@@ -86,12 +87,13 @@ pub struct EventMemory<T, const NV: usize> {
 const SHORT_STEPS: u32 = 100;
 /// Length below which a step counts as very short, in multiples of the shortest time-stepping step.
 const SHORT: f64 = 64.0;
-/// Length below which a step counts as very short while sliding contacts have indeterminate forces. The
-/// correct distribution of these forces is unknown, and a search for one that persists may not end.
+/// Length below which a step counts as very short while the forces of sliding contacts are indeterminate, in
+/// multiples of the shortest time-stepping step. A search for the correct distribution of these forces may
+/// not end.
 const SHORT_SHARED: f64 = 8192.0;
 /// Weight of a very short step while sliding contacts have indeterminate forces.
 const FEWER: u32 = 8;
-/// Number of steps after the last such step for which its limits apply.
+/// Number of steps for which indeterminate forces of sliding contacts are assumed after they last occurred.
 const LATELY: u32 = 16;
 /// Maximum number of doublings of the shortest time-stepping step.
 const LONGEST: u32 = 14;
@@ -108,7 +110,8 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
         }
     }
 
-    /// Whether the next step is one of time stepping.
+    /// Returns whether very short steps accumulate, so that the next step uses time stepping; if so,
+    /// decreases their count below the threshold.
     fn is_stuck(&mut self) -> bool {
         let is_stuck = self.short > SHORT_STEPS;
         if is_stuck {
@@ -174,13 +177,13 @@ pub struct Section<'a, T, const NQ: usize, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
-    /// Returns the step with `origin`, s, added to the origin of its times.
+    /// Returns the arguments of the step with the origin of its times increased by `origin`, s.
     pub(super) fn shifted(self, origin: T) -> Self {
         Self { origin: self.origin + origin, ..self }
     }
 }
 
-/// Step of a mechanism with contacts, with its inputs.
+/// Event-located step of a mechanism with contacts: arguments of the step, and the inputs.
 pub(super) struct Following<'a, T, I, const NQ: usize, const NV: usize> {
     pub(super) section: Section<'a, T, NQ, NV>,
     pub(super) inputs: &'a mut I,
@@ -200,8 +203,8 @@ where
     {
         let Self { section: Section { settings, memory, start, until, origin }, inputs } = self;
         let now = origin + start.t;
-        let reported = |reason| Error::Constraint { t: to_f64(start.t), reason };
-        let v = separated(mechanism, now, &start.q, &start.v).map_err(reported)?;
+        let constraint_error = |reason| Error::Constraint { t: to_f64(start.t), reason };
+        let v = separated(mechanism, now, &start.q, &start.v).map_err(constraint_error)?;
         let begin = State { v, ..*start };
         memory.has_struck = v != start.v && !memory.has_struck;
         if memory.has_struck {
@@ -267,7 +270,8 @@ where
         Watch { s, t, q, v, tau: &tau }.left(self.phased)
     }
 
-    /// Advances a step that ends at the first event at the latest; `None` if an event occurs at its start.
+    /// Advances a step that ends at or before the first event. Returns `None` if an event occurs at the start
+    /// of the step.
     fn step<const NU: usize>(
         &mut self,
         settings: &Settings<T>,
@@ -343,7 +347,7 @@ where
         Some(self.tried(settings, after.0, true))
     }
 
-    /// Returns a step of `h` seconds.
+    /// Returns a trial step of `h` seconds with the current contact modes, without a search for events.
     fn tried<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,

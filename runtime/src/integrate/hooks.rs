@@ -6,17 +6,17 @@ use crate::forward::{constants, each_function};
 use crate::{Mechanism, Real};
 use nalgebra::SVector;
 
-/// Properties of a mechanism that integration methods read from the object, because those of a mechanism that
-/// is loaded at run time are not known to the compiler.
+/// Properties of a mechanism as data, which integration methods read at run time. A mechanism that is loaded
+/// at run time has properties that the compiler does not know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Features {
-    /// Value of [`Hooks::CONSTRAINED`].
+    /// Whether constraints restrict the coordinates ([`Hooks::CONSTRAINED`]).
     pub constrained: bool,
-    /// Value of [`Hooks::SLIPPING`].
+    /// Whether contacts slide with friction ([`Hooks::SLIPPING`]).
     pub slipping: bool,
-    /// Value of [`Hooks::FEEDBACK`].
+    /// Whether feedback enforces the constraints, or forces depend on accelerations ([`Hooks::FEEDBACK`]).
     pub feedback: bool,
-    /// Value of [`Hooks::SPEEDS`].
+    /// Whether the mechanism declares generalized speeds ([`Hooks::SPEEDS`]).
     pub speeds: bool,
     /// Numbers of coordinates and velocities in use; further entries of vectors are padding, which is zero.
     pub dimensions: [usize; 2],
@@ -49,7 +49,8 @@ impl Features {
 /// constraints, impulses, contacts. Integration methods call them; `#[mechanism]` and wrappers of mechanisms
 /// implement them.
 pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// Whether constraints restrict the coordinates ([`Constrained`](crate::Constrained)).
+    /// Whether constraints restrict the coordinates, so that the mechanism is
+    /// [`Constrained`](crate::Constrained).
     const CONSTRAINED: bool = false;
 
     /// Whether contacts slide with friction ([`Slipping`](crate::elements::Slipping)): forces then depend on
@@ -118,9 +119,9 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
         self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
     }
 
-    /// Whether the constraints are singular or nearly singular in the configuration `q`: a step by `dv`
-    /// changes them as much as they differ from dependent constraints. Integration methods then use
-    /// accelerations, which are continuous there.
+    /// Whether the constraints are singular or nearly so at `q`: a displacement by `dv` changes them as much
+    /// as they differ from dependent constraints. Integration methods then use accelerations, which are
+    /// continuous there.
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! The implicit midpoint rule in momenta.
+//! Implicit midpoint rule, formulated in generalized momenta.
 
 use super::constrained::{
     Ended, MOST_ITERATIONS, Middle, Settling, divergence, is_crossing, midpoint, passing,
@@ -37,7 +37,7 @@ pub struct ImplicitMidpoint<T> {
     step: T,
 }
 
-/// Data passed from one step of the midpoint rule to the next.
+/// Memory of the implicit midpoint rule: data that one step passes to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct MidpointMemory<T, const NV: usize> {
     momentum: Option<SVector<T, NV>>,
@@ -49,13 +49,13 @@ pub struct MidpointMemory<T, const NV: usize> {
 type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
 
 impl<T: Real> ImplicitMidpoint<T> {
-    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
-    /// sample time.
+    /// Returns the implicit midpoint rule with steps of `step` seconds. Steps are slightly shorter where they
+    /// must end on a sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// Returns the length of a step, s.
+    /// Returns the nominal length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
@@ -73,7 +73,7 @@ fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usiz
     if system.has_speeds() { system.displacement_rate(q, way, v) * half } else { v * half }
 }
 
-/// Solves for the midpoint by iteration from the estimate `v` of its velocity.
+/// Solves the midpoint equations by iteration, starting with the estimate `v` of the midpoint's velocity.
 fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,

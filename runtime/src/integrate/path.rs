@@ -1,4 +1,4 @@
-//! States within a step: interpolating polynomials.
+//! Interpolation of states within a step by polynomials.
 
 use super::{Dynamics, State};
 use crate::Real;
@@ -16,12 +16,13 @@ pub struct Path<T, const N: usize> {
     square: SVector<T, N>,
     cube: SVector<T, N>,
     fourth: SVector<T, N>,
-    /// Coefficients of degree five to seven.
+    /// Coefficients of the interpolating polynomial for degrees five to seven.
     higher: [SVector<T, N>; 3],
 }
 
 impl<T: Real, const N: usize> Path<T, N> {
-    /// Returns the linear interpolation between two values.
+    /// Returns the polynomial that interpolates linearly between the values at the start and the end of a
+    /// step.
     pub fn linear(start: SVector<T, N>, end: SVector<T, N>) -> Self {
         let zero = SVector::zeros();
         Self { start, change: end - start, square: zero, cube: zero, fourth: zero, higher: [zero; 3] }
@@ -45,11 +46,17 @@ impl<T: Real, const N: usize> Path<T, N> {
         Self { fourth, ..self }
     }
 
-    /// Sets the coefficients from `r₃` on; those beyond `terms` are zero.
+    /// Sets the coefficients of the polynomial from `r₃` on to `terms`; further coefficients become zero.
     pub(super) fn with_terms<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
         let zero = SVector::zeros();
-        let term = |k: usize| terms.get(k).copied().unwrap_or(zero);
-        Self { square: term(0), cube: term(1), fourth: term(2), higher: [term(3), term(4), term(5)], ..self }
+        let term_or_zero = |k: usize| terms.get(k).copied().unwrap_or(zero);
+        Self {
+            square: term_or_zero(0),
+            cube: term_or_zero(1),
+            fourth: term_or_zero(2),
+            higher: [term_or_zero(3), term_or_zero(4), term_or_zero(5)],
+            ..self
+        }
     }
 
     /// Returns the value at `theta`, 0 at the start and 1 at the end.
@@ -65,13 +72,13 @@ impl<T: Real, const N: usize> Path<T, N> {
 /// Accepted step: its ends and the interpolation in between.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<T, const NQ: usize, const NV: usize> {
-    /// State at the beginning.
+    /// State at the start of the step.
     pub start: State<T, NQ, NV>,
-    /// State at the end.
+    /// State at the end of the step.
     pub end: State<T, NQ, NV>,
     /// Displacement `φ` with `q = q₀ ⊕ φ`.
     pub displacement: Path<T, NV>,
-    /// Velocity `v`.
+    /// Polynomial of the velocity `v` within the step.
     pub velocity: Path<T, NV>,
 }
 
@@ -86,8 +93,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Step<T, NQ, NV> {
         }
     }
 
-    /// Returns the step with cubic interpolation of `φ` and `v`, from the velocities and accelerations at its
-    /// ends.
+    /// Replaces the interpolation of displacement `φ` and velocity `v` by cubic polynomials, from velocities
+    /// and accelerations at both ends of the step.
     pub fn cubic<D: Dynamics<T, NQ, NV>>(
         self,
         system: &D,

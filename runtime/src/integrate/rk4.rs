@@ -1,4 +1,4 @@
-//! The classical Runge–Kutta method.
+//! Classical Runge–Kutta method of order 4.
 
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
@@ -15,19 +15,19 @@ pub struct Rk4<T> {
 }
 
 impl<T: Real> Rk4<T> {
-    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
-    /// sample time.
+    /// Returns the Runge–Kutta method with steps of `step` seconds. Steps are slightly shorter where they
+    /// must end on a sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// Returns the length of a step, s.
+    /// Returns the nominal length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
 }
 
-/// Rates `φ̇` and `v̇` of one stage.
+/// Rates `φ̇` and `v̇` of displacement and velocity at one Runge–Kutta stage.
 type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Returns the rates at time `h` after `start`, reached with the mean rates `mean`.
@@ -54,17 +54,19 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     added: Option<&SVector<T, NV>>,
 ) -> (Rates<T, NV>, Option<SVector<T, NV>>) {
     let half = h * constant(0.5);
-    let carry = |system: &D, displacement: &SVector<T, NV>| {
+    let transported_acceleration = |system: &D, displacement: &SVector<T, NV>| {
         added.map(|added| system.carry(start.t, &start.q, displacement, added))
     };
-    let sum = |(displacement, acceleration): Rates<T, NV>, added: &Option<SVector<T, NV>>| {
+    let add_acceleration = |(displacement, acceleration): Rates<T, NV>, added: &Option<SVector<T, NV>>| {
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
-    let k1 = sum((start.v, before), &added.copied());
-    let k2 = sum(rates(system, start, half, &k1), &carry(system, &(k1.0 * half)));
-    let k3 = sum(rates(system, start, half, &k2), &carry(system, &(k2.0 * half)));
-    let at_end = carry(system, &(k3.0 * h));
-    let k4 = sum(rates(system, start, h, &k3), &at_end);
+    let k1 = add_acceleration((start.v, before), &added.copied());
+    let k2 =
+        add_acceleration(rates(system, start, half, &k1), &transported_acceleration(system, &(k1.0 * half)));
+    let k3 =
+        add_acceleration(rates(system, start, half, &k2), &transported_acceleration(system, &(k2.0 * half)));
+    let at_end = transported_acceleration(system, &(k3.0 * h));
+    let k4 = add_acceleration(rates(system, start, h, &k3), &at_end);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let mean = ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth);
     (mean, at_end)

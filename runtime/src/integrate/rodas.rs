@@ -8,7 +8,7 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// Controller constants of RODAS.
+/// Constants of the step-size controller of RODAS.
 const CONTROL: Control = Control { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
 /// Diagonal coefficient `γ` of the method, which multiplies the Jacobian in each stage.
 const GAMMA: f64 = 0.25;
@@ -87,7 +87,7 @@ pub struct Rodas<T> {
 
 adaptive!(Rodas);
 
-/// Data passed from one step to the next.
+/// Memory of RODAS: data that one step passes to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct RodasMemory<T, const NV: usize> {
     steps: AdaptiveMemory<T, NV>,
@@ -175,7 +175,7 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     Linear { slopes, turn }
 }
 
-/// Returns a weighted sum of stages.
+/// Returns the weighted sum of the displacement and velocity increments of six stages.
 fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) -> Rates<T, NV> {
     let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, stage) in weights.iter().zip(stages) {
@@ -238,9 +238,9 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 
 /// LU factorisation of a matrix with row pivoting.
 struct Factored<T, const N: usize> {
-    /// Triangular factors in one matrix, with the multipliers below the diagonal.
+    /// LU factors in one matrix: the upper triangle, and the elimination multipliers below the diagonal.
     both: SMatrix<T, N, N>,
-    /// Row with which each row was exchanged.
+    /// Index of the row with which each row was exchanged during the pivoting.
     exchanged: [usize; N],
 }
 
@@ -249,9 +249,10 @@ impl<T: Real, const N: usize> Factored<T, N> {
     fn new(mut both: SMatrix<T, N, N>) -> Option<Self> {
         let mut exchanged = [0; N];
         for (k, place) in exchanged.iter_mut().enumerate() {
-            let size = |i: &usize| both[(*i, k)].abs();
-            let best =
-                (k..N).max_by(|i, j| size(i).partial_cmp(&size(j)).unwrap_or(core::cmp::Ordering::Equal))?;
+            let pivot_magnitude = |i: &usize| both[(*i, k)].abs();
+            let best = (k..N).max_by(|i, j| {
+                pivot_magnitude(i).partial_cmp(&pivot_magnitude(j)).unwrap_or(core::cmp::Ordering::Equal)
+            })?;
             *place = best;
             both.swap_rows(k, best);
             let pivot = both[(k, k)];

@@ -1,4 +1,4 @@
-//! A linearly implicit method for stiff mechanisms.
+//! Linearly implicit (Rosenbrock) integration method for stiff mechanisms.
 
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
 use crate::Real;
@@ -25,8 +25,8 @@ pub struct Rosenbrock<T> {
 }
 
 impl<T: Real> Rosenbrock<T> {
-    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
-    /// sample time.
+    /// Returns the Rosenbrock method with steps of `step` seconds. Steps are slightly shorter where they must
+    /// end on a sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
@@ -46,13 +46,14 @@ impl<T: Real, const NV: usize> Slopes<T, NV> {
     }
 }
 
-/// Displacements along which derivatives are taken.
+/// Directions of displacement for which a linearly implicit method differentiates the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Along {
     /// Displacements that the constraints allow: for methods whose order does not depend on the matrix.
     Allowed,
-    /// All displacements: for methods whose order requires the exact Jacobian. Their stages leave the
-    /// constraints, because of curvature and centripetal accelerations.
+    /// All displacements, including those that constraints forbid: for methods whose order requires the exact
+    /// Jacobian. The stages of such methods violate the constraints, because of curvature and centripetal
+    /// accelerations.
     All,
 }
 
@@ -154,7 +155,7 @@ fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>)
 }
 
 impl<T: Real> Method<T> for Rosenbrock<T> {
-    /// Derivatives of the last step.
+    /// Acceleration derivatives of the previous step, if available.
     type Memory<const NV: usize> = Option<Slopes<T, NV>>;
 
     const FIXED: bool = true;
@@ -194,18 +195,18 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let part = gamma * h;
         // (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv] reduces to kφ = a + γh kv and one system for kv.
         let matrix = SMatrix::identity() - slopes.by_v * part - slopes.by_q * (part * part);
-        let stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
+        let solve_stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
             let kv = solve(matrix, b + slopes.by_q * a * part)?;
             Some((a + kv * part, kv))
         };
         let singular = Error::NotConverged { t: to_f64(start.t), iterations: 0 };
-        let first = stage(start.v, before + slopes.by_t * part).ok_or(singular)?;
+        let first = solve_stage(start.v, before + slopes.by_t * part).ok_or(singular)?;
         let (moved, v) = (first.0 * h, start.v + first.1 * h);
         let q = system.integrate(&start.q, &moved);
         let two = constant::<T>(2.0);
         let rate = system.displacement_rate(&start.q, &moved, &v) - first.0 * two;
         let force = system.acceleration(t, &q, &v) - slopes.by_t * part - first.1 * two;
-        let second = stage(rate, force).ok_or(singular)?;
+        let second = solve_stage(rate, force).ok_or(singular)?;
         let (three, half) = (constant::<T>(3.0), h * constant(0.5));
         let displacement = (first.0 * three + second.0) * half;
         let v = start.v + (first.1 * three + second.1) * half;

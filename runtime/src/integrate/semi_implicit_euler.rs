@@ -1,4 +1,4 @@
-//! The semi-implicit (symplectic) Euler method.
+//! Semi-implicit (symplectic) Euler method.
 
 use super::constrained::{Ended, Middle, is_crossing, midpoint, passing};
 use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
@@ -29,13 +29,13 @@ pub struct SemiImplicitEuler<T> {
 }
 
 impl<T: Real> SemiImplicitEuler<T> {
-    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
-    /// sample time.
+    /// Returns the semi-implicit Euler method with steps of `step` seconds. Steps are slightly shorter where
+    /// they must end on a sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// Returns the length of a step, s.
+    /// Returns the nominal length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
@@ -50,8 +50,8 @@ fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system.momentum_rate(*t, q, v) - system.inertial_rate(*t, q, v)
 }
 
-/// Advances a step near a singular configuration. As elsewhere, the method is a time-reversible one observed
-/// half an impulse earlier.
+/// Advances a semi-implicit Euler step near a singular configuration. As elsewhere, the method is equivalent
+/// to a time-reversible method whose state is observed half an impulse earlier.
 fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -59,16 +59,16 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     h: T,
 ) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
     let half = h * constant(0.5);
-    let pushed = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
+    let advance_by_forces = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
         // Responses to forces, not to impulses: next to stiff springs, impulses of short steps would be lost
         // in rounding.
         let force = force(system, state);
         let v = state.v + system.response(state.t, &state.q, &state.v, &force) * h;
         settled(system, State { v, ..*state }, state.t).ok()
     };
-    let later = pushed(system, start, half)?;
+    let later = advance_by_forces(system, start, half)?;
     let (way, end) = passing(system, &later, t, h)?;
-    Some((way, pushed(system, &end, -half)?))
+    Some((way, advance_by_forces(system, &end, -half)?))
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {
@@ -107,8 +107,8 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         };
         let (way, end) = if constrained {
             let p = system.momentum(start.t, &start.q, &start.v) + force(system, start) * h;
-            let rate = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
-            let found = midpoint(system, rate, start, &p, h, start.v);
+            let inertial_rate_of_state = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
+            let found = midpoint(system, inertial_rate_of_state, start, &p, h, start.v);
             let crossing = is_crossing(system, start, h, &found, memory);
             let passed = if crossing { pass(system, start, t, h) } else { None };
             match passed {

@@ -1,18 +1,19 @@
-//! Stages of Runge–Kutta methods: rates, sums of them, and the state after such a sum.
+//! Stages of Runge–Kutta methods: rates of a stage, weighted sums of rates, and the state reached by such a
+//! sum.
 
 use super::{Dynamics, State};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Rates `φ̇` and `v̇` of one stage.
+/// Rates `φ̇` and `v̇` of displacement and velocity at one Runge–Kutta stage.
 #[derive(Clone, Copy)]
 pub(super) struct Rates<T, const NV: usize> {
     pub displacement: SVector<T, NV>,
     pub velocity: SVector<T, NV>,
 }
 
-/// Returns `h Σ weight · rates`.
+/// Returns the weighted sum `h Σ weight · rates` of the rates of several stages.
 pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
     h: T,
     terms: [(f64, &Rates<T, NV>); N],

@@ -19,11 +19,11 @@ pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// Begins a control period.
+    /// Notifies the inputs that a control period begins, so that a digital controller computes new values.
     fn renew(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) {}
 }
 
-/// Zero inputs.
+/// Inputs that are always zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoInputs;
 
@@ -36,7 +36,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, N
 /// Inputs as a function of time and state, evaluated at each evaluation of the dynamics.
 #[derive(Clone, Copy, Debug)]
 pub struct ContinuousInputs<F>(
-    /// Function `|t, q, v| u`.
+    /// User function `|t, q, v| u`, which returns the inputs at a time and state.
     pub F,
 );
 
@@ -92,14 +92,15 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         t
     }
 
-    /// Returns `q ⊕ dv`.
+    /// Returns the configuration `q ⊕ dv`: `q` displaced by the tangent vector `dv`.
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;
 
-    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
+    /// Returns the rate of the displacement `dv` for which the configuration `q ⊕ dv` moves with velocity
+    /// `v`.
     fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`. It equals
-    /// [`tangent_rate`](Self::tangent_rate) unless generalized speeds are declared
+    /// Returns the rate of the displacement `dv` from `q` for which `q ⊕ dv` moves with velocity `v`. Equals
+    /// [`tangent_rate`](Self::tangent_rate) unless the mechanism declares generalized speeds
     /// ([`Mechanism::displacement_rate`](crate::Mechanism::displacement_rate)).
     fn displacement_rate(
         &self,
@@ -124,7 +125,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// Returns `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Whether constraints restrict the state.
+    /// Whether constraints restrict the state of the mechanism.
     fn is_constrained(&self) -> bool;
 
     /// Projects a state onto the constraints: returns the nearest state that satisfies them.
@@ -149,9 +150,9 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// Returns the contribution of the velocity to `ṗ`, without inputs: inertia and dashpots.
     fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Returns the velocity with the generalized momentum `p`, refined from the estimate `v`: exact up to
-    /// rounding for any `v`, most accurate for a close one. With constraints, the velocity satisfies them
-    /// through constraint impulses.
+    /// Returns the velocity for the generalized momentum `p`, refined from the estimate `v`: exact up to
+    /// rounding for any estimate, most accurate for a close one. Constraint impulses make the velocity
+    /// satisfy the constraints.
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// Returns the change of the velocity `v` due to the generalized impulse `p` and the constraint impulses.
@@ -166,8 +167,8 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         p: &SVector<T, NV>,
     ) -> SVector<T, NV>;
 
-    /// Returns the change of `v̇` due to the generalized forces `p`. In singular configurations, the
-    /// constraints are those of the motion that passes through with the velocity `v`.
+    /// Returns the change of the acceleration `v̇` due to additional generalized forces `p`. In singular
+    /// configurations, the constraints are those of the motion with velocity `v` through the configuration.
     fn response(
         &mut self,
         t: T,
@@ -223,12 +224,12 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     }
 }
 
-/// Mechanism with its inputs.
+/// Mechanism together with its inputs, whose dynamics an integration method evaluates.
 #[derive(Debug)]
 pub struct System<'m, M, I, const NU: usize> {
     /// Mechanism to be integrated.
     pub mechanism: &'m M,
-    /// Inputs of the mechanism.
+    /// Source of the inputs of the mechanism.
     pub inputs: I,
     /// Reason why the last requested acceleration is undetermined.
     undetermined: Option<ConstraintError>,
@@ -241,7 +242,7 @@ impl<M, I: Clone, const NU: usize> Clone for System<'_, M, I, NU> {
 }
 
 impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
-    /// Returns the system of a mechanism and its inputs.
+    /// Returns the system of a mechanism and the source of its inputs.
     pub fn new(mechanism: &'m M, inputs: I) -> Self {
         Self { mechanism, inputs, undetermined: None }
     }
@@ -459,9 +460,9 @@ where
         let root = epsilon::<T>().sqrt();
         for k in 0..self.mechanism.features().dimensions[1].min(NV) {
             let size = root * v[k].abs().max(T::one());
-            let unit = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
-            let moved = self.inputs.evaluate(t, &self.mechanism.integrate(q, &unit(root)), v);
-            let faster = self.inputs.evaluate(t, q, &(v + unit(size)));
+            let unit_step = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
+            let moved = self.inputs.evaluate(t, &self.mechanism.integrate(q, &unit_step(root)), v);
+            let faster = self.inputs.evaluate(t, q, &(v + unit_step(size)));
             by_q.column_mut(k).gemv(T::one() / root, &by_u, &(moved - u), T::one());
             by_v.column_mut(k).gemv(T::one() / size, &by_u, &(faster - u), T::one());
         }

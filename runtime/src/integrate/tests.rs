@@ -12,7 +12,7 @@ const SYMMETRIC: Vector3<f64> = Vector3::new(1.0, 1.0, 0.4);
 const TUMBLING: Vector3<f64> = Vector3::new(1.0, 2.0, 2.7);
 const SPIN: [f64; 3] = [0.8, -0.5, 1.2];
 
-/// Returns a Dormand–Prince method with equal steps.
+/// Returns a Dormand–Prince method of order 5 whose steps all have the length `h`.
 fn equal_steps(h: f64) -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
@@ -101,8 +101,8 @@ orders! {
     rodas_has_order_four: |h| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h), 4.0, 2.0 / 32.0;
 }
 
-/// Steps short enough to show the order leave little error above rounding, so the observed orders are
-/// accurate to one half.
+/// Checks that the order 8 is observed to within one half. Steps that are short enough to show the order
+/// leave little error above rounding.
 #[test]
 fn dormand_prince_8_has_order_eight() {
     let cases: [&dyn Fn(f64) -> f64; 3] =
@@ -117,7 +117,7 @@ fn dormand_prince_8_has_order_eight() {
 #[test]
 fn dense_output_has_order_four() {
     // The error of one interpolated step is of order h⁵.
-    let error = |h: f64| {
+    let dense_output_error = |h: f64| {
         let oscillator = oscillator::<f64>();
         let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
         samples.method(equal_steps(h)).fold(0.0_f64, |worst, sample| {
@@ -125,14 +125,14 @@ fn dense_output_has_order_four() {
             worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
         })
     };
-    let found = order(error, 0.1);
+    let found = order(dense_output_error, 0.1);
     std::println!("dense output: {found:.3}");
     assert!((found - 5.0).abs() < 0.25, "{found}");
 }
 
 #[test]
 fn dense_output_of_order_eight_has_order_seven() {
-    let error = |h: f64| {
+    let dense_output_error = |h: f64| {
         let oscillator = oscillator::<f64>();
         let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
         samples.method(eighth(h)).fold(0.0_f64, |worst, sample| {
@@ -140,8 +140,8 @@ fn dense_output_of_order_eight_has_order_seven() {
             worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
         })
     };
-    let found = order(error, 1.0);
-    std::println!("dense output: {found:.3}, {:.1e}", error(1.0));
+    let found = order(dense_output_error, 1.0);
+    std::println!("dense output: {found:.3}, {:.1e}", dense_output_error(1.0));
     assert!((found - 8.0).abs() < 0.5, "{found}");
 }
 
@@ -294,16 +294,17 @@ fn single_precision_runs() {
 fn settings_that_make_no_sense_are_refused() {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).duration(1.0);
-    let invalid = |result: Result<_, Error>| matches!(result.map(|_| ()), Err(Error::InvalidStep { .. }));
+    let is_invalid_step =
+        |result: Result<_, Error>| matches!(result.map(|_| ()), Err(Error::InvalidStep { .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(invalid(run.clone().method(Rk4::step(bad)).finish()));
-        assert!(invalid(run.clone().method(SemiImplicitEuler::step(bad)).finish()));
-        assert!(invalid(run.clone().method(ImplicitMidpoint::step(bad)).finish()));
-        assert!(invalid(run.clone().method(DormandPrince::new().tolerance(bad, 1e-9)).finish()));
-        assert!(invalid(run.clone().method(DormandPrince::new().max_step(bad)).finish()));
-        assert!(bad == 0.0 || invalid(run.clone().duration(bad).finish()));
-        assert!(invalid(run.clone().sample_every(bad).finish()));
-        assert!(invalid(run.clone().control_every(bad, |_, _, _| SVector::zeros()).finish()));
+        assert!(is_invalid_step(run.clone().method(Rk4::step(bad)).finish()));
+        assert!(is_invalid_step(run.clone().method(SemiImplicitEuler::step(bad)).finish()));
+        assert!(is_invalid_step(run.clone().method(ImplicitMidpoint::step(bad)).finish()));
+        assert!(is_invalid_step(run.clone().method(DormandPrince::new().tolerance(bad, 1e-9)).finish()));
+        assert!(is_invalid_step(run.clone().method(DormandPrince::new().max_step(bad)).finish()));
+        assert!(bad == 0.0 || is_invalid_step(run.clone().duration(bad).finish()));
+        assert!(is_invalid_step(run.clone().sample_every(bad).finish()));
+        assert!(is_invalid_step(run.clone().control_every(bad, |_, _, _| SVector::zeros()).finish()));
     }
     assert_eq!(simulate(&oscillator).finish(), Err(Error::Endless), "a run without end has no last sample");
     let shown = format!("{}", Error::InvalidStep { name: "the step", value: -1.0 });

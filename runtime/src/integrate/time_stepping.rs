@@ -65,7 +65,7 @@ pub struct TimeStepping<T> {
     stages: Stages,
 }
 
-/// Evaluations of the dynamics in a step.
+/// Variants of a time step: four or two evaluations of the dynamics, or leapfrog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stages {
     RungeKutta,
@@ -74,8 +74,8 @@ enum Stages {
 }
 
 impl<T: Real> TimeStepping<T> {
-    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
-    /// sample time.
+    /// Returns the time-stepping method with steps of `step` seconds. Steps are slightly shorter where they
+    /// must end on a sample time.
     pub const fn step(step: T) -> Self {
         Self { step, stages: Stages::RungeKutta }
     }
@@ -176,9 +176,9 @@ impl<T: Real, const NV: usize> TouchMemory<T, NV> {
     /// Records the contribution of the contacts in a step, their impulses, and the violation of the contact
     /// conditions.
     fn note(&mut self, rate: SVector<T, NV>, impulses: Impulses<T, NV>, violation: T) {
-        let least = |size: T, x: &T| size.max(x.abs());
-        let size = rate.iter().fold(T::zero(), least);
-        let change = (rate - self.rate).iter().fold(T::zero(), least);
+        let max_magnitude = |size: T, x: &T| size.max(x.abs());
+        let size = rate.iter().fold(T::zero(), max_magnitude);
+        let change = (rate - self.rate).iter().fold(T::zero(), max_magnitude);
         *self = Self {
             rate,
             impulses,
@@ -222,7 +222,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         _dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
-        let reported = |reason| match reason {
+        let constraint_error = |reason| match reason {
             ConstraintError::NotFinite => Error::NotFinite { t: to_f64(start.t) },
             reason => Error::Constraint { t: to_f64(start.t), reason },
         };
@@ -230,7 +230,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let before = earlier.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
         let (rate, impulses) = match memory.steady {
             true => (memory.rate, memory.impulses),
-            false => holding(system, start, &before, &memory.impulses, h).map_err(reported)?,
+            false => holding(system, start, &before, &memory.impulses, h).map_err(constraint_error)?,
         };
         let (free, given) = match self.stages {
             Stages::RungeKutta => guided(system, start, (&before, &rate), h, t),
@@ -244,7 +244,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let v = free.v - given;
         let Touched { q, v, held, impulses, violation } = system
             .contact_step(t, (&start.q, &start.v), (&free.q, &v), (&given, &impulses), h)
-            .map_err(reported)?;
+            .map_err(constraint_error)?;
         memory.note(held / h, impulses, violation);
         let end = State { q, v, ..free };
         let end = if end == free { end } else { settled(system, end, start.t)? };
@@ -305,7 +305,7 @@ fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
         return (State { t, q: system.integrate(&middle, &(v * half)), v }, still, at_middle);
     }
     // Impulses keep their directions in space, like forces that act in the middle.
-    let carry = |h: T| system.carry(start.t, &start.q, &(start.v * h), rate);
-    let v = start.v + (at_middle + carry(half)) * h;
-    (State { t, q: system.integrate(&middle, &(v * half)), v }, carry(h) * h, at_middle)
+    let transported_rate = |h: T| system.carry(start.t, &start.q, &(start.v * h), rate);
+    let v = start.v + (at_middle + transported_rate(half)) * h;
+    (State { t, q: system.integrate(&middle, &(v * half)), v }, transported_rate(h) * h, at_middle)
 }

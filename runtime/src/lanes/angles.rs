@@ -6,7 +6,7 @@ use crate::arithmetic::Vector;
 use crate::trigonometry::{Aligned, kernel, same};
 use core::any::Any;
 
-/// Returns sines and cosines of small angles.
+/// Returns sines and cosines of angles that are within the range of the fast argument reduction.
 #[inline(always)]
 pub(super) fn of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
     let (s, c, shifted) = kernel::<A, _>(Vector::<A, f64, L>::from_array(*x));
@@ -36,7 +36,7 @@ fn replace<A: Registers, const L: usize, const N: usize>(
     c
 }
 
-/// Sines and cosines.
+/// Sines and cosines of the same angles.
 type Both<X> = (X, X);
 
 /// Returns sines and cosines if the lanes fill a register, otherwise `None`.
@@ -59,7 +59,8 @@ pub(crate) fn sin_cos_all<A: Registers, T: Real, const L: usize, const N: usize>
     None
 }
 
-/// Returns sines and cosines of numbers that are lanes themselves, if those fill a register.
+/// Returns sines and cosines of numbers that are SIMD lanes themselves, if these lanes fill a register;
+/// otherwise `None`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn of_lanes<A: Registers, T: Real, const N: usize>(x: &[T; N]) -> Option<Both<[T; N]>> {

@@ -148,7 +148,7 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
 }
 
 impl<T: Real, const N: usize> RealField for Lanes<T, N> {
-    /// Whether all lanes are positive.
+    /// Whether the sign bit of every lane is clear.
     #[inline(always)]
     fn is_sign_positive(&self) -> bool {
         self.0.iter().all(T::is_sign_positive)

@@ -1,4 +1,4 @@
-//! Traits that nalgebra's fields require of a number in addition to arithmetic: order, zero and one,
+//! Traits that nalgebra's fields require of a number in addition to arithmetic: ordering, zero and one,
 //! conversions, approximate equality.
 
 use super::Lanes;

@@ -15,14 +15,15 @@ pub trait VectorLoop {
     /// Whether the loop fills several registers of eight numbers at a time.
     const IS_LONG: bool;
 
-    /// Runs the loop. The function and all its callees are inlined, so that they have the target features of
-    /// the enclosing function.
+    /// Runs the loop with the instructions `A`. The function and all its callees are inlined into a function
+    /// with target features, which thus apply to them.
     fn run<A: Arithmetic>(self);
 }
 
 /// Available instructions, for single numbers and for several lanes at once.
 pub trait Registers: Copy + 'static {
-    /// Whether one instruction multiplies and adds; otherwise `mul_add` would be a slow library call.
+    /// Whether the processor has a fused multiply-add instruction; otherwise `mul_add` would be a slow
+    /// library call.
     const FUSED: bool;
     /// Whether there are 32 registers of eight double-precision numbers; otherwise there are 16 of four.
     const WIDE: bool;
@@ -30,25 +31,25 @@ pub trait Registers: Copy + 'static {
     /// Runs a loop in a function that has the instructions.
     fn run_loop<L: VectorLoop>(body: L);
 
-    /// Returns `a + b`, lane by lane.
+    /// Returns the sums `a + b` of corresponding lanes.
     fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns `a - b`, lane by lane.
+    /// Returns the differences `a - b` of corresponding lanes.
     fn sub<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns `a b`, lane by lane.
+    /// Returns the products `a b` of corresponding lanes.
     fn mul<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns `a / b`, lane by lane.
+    /// Returns the quotients `a / b` of corresponding lanes.
     fn div<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns `-a`, lane by lane.
+    /// Returns the negative `-a` of each lane.
     fn neg<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
-    /// Returns the magnitude, lane by lane.
+    /// Returns the absolute value of each lane.
     fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
-    /// Returns the square root, lane by lane.
+    /// Returns the square root of each lane.
     fn root<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
     /// Returns `a b + c`, rounded once, lane by lane.
     fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N];
 
-    /// Returns sines and cosines, given those of the reduced angles; the last bits of `shifted` are the
-    /// quadrants.
+    /// Returns sines and cosines of angles from those of the angles reduced modulo π/2. The last bits of
+    /// `shifted` are the quadrants.
     #[cfg(feature = "std")]
     fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
     /// Returns sines and cosines of angles within the range of the reduction.

@@ -47,14 +47,14 @@ fn arithmetic<const N: usize>() {
     check::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
     check::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
     check::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
-    let assign = |mut a: Lanes<f64, N>, b: Lanes<f64, N>, c| {
+    let assign_all_operators = |mut a: Lanes<f64, N>, b: Lanes<f64, N>, c| {
         a += b;
         a -= c;
         a *= b;
         a /= c;
         a
     };
-    check::<N>(assign, |a, b, c| (a + b - c) * b / c);
+    check::<N>(assign_all_operators, |a, b, c| (a + b - c) * b / c);
 }
 
 #[test]
@@ -174,15 +174,19 @@ fn vectors_are_their_lanes<R: Registers, const N: usize>() {
         let sum = R::mul_sub(s, c, R::neg_mul_add(a, large, -b)) / (R::abs(b) + X::constant(0.1));
         R::sqrt(R::mul_add(sum, sum, a * a)) - R::atan2(a, b)
     }
-    let wide = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
+    let several_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
         several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
     };
-    check::<N>(wide, several::<R, f64>);
-    let narrow = |a, b, c| several::<R, f32>(a, b, c);
+    check::<N>(several_in_lanes, several::<R, f64>);
+    let several_in_single_precision = |a, b, c| several::<R, f32>(a, b, c);
     let [a, b, c] = [3, 4, 5].map(|seed| numbers::<N>(seed).map(|x| x as f32));
     let found = several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
     for k in 0..N {
-        assert_eq!(found[k].to_bits(), narrow(a[k], b[k], c[k]).to_bits(), "lane {k} of {a}, {b}, {c}");
+        assert_eq!(
+            found[k].to_bits(),
+            several_in_single_precision(a[k], b[k], c[k]).to_bits(),
+            "lane {k} of {a}, {b}, {c}"
+        );
     }
 }
 
@@ -226,13 +230,13 @@ fn stored<T: crate::Real, const I: usize, const J: usize, const N: usize, const 
 
 #[test]
 fn lanes_are_stored_in_rows() {
-    let double = |k| 0.5 + k as f64;
-    stored::<f64, 0, 0, 2, 2>(double);
-    stored::<f64, 1, 1, 2, 2>(double);
-    stored::<f64, 0, 1, 2, 2>(double);
-    stored::<f64, 1, 3, 2, 4>(double);
-    stored::<f64, 2, 0, 4, 4>(double);
-    stored::<f64, 5, 3, 8, 4>(double);
-    stored::<f64, 2, 1, 3, 3>(double);
+    let half_plus_index = |k| 0.5 + k as f64;
+    stored::<f64, 0, 0, 2, 2>(half_plus_index);
+    stored::<f64, 1, 1, 2, 2>(half_plus_index);
+    stored::<f64, 0, 1, 2, 2>(half_plus_index);
+    stored::<f64, 1, 3, 2, 4>(half_plus_index);
+    stored::<f64, 2, 0, 4, 4>(half_plus_index);
+    stored::<f64, 5, 3, 8, 4>(half_plus_index);
+    stored::<f64, 2, 1, 3, 3>(half_plus_index);
     stored::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
 }

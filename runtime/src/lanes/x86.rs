@@ -1,4 +1,5 @@
-//! Instructions of x86-64 processors beyond those of the compilation target.
+//! Implementations with x86-64 instructions that the compilation target does not guarantee; the processor is
+//! queried at run time.
 
 /// Defines methods that call the functions of the same names with target features.
 macro_rules! methods {

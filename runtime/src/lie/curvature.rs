@@ -7,7 +7,7 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
-/// Square block, column by column.
+/// Square matrix as an array of columns.
 type Block<T, const N: usize> = [[T; N]; N];
 
 /// Returns the second derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse
@@ -57,25 +57,29 @@ fn of_brackets<T: Real, const N: usize>(
 ) -> Block<T, N> {
     let two = constant::<T>(2.0);
     let weighted_sum = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
-    let unit = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
-    let sum = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
+    let unit_vector = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
+    let sum_of_vectors = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
     // adᵏ v, and its derivatives along each direction.
     let mut powers = [v; 5];
     let mut changes = [[[T::zero(); N]; N]; 5];
     for k in 1..5 {
         powers[k] = bracket(dv, powers[k - 1]);
         for j in 0..N {
-            changes[k][j] = sum(bracket(unit(j), powers[k - 1]), bracket(dv, changes[k - 1][j]));
+            changes[k][j] =
+                sum_of_vectors(bracket(unit_vector(j), powers[k - 1]), bracket(dv, changes[k - 1][j]));
         }
     }
     // The derivative of θ² along a direction of the rotation vector is 2 dvⱼ.
     let by_square = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
-    let entry = |i: usize, j: usize| {
+    let entry_of_curvature = |i: usize, j: usize| {
         let mut second = [T::zero(); N];
         let mut total = T::zero();
         for k in 1..5 {
-            let crossed = sum(bracket(unit(i), changes[k - 1][j]), bracket(unit(j), changes[k - 1][i]));
-            second = sum(crossed, bracket(dv, second));
+            let crossed = sum_of_vectors(
+                bracket(unit_vector(i), changes[k - 1][j]),
+                bracket(unit_vector(j), changes[k - 1][i]),
+            );
+            second = sum_of_vectors(crossed, bracket(dv, second));
             if k % 2 == 1 {
                 continue;
             }
@@ -93,7 +97,7 @@ fn of_brackets<T: Real, const N: usize>(
     let mut block = [[T::zero(); N]; N];
     for j in 0..N {
         for i in 0..=j {
-            block[j][i] = entry(i, j);
+            block[j][i] = entry_of_curvature(i, j);
             block[i][j] = block[j][i];
         }
     }
@@ -145,7 +149,7 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
 mod tests {
     use super::*;
 
-    /// Returns pseudorandom numbers between `−size` and `size`.
+    /// Returns reproducible pseudorandom numbers between `−size` and `size`.
     fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
@@ -154,11 +158,16 @@ mod tests {
     fn slope<const N: usize>(lambda: [f64; N], f: impl Fn([f64; N]) -> Block<f64, N>) -> Block<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
-            let value = |x: f64| {
+            let columns_times_lambda = |x: f64| {
                 f(core::array::from_fn(|i| if i == j { x } else { 0.0 }))
                     .map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum::<f64>())
             };
-            let (a, b, c, d) = (value(-2.0 * h), value(-h), value(h), value(2.0 * h));
+            let (a, b, c, d) = (
+                columns_times_lambda(-2.0 * h),
+                columns_times_lambda(-h),
+                columns_times_lambda(h),
+                columns_times_lambda(2.0 * h),
+            );
             core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
         })
     }
@@ -197,7 +206,7 @@ mod tests {
         }
     }
 
-    /// Checks that series and closed form agree on both sides of the limit.
+    /// Checks that series and closed form agree at the angle at which the code switches between them.
     #[test]
     fn the_series_meets_the_closed_form() {
         let [below, above] = [1.0 - 1e-12, 1.0 + 1e-12].map(|x| even_curvatures(SERIES_ANGLE * x));

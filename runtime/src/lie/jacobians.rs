@@ -9,7 +9,7 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
-/// Square block, column by column.
+/// Square matrix as an array of columns.
 type Block<T, const N: usize> = [[T; N]; N];
 
 /// Returns the columns of a linear function. The standard library's `map` is not used, because it is not
@@ -25,9 +25,9 @@ fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N>
     all
 }
 
-/// Returns the columns of a linear function of SE(3), linear parts first. The linear columns follow from the
-/// angular ones, because motions of SE(3) are rotations with dual numbers (Selig, *Geometric Fundamentals of
-/// Robotics*, § 7.5).
+/// Returns the matrix of a linear function of twists of SE(3), with linear components first. Its linear
+/// columns follow from the angular ones, because motions of SE(3) are rotations with dual numbers (Selig,
+/// *Geometric Fundamentals of Robotics*, § 7.5).
 #[inline(always)]
 fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
     let mut all = [[T::zero(); 6]; 6];
@@ -48,11 +48,11 @@ fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
 pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
     let back = exponential(dv.map(|x| -x));
     let [a, b] = left_jacobian(dot(dv, dv));
-    let right = |e: [T; 3]| {
+    let right_jacobian_column = |e: [T; 3]| {
         let first = cross(dv, e);
         add(add(e, scale(first, -a)), scale(cross(dv, first), b))
     };
-    (columns(|e| rotated(back, e)), columns(right))
+    (columns(|e| rotated(back, e)), columns(right_jacobian_column))
 }
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a ball joint with respect to `dv` and to `v`.
@@ -63,13 +63,13 @@ pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T
     let [_, slope] = even_brackets(square);
     let first = cross(dv, v);
     let twice = cross(dv, first);
-    let by_dv = |e: [T; 3]| {
+    let rate_derivative_column = |e: [T; 3]| {
         let changed = cross(e, v);
         let brackets = add(cross(e, first), cross(dv, changed));
         let factor = constant::<T>(-2.0) * slope * dot(dv, e);
         add(add(scale(changed, constant(0.5)), scale(brackets, second)), scale(twice, factor))
     };
-    (columns(by_dv), columns(|e| ball_tangent_rate(dv, e)))
+    (columns(rate_derivative_column), columns(|e| ball_tangent_rate(dv, e)))
 }
 
 /// Returns the factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, as
@@ -124,19 +124,19 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
     let (o, i) = (T::zero(), T::one());
     let [px, py, pz, ..] = free_integrate([o, o, o, o, o, o, i], dv);
     let back = exponential(turn.map(|x| -x));
-    let carried = |[x, y, z, a, b, c]: [T; 6]| {
+    let adjoint_column = |[x, y, z, a, b, c]: [T; 6]| {
         let [x, y, z] = rotated(back, add([x, y, z], cross([a, b, c], [px, py, pz])));
         let [a, b, c] = rotated(back, [a, b, c]);
         [x, y, z, a, b, c]
     };
     let [c1, c2, c3, c4] = jacobian_factors(dot(turn, turn));
-    let right = |e: [T; 6]| {
+    let right_jacobian_column = |e: [T; 6]| {
         let first = bracket(dv, e);
         let second = bracket(dv, first);
         let third = bracket(dv, second);
         plus(plus(plus(plus(e, -c1, first), c2, second), -c3, third), c4, bracket(dv, third))
     };
-    (dual_columns(carried), dual_columns(right))
+    (dual_columns(adjoint_column), dual_columns(right_jacobian_column))
 }
 
 /// Returns the derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of
@@ -175,7 +175,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
     let b2 = bracket(dv, b1);
     let b3 = bracket(dv, b2);
     let b4 = bracket(dv, b3);
-    let by_dv = |e: [T; 6]| {
+    let rate_derivative_column = |e: [T; 6]| {
         let [_, _, _, x, y, z] = e;
         // Derivative of θ² along `e`.
         let along = constant::<T>(2.0) * dot(turn, [x, y, z]);
@@ -187,7 +187,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
         let changed = plus(plus(plus(zero, constant(0.5), c1), second, c2), fourth, c4);
         plus(plus(changed, second_slope * along, b2), fourth_slope * along, b4)
     };
-    (dual_columns(by_dv), dual_columns(|e| free_tangent_rate(dv, e)))
+    (dual_columns(rate_derivative_column), dual_columns(|e| free_tangent_rate(dv, e)))
 }
 
 #[cfg(test)]
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
     use crate::lie::{ball_difference, ball_integrate, free_difference};
 
-    /// Returns pseudorandom numbers between `−size` and `size`.
+    /// Returns reproducible pseudorandom numbers between `−size` and `size`.
     fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
@@ -204,8 +204,13 @@ mod tests {
     fn slope<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
         let h = 1e-3;
         core::array::from_fn(|j| {
-            let value = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
-            let (a, b, c, d) = (value(-2.0 * h), value(-h), value(h), value(2.0 * h));
+            let value_at_displacement = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
+            let (a, b, c, d) = (
+                value_at_displacement(-2.0 * h),
+                value_at_displacement(-h),
+                value_at_displacement(h),
+                value_at_displacement(2.0 * h),
+            );
             core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
         })
     }
@@ -258,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Checks that series and closed forms agree on both sides of the limits.
+    /// Checks that series and closed forms agree at the angles at which the code switches between them.
     #[test]
     fn series_meet_closed_forms() {
         let assert_continuous = |f: fn(f64) -> [f64; 2], x: f64| {

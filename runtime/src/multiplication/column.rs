@@ -1,9 +1,10 @@
-//! Columns of matrices in SIMD registers.
+//! Columns of a matrix that are held in SIMD registers.
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
 
-/// Returns the number of registers of eight numbers for a column of this length; zero without such registers.
+/// Returns the number of registers of eight numbers for a column of length `numbers`; zero if the processor
+/// has no such registers.
 #[must_use]
 pub const fn registers_of_eight(numbers: usize, wide: bool) -> usize {
     if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
@@ -15,8 +16,8 @@ pub const fn registers_of_four(numbers: usize, wide: bool) -> usize {
     numbers.saturating_sub(8 * registers_of_eight(numbers, wide)).div_ceil(4)
 }
 
-/// Column in `E` registers of eight numbers, then `F` of four. The last register overlaps the previous one if
-/// fewer numbers remain.
+/// Column of a matrix in `E` registers of eight numbers, followed by `F` registers of four. The last register
+/// overlaps the previous one if fewer numbers remain.
 #[derive(Clone, Copy)]
 pub struct Column<A, T, const E: usize, const F: usize> {
     eights: [Vector<A, T, 8>; E],
@@ -31,7 +32,7 @@ pub struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Columns<A, T, E, F, K> {
-    /// Returns zero columns.
+    /// Returns columns whose entries are all zero.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
@@ -63,7 +64,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
 // No functions of the standard library that take closures: they are not always inlined.
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> {
-    /// Returns a zero column.
+    /// Returns a column whose entries are all zero.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
@@ -75,7 +76,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         Self { eights: [A::splat(x); E], fours: [A::splat(x); F] }
     }
 
-    /// Returns one minus this column, in every row.
+    /// Returns the column with the entries `1 − x` for each entry `x` of this column.
     #[inline(always)]
     pub fn complement(&self) -> Self {
         let mut rest = Self::all(T::one());
@@ -83,7 +84,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         rest
     }
 
-    /// Multiplies by another column, row by row.
+    /// Multiplies the column elementwise by another column.
     #[inline(always)]
     pub fn multiply(&mut self, other: &Self) {
         for (x, y) in self.eights.iter_mut().zip(&other.eights) {
@@ -134,7 +135,7 @@ fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
     }
 }
 
-/// Reads a column into registers.
+/// Loads a column from memory into registers of eight numbers and of four.
 #[inline(always)]
 fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
     column: &[T],
@@ -184,7 +185,7 @@ pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
 
 /// List of columns in registers, of which multiples are added to the columns of another matrix.
 pub trait Source<A, T, const E: usize, const F: usize> {
-    /// Number of columns.
+    /// Number of columns in the list.
     const COUNT: usize;
 
     /// Returns a column; zeros if the index is out of range.

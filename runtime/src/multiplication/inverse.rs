@@ -43,12 +43,12 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> V
     }
 }
 
-/// Columns aligned to cache lines, if their lengths allow it: registers that are read right after they were
-/// written must not cross a cache line.
+/// Buffer of columns that is aligned to cache lines. Registers that are loaded soon after they were stored
+/// must not cross a cache line.
 #[repr(align(64))]
 struct Lines<X>(X);
 
-/// Ranges of the velocities of a limb.
+/// Half-open ranges of the velocities that belong to one limb.
 pub type Limb<'a> = &'a [Range];
 
 /// Inverts a mass matrix `M = [A B; Bᵀ C]`. On entry, the matrix contains `C⁻¹` in the columns of the limbs;
@@ -190,9 +190,9 @@ fn set<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
     }
 }
 
-/// Replaces the leading columns, a symmetric positive definite matrix, by its inverse through Gauss–Jordan
-/// elimination without interchanges (Golub and Van Loan 2013, ch. 3.2; such a matrix needs none). Rows are
-/// divided by their pivots at the end, so that all rows are treated equally during the elimination.
+/// Inverts in place the symmetric positive definite matrix in the leading columns, by Gauss–Jordan
+/// elimination without interchanges (Golub and Van Loan 2013, ch. 3.2). Rows are divided by their pivots at
+/// the end, so that all rows are treated equally during the elimination.
 #[inline(always)]
 pub(super) fn eliminate<
     A: Arithmetic,
@@ -276,15 +276,15 @@ mod tests {
         mass: &SMatrix<f64, N, N>,
         trunk: [usize; K],
     ) -> [[f64; L]; N] {
-        let entry = |t: usize, k: usize| trunk.get(t).map_or(0.0, |t| mass[(*t, k)]);
-        core::array::from_fn(|k| core::array::from_fn(|t| entry(t, k)))
+        let trunk_mass_entry = |t: usize, k: usize| trunk.get(t).map_or(0.0, |t| mass[(*t, k)]);
+        core::array::from_fn(|k| core::array::from_fn(|t| trunk_mass_entry(t, k)))
     }
 
     /// Returns a mass matrix of two limbs with a trunk.
     fn branched<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
-        let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+        let limb_of_index = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
         let a = numbers::<N, N>(6.0);
-        SMatrix::from_fn(|i, j| match (limb(i), limb(j)) {
+        SMatrix::from_fn(|i, j| match (limb_of_index(i), limb_of_index(j)) {
             _ if i == j => 10.0 + a[(i, i)],
             (Some(one), Some(other)) if one != other => 0.0,
             // The first limb does not depend on the last coordinate of the trunk.

@@ -48,7 +48,8 @@ pub fn multiply<
     rest
 }
 
-/// Returns minus the products with columns, for the rows from a given one on.
+/// Returns the negative products of a matrix with `C` columns, for `R` rows of the result from row `first`
+/// on.
 #[inline(always)]
 pub fn minus_sums<
     A: Arithmetic,
@@ -77,7 +78,7 @@ pub fn minus_sums<
     sums
 }
 
-/// Reads several columns into registers.
+/// Loads `C` columns of a matrix into registers.
 #[inline(always)]
 pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const C: usize>(
     columns: &[[T; N]; C],
@@ -134,7 +135,8 @@ pub fn add_all<
     add::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
 }
 
-/// Adds multiples to the remaining columns, `C` at a time; returns the other columns with their factors.
+/// Adds multiples of the `source` columns to columns of a matrix, `C` at a time. Returns the columns that
+/// remain, with their factors.
 #[inline(always)]
 pub fn add<
     'a,

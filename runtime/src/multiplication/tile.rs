@@ -1,4 +1,4 @@
-//! Tiles: the number of rows of a matrix computed together, and their registers.
+//! Tiles of a matrix: numbers of rows that are computed together, and the registers that hold them.
 
 use super::column::Columns;
 use super::kernels::{add_all, add_products, multiply};
@@ -7,7 +7,7 @@ use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
 
-/// Tiling of the columns of a matrix.
+/// Linear algebra on the columns of a matrix, divided into tiles that fit in registers.
 pub trait Tiling<T: Real, const N: usize> {
     /// Replaces columns by minus their products with a matrix; the columns are zero outside the given rows.
     fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
@@ -30,7 +30,7 @@ pub trait Tiling<T: Real, const N: usize> {
         range: Range,
     );
 
-    /// Computes [`complete`] for this tiling.
+    /// Completes the inverse of a block-structured mass matrix for this tiling, as [`complete`] does.
     fn complete<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
@@ -38,7 +38,7 @@ pub trait Tiling<T: Real, const N: usize> {
         runs: &[Run],
     );
 
-    /// Replaces the leading columns, a symmetric positive definite matrix of `K` rows, by its inverse.
+    /// Inverts in place the symmetric positive definite matrix of `K` rows in the leading columns.
     fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
 }
 

@@ -1,4 +1,4 @@
-//! InputLimits of inputs in the backward recursion.
+//! Limits of the inputs in the backward recursion of differential dynamic programming.
 
 use super::{Indefinite, Policy, Quadratic, Value};
 use crate::Real;
@@ -6,9 +6,10 @@ use crate::blocks::{add_product, factors, product, solve, zeros};
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// Iterations for each input, and in addition.
+/// Maximum number of iterations of the search for inputs within limits: a number for each input, plus a
+/// constant.
 const ITERATIONS: [usize; 2] = [4, 16];
-/// Halvings of a step.
+/// Maximum number of halvings of a step in the line search.
 const HALVINGS: usize = 30;
 /// Part of the decrease of a linear model of the costs that a step must reach.
 const DECREASE: f64 = 0.1;
@@ -23,11 +24,11 @@ pub struct InputLimits<T, const NU: usize> {
 /// Error for limits of an input that contradict each other, or are not numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct EmptyRange {
-    /// Index of the input.
+    /// Index of the input with contradictory limits.
     pub input: usize,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl core::fmt::Debug for EmptyRange {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         core::fmt::Display::fmt(self, f)
@@ -99,7 +100,8 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
     ) -> Result<(SVector<T, NU>, [bool; NU]), Indefinite> {
         let mut x = self.clamp(start);
         let slope_at = |x: &SVector<T, NU>| gradient + product(hessian, x);
-        let cost = |x: &SVector<T, NU>| gradient.dot(x) + x.dot(&product(hessian, x)) * constant(0.5);
+        let quadratic_cost =
+            |x: &SVector<T, NU>| gradient.dot(x) + x.dot(&product(hessian, x)) * constant(0.5);
         let mut slope = slope_at(&x);
         let mut free = self.free(&x, &slope);
         for _ in 0..ITERATIONS[0] * NU + ITERATIONS[1] {
@@ -113,11 +115,11 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             let (factor, pivots) =
                 factors(&masked_square(hessian, &free), T::zero()).map_err(|input| Indefinite { input })?;
             solve(&factor, &pivots, &mut step);
-            let (before, mut length) = (cost(&x), T::one());
+            let (before, mut length) = (quadratic_cost(&x), T::one());
             let mut next = x;
             for _ in 0..HALVINGS {
                 next = self.clamp(&(x + step * length));
-                if cost(&next) <= before + slope.dot(&(next - x)) * constant(DECREASE) {
+                if quadratic_cost(&next) <= before + slope.dot(&(next - x)) * constant(DECREASE) {
                     break;
                 }
                 length *= constant(0.5);

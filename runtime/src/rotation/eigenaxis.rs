@@ -1,4 +1,4 @@
-//! Euler's theorem: every rotation is a rotation about one axis.
+//! Axis and angle of a rotation. By Euler's theorem every rotation is a rotation about one axis.
 
 use super::euler_parameters::quaternion_of_rotation;
 use super::rotation_vector::RotationVector;
@@ -29,9 +29,8 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
     (angle.sin(), constant::<T>(2.0) * half_sine * half_sine)
 }
 
-/// Returns eigenaxis and angle, in (0, π] rad, of a rotation; `None` for the identity, which has no axis.
-///
-/// For an angle of π, the axis may be either of two opposite ones.
+/// Returns the axis and the angle, in (0, π] rad, of a rotation; `None` for the identity, which has no axis.
+/// For the angle π the sign of the axis is arbitrary.
 pub fn eigenaxis<T: Real>(rotation: &Rotation3<T>) -> Option<(Unit<Vector3<T>>, T)> {
     let q = quaternion_of_rotation(rotation);
     let u = q.imag();
@@ -44,7 +43,8 @@ pub fn eigenaxis<T: Real>(rotation: &Rotation3<T>) -> Option<(Unit<Vector3<T>>, 
     }
 }
 
-/// Returns the angle of the rotation from one orientation to another, in [0, π] rad, accurate at both ends.
+/// Returns the angle of the rotation from one orientation to another, in [0, π] rad, accurate also near 0 and
+/// π.
 pub fn angle_between<T: Real>(from: &Rotation3<T>, to: &Rotation3<T>) -> T {
     RotationVector::from_rotation(&(from.inverse() * to)).angle()
 }

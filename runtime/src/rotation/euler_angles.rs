@@ -6,7 +6,7 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// Euler angles of a rotation.
+/// Euler angles of a rotation, with a flag for gimbal lock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles<T> {
     /// Angles in the order of the rotations, rad.
@@ -109,8 +109,8 @@ impl EulerSequence {
     /// From angles in [−π, π] the results are in [−π, π] too. There are no solutions other than these two, up
     /// to multiples of 2π, unless [`Angles::singular`] is set.
     pub fn other_angles<T: Real>(self, [a, b, c]: [T; 3]) -> [T; 3] {
-        let opposite = |t: T| if t > T::zero() { t - T::pi() } else { t + T::pi() };
-        let middle = if self.is_symmetric() { -b } else { -opposite(b) };
-        [opposite(a), middle, opposite(c)]
+        let opposite_angle = |t: T| if t > T::zero() { t - T::pi() } else { t + T::pi() };
+        let middle = if self.is_symmetric() { -b } else { -opposite_angle(b) };
+        [opposite_angle(a), middle, opposite_angle(c)]
     }
 }

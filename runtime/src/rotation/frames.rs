@@ -36,7 +36,8 @@ pub fn vectorized<T: Real>(matrix: &Matrix3<T>) -> SVector<T, 9> {
     SVector::from([a, b, c, d, e, f, g, h, i])
 }
 
-/// Returns the matrix with these columns, one below the other: the inverse of [`vectorized`].
+/// Returns the 3 × 3 matrix whose columns, one below the other, form a vector of nine numbers: the inverse of
+/// [`vectorized`].
 pub fn unvectorized<T: Real>(columns: &SVector<T, 9>) -> Matrix3<T> {
     let ArrayStorage([[a, b, c, d, e, f, g, h, i]]) = columns.data;
     Matrix3::from_array_storage(ArrayStorage([[a, b, c], [d, e, f], [g, h, i]]))

@@ -1,4 +1,4 @@
-//! Poisson's equation: rates of rotation matrices.
+//! Rates of rotation matrices by Poisson's equation.
 
 use crate::Real;
 use crate::private::constant;

@@ -1,4 +1,4 @@
-//! Modified Rodrigues parameters and their shadow set.
+//! Modified Rodrigues parameters, and the alternative (shadow) set of the same rotation.
 
 use super::euler_parameters::{quaternion_of_rotation, shorter};
 use super::singular::Singular;

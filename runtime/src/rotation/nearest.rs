@@ -1,4 +1,4 @@
-//! The rotation nearest to a matrix.
+//! Rotation that is nearest to a given matrix.
 
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -89,7 +89,7 @@ fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], v
     }
 }
 
-/// Returns `a p + b q`.
+/// Returns the linear combination `a p + b q` of two quaternions.
 fn combined<T: Real>(a: T, [p0, p1, p2, p3]: [T; 4], b: T, [q0, q1, q2, q3]: [T; 4]) -> [T; 4] {
     [a * p0 + b * q0, a * p1 + b * q1, a * p2 + b * q2, a * p3 + b * q3]
 }

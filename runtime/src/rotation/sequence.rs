@@ -4,14 +4,14 @@ use crate::Real;
 use core::fmt;
 use nalgebra::{Matrix3, Rotation3};
 
-/// One of three perpendicular axes.
+/// Coordinate axis of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axis {
-    /// The first axis.
+    /// First coordinate axis.
     X,
-    /// The second axis.
+    /// Second coordinate axis.
     Y,
-    /// The third axis.
+    /// Third coordinate axis.
     Z,
 }
 
@@ -37,7 +37,7 @@ impl Axis {
 pub enum FixedIn {
     /// Axes fixed in the body, rotated by the previous rotations.
     Body,
-    /// Axes fixed in space.
+    /// The rotation axes are fixed in space.
     Space,
 }
 
@@ -77,7 +77,7 @@ macro_rules! sequences {
                     Self { fixed_in: FixedIn::Space, axes: [Axis::$a, Axis::$b, Axis::$c] };
             )+
 
-            /// All 24 sequences.
+            /// All 24 Euler-angle sequences.
             pub const ALL: [Self; 24] = [$(Self::$body, Self::$space),+];
         }
     };
@@ -99,8 +99,8 @@ sequences! {
 }
 
 impl EulerSequence {
-    /// Returns the sequence of these axes; `None` if two successive ones are equal, because such angles do
-    /// not reach every rotation.
+    /// Returns the Euler-angle sequence with these axes. Returns `None` if two successive axes are equal,
+    /// because such angles do not represent every rotation.
     pub const fn new(fixed_in: FixedIn, axes: [Axis; 3]) -> Option<Self> {
         let [first, second, third] = axes;
         if first.is(second) || second.is(third) { None } else { Some(Self { fixed_in, axes }) }
@@ -116,8 +116,8 @@ impl EulerSequence {
         self.axes
     }
 
-    /// Whether the third axis equals the first: such sequences are singular at middle angles 0 and π, others
-    /// at ±π/2.
+    /// Whether the third axis equals the first one. Symmetric sequences are singular at the middle angles 0
+    /// and π, others at ±π/2.
     pub const fn is_symmetric(self) -> bool {
         let [first, _, third] = self.axes;
         first.is(third)
@@ -125,7 +125,7 @@ impl EulerSequence {
 }
 
 impl fmt::Display for EulerSequence {
-    /// Writes the name of the sequence, such as `body-zyx`.
+    /// Writes the name of the Euler-angle sequence, such as `body-zyx`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self.fixed_in {
             FixedIn::Body => "body-",

@@ -1,4 +1,4 @@
-//! Errors of singular rotation parameters.
+//! Errors for rotation parameters at a singularity, such as gimbal lock.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ pub enum Singular {
     FullTurn,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
 impl fmt::Debug for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

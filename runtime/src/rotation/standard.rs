@@ -1,5 +1,5 @@
-//! Reduction of every sequence of Euler angles to one of two: body-xyz or body-xyx in the sequence's own
-//! axes.
+//! Reduction of all Euler-angle sequences to two standard ones: body-xyz or body-xyx in axes that depend on
+//! the sequence.
 
 use super::sequence::{Axis, EulerSequence, FixedIn};
 use crate::Real;
@@ -38,13 +38,13 @@ impl Standard {
         if self.symmetric || self.cyclic() { [a, b, c] } else { [a, b, -c] }
     }
 
-    /// Converts angles or rates of the sequence to those of the standard sequence.
+    /// Converts Euler angles or their rates from the given sequence to the standard sequence.
     pub(super) fn standardised<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         self.signed(if self.reversed { [c, b, a] } else { [a, b, c] })
     }
 
-    /// Converts angles or rates of the standard sequence, or the columns that multiply rates, to those of the
-    /// sequence itself.
+    /// Converts Euler angles, their rates, or the columns that multiply rates, from the standard sequence to
+    /// the given sequence.
     pub(super) fn restored<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
         let [a, b, c] = self.signed(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
@@ -61,8 +61,8 @@ impl Standard {
     }
 }
 
-/// Returns the sine of the angle between the first and the third axis below which they count as parallel: the
-/// rounding error of a zero in a rotation matrix.
+/// Returns the sine of the angle between first and third axis below which the axes count as parallel (gimbal
+/// lock): the rounding error of a zero in a rotation matrix.
 pub(super) fn parallel<T: Real>() -> T {
     constant::<T>(4.0) * epsilon::<T>()
 }

@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3}
 struct Random(u64);
 
 impl Random {
-    /// Returns a number uniform in [−1, 1).
+    /// Returns a pseudorandom number uniform in [−1, 1).
     fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -48,12 +48,13 @@ impl Random {
     }
 }
 
-/// Returns the largest difference of two entries.
+/// Returns the largest magnitude of the differences between the entries of two matrices; infinite if an entry
+/// is NaN.
 fn difference<const N: usize, const M: usize>(a: &SMatrix<f64, N, M>, b: &SMatrix<f64, N, M>) -> f64 {
     (a - b).iter().fold(0.0, |far: f64, x| if x.is_nan() { f64::INFINITY } else { far.max(x.abs()) })
 }
 
-/// Returns the largest difference of two numbers.
+/// Returns the largest magnitude of the differences between three angles and three others, rad.
 fn angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
     difference(&Vector3::from(a), &Vector3::from(b))
 }
@@ -63,8 +64,8 @@ fn skewed(rotation: &Rotation3<f64>) -> f64 {
     difference(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
 }
 
-/// Returns the derivative of `f` at zero, by differences of order eight; the error is of order 1e-13 if `f`
-/// and its derivatives are of order one.
+/// Returns the derivative of `f` at zero by central differences of order eight. The error is about 1e-13 if
+/// `f` and its derivatives are of order one.
 fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) -> SMatrix<f64, N, M> {
     let h = 0.01;
     [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0]
@@ -75,7 +76,7 @@ fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) 
         })
 }
 
-/// Asserts that an error is below a bound; the message contains `place`.
+/// Asserts that an error is at most a bound. The panic message contains `place`, which identifies the case.
 fn assert_below(error: f64, bound: f64, place: impl core::fmt::Debug) {
     assert!(error <= bound, "{error:e} > {bound:e} at {place:?}");
 }

@@ -10,7 +10,7 @@ use crate::private::{constant, epsilon, to_f64};
 /// Maximum denominator of a ratio of two periods that is recognised as rational.
 const MOST_PARTS: u32 = 64;
 
-/// Instants of a run, in seconds after its start.
+/// Times of samples and control instants of a run, in seconds after its start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     end: Option<f64>,
@@ -18,11 +18,13 @@ pub(super) struct Clock {
     period: Option<f64>,
     /// Indices of the sample and of the control instant that coincide with the end.
     last: [Option<u64>; 2],
-    /// Ratio `period / every` of integers.
+    /// Ratio `period / every` of control period to sample interval, as numerator and denominator, if it is a
+    /// ratio of small integers.
     ratio: Option<[u64; 2]>,
 }
 
-/// Returns `a / b` as a ratio of integers, if it is one up to rounding.
+/// Returns the quotient `a / b` as numerator and denominator, if it equals a ratio of small integers up to
+/// rounding; otherwise `None`.
 fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
     let small_ratio = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
@@ -42,16 +44,16 @@ impl Clock {
     pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
         let rounding = 8.0 * to_f64(epsilon::<T>());
         let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
-        let whole = |interval: Option<f64>| {
+        let whole_step_count = |interval: Option<f64>| {
             let [count, parts] = ratio(end?, interval?, rounding)?;
             (parts == 1).then_some(count)
         };
-        let last = [whole(every), whole(period)];
+        let last = [whole_step_count(every), whole_step_count(period)];
         let ratio = every.zip(period).and_then(|(every, period)| ratio(period, every, rounding));
         Self { end, every, period, last, ratio }
     }
 
-    /// Returns the end of the run.
+    /// Returns the duration of the run, s; `None` if it is unlimited.
     pub(super) fn end(&self) -> Option<f64> {
         self.end
     }

@@ -6,14 +6,14 @@ use crate::private::{constant, epsilon};
 use core::cmp::Ordering;
 use nalgebra::SVector;
 
-/// Directions of zero crossings that are events.
+/// Direction in which the event function must cross zero for an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossing {
-    /// From negative to positive.
+    /// The event function crosses zero from negative to positive.
     Rising,
-    /// From positive to negative.
+    /// The event function crosses zero from positive to negative.
     Falling,
-    /// Either direction.
+    /// The event function crosses zero in either direction.
     Either,
 }
 
@@ -28,7 +28,7 @@ impl Crossing {
     }
 }
 
-/// Event found on a step.
+/// Event that was found on a step: its position and its index.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<T> {
     /// Position on the step at or just after the crossing, 0 at the start and 1 at the end.
@@ -37,7 +37,7 @@ pub struct Hit<T> {
     pub index: usize,
 }
 
-/// Reason why the search for events failed.
+/// Reason why the search for events on a step failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
     /// The function of the event with this index is NaN.
@@ -47,27 +47,27 @@ pub enum Undefined {
     Through(usize),
 }
 
-/// Continuation of a run after an event.
+/// Effect that an event has on the continuation of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
-    /// The run ends.
+    /// The event ends the run.
     Stop,
-    /// The run continues unchanged.
+    /// The run continues with unchanged velocity.
     Go,
-    /// The velocity has changed.
+    /// The run continues with a velocity that the event has changed.
     Jump,
 }
 
 /// Effect of an event on the velocity and the run.
 pub trait Action<T, const NQ: usize, const NV: usize> {
-    /// Whether the event ends the run.
+    /// Whether an event with this effect ends the run.
     const STOPS: bool;
 
-    /// Applies the effect of the event.
+    /// Applies the effect of the event to the state and tells how the run continues.
     fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow;
 }
 
-/// Effect that ends the run.
+/// Effect of an event: the run ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop;
 
@@ -79,7 +79,7 @@ impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Stop {
     }
 }
 
-/// Effect that emits a sample.
+/// Effect of an event: a sample is emitted and the run continues.
 #[derive(Clone, Copy, Debug)]
 pub struct Report;
 
@@ -110,9 +110,9 @@ where
 
 /// Events of a run: a list of types, `((NoEvents, Event), Event)`, which requires no allocation.
 pub trait Events<T: Real, const NQ: usize, const NV: usize> {
-    /// Number of events.
+    /// Number of events in the list.
     const COUNT: usize;
-    /// Whether one of the events ends the run.
+    /// Whether any event in the list ends the run.
     const STOPS: bool;
 
     /// Records the signs of the event functions at the initial state.
@@ -142,8 +142,8 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     /// step.
     fn due(&self, from: usize, limit: T) -> Option<usize>;
 
-    /// Applies the effect of an event. `later` returns the state shortly after another one, with the same
-    /// velocity.
+    /// Applies the effect of the event with index `index` to the state. `later` returns the state shortly
+    /// after a given one, with the same velocity.
     fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
         &mut self,
         index: usize,
@@ -151,7 +151,8 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
         later: &P,
     ) -> Flow;
 
-    /// Marks the sides of the surfaces of events up to `limit` as unknown, because the velocity has changed.
+    /// Marks the signs of event functions as unknown for events up to the position `limit`, because the
+    /// velocity has changed.
     fn rebound(&mut self, limit: T);
 }
 
@@ -160,7 +161,7 @@ pub(super) fn coincidence<T: Real>() -> T {
     epsilon::<T>() * constant(8.0)
 }
 
-/// Empty list of events.
+/// List without events.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoEvents;
 
@@ -211,7 +212,7 @@ pub struct Event<T, G, A> {
     ahead: Ordering,
     /// Position on the step at which the event was found.
     found: Option<T>,
-    /// Side to which the motion must not continue after an impact.
+    /// Sign of the event function that the motion must not have after an impact.
     closed: Ordering,
 }
 
@@ -221,7 +222,7 @@ impl<T, G, A> Event<T, G, A> {
         Self { function, crossing, action, side: unknown, ahead: unknown, found: None, closed: unknown }
     }
 
-    /// Returns the value of the function.
+    /// Returns the value of the event function at a state.
     fn value<const NQ: usize, const NV: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         T: Real,
@@ -340,8 +341,8 @@ where
     }
 }
 
-/// Returns the side to which `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and a
-/// position with this sign. `f` may be zero again before `b`.
+/// Returns a position after `a`, towards `b`, at which `f` differs from zero by more than rounding, and the
+/// sign of `f` there. `f` is zero at `a` up to rounding, and may be zero again before `b`.
 fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
@@ -398,11 +399,11 @@ mod tests {
     /// Returns the sign change of `f` between 0 and 1, and the number of evaluations.
     fn found(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
-        let counted = |x| {
+        let count_evaluation = |x| {
             count += 1;
             f(x)
         };
-        let x = first_sign_change(counted, [0.0, 1.0], f(1.0));
+        let x = first_sign_change(count_evaluation, [0.0, 1.0], f(1.0));
         (x, count)
     }
 

@@ -14,7 +14,8 @@ const SEARCHES: u8 = 4;
 /// Fraction of a step within which a repetition of the same impact indicates an accumulation of impacts.
 const SOON: f64 = 1e-6;
 
-/// Returns whether two numbers differ by more than printing with six digits explains, or one of them is NaN.
+/// Returns whether two numbers differ by more than printing with six digits explains. NaN differs from every
+/// number.
 fn differs<T: Real>(a: T, b: T) -> bool {
     let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
     let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
@@ -30,9 +31,9 @@ pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, co
 where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
-    let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| differs(*a, *b));
+    let differs_from_unit = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| differs(*a, *b));
     // From the end: NaN in a quaternion may spread to the position before it.
-    match (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
+    match (0..NQ).rev().find(differs_from_unit).and_then(|i| M::CONFIGURATION.get(i)) {
         Some(coordinate) => Err(Error::Quaternion { coordinate }),
         None => Ok(()),
     }
@@ -50,11 +51,11 @@ fn farthest<T: Real, const N: usize>(
     moves.reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
 }
 
-/// Events of one instant, whose effects are applied one after another.
+/// Simultaneous events, whose effects are applied one after another.
 #[derive(Clone, Debug)]
 struct Firing<T, const NQ: usize, const NV: usize> {
     state: State<T, NQ, NV>,
-    /// Time after the start, s.
+    /// Time of the simultaneous events after the start of the run, s.
     elapsed: f64,
     /// Position on the step up to which events belong to the instant.
     limit: T,
@@ -62,35 +63,38 @@ struct Firing<T, const NQ: usize, const NV: usize> {
     jump: Option<usize>,
     /// Index of the first event whose effect has not been applied yet.
     next: usize,
-    /// Whether one of the events has changed the velocity. `stopped` tells whether one has ended the run.
+    /// Whether one of the simultaneous events has changed the velocity; the field `stopped` is true if one
+    /// has ended the run.
     jumped: bool,
     stopped: bool,
 }
 
-/// Progress of a run.
+/// Progress of a simulation between two samples.
 #[derive(Clone, Debug)]
 pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     clock: Clock,
-    /// Last node: start of the current step, or of the next one. `elapsed` is its time after the start, s.
+    /// State at the start of the current step, or of the next one if no step is current. The field `elapsed`
+    /// is its time after the start of the run, s.
     node: State<T, NQ, NV>,
     elapsed: f64,
     /// End of the current step: time after the start, s, and time of the run.
     ahead: (f64, T),
-    /// Events whose effects are being applied.
+    /// Simultaneous events whose effects are being applied, if any.
     firing: Option<Firing<T, NQ, NV>>,
     memory: Memory,
-    /// Current step, whose samples and events are being emitted. It counts time from its start.
+    /// Step whose samples and events are being emitted, with times relative to its start; `None` if the next
+    /// step has not been computed yet.
     step: Option<Step<T, NQ, NV>>,
     /// Position on the current step up to which events have been searched and handled.
     cursor: T,
-    /// Next event on the current step, if there is one.
+    /// Next event that was found on the current step, if any.
     hit: Option<Hit<T>>,
     /// Index of the next sample. `control` is the index of the next control instant.
     sample: u64,
     control: u64,
-    /// Whether the node has been emitted.
+    /// Whether the sample at the start of the step has been emitted.
     shown: bool,
-    /// Whether only the last sample is needed.
+    /// Whether the caller needs only the last sample of the run.
     pub(super) quiet: bool,
     /// Whether an event has ended the run.
     stopped: bool,
@@ -108,7 +112,7 @@ fn failure(reason: Undefined, t: f64) -> Error {
 
 type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
 
-/// Sample, if one is due.
+/// Result of advancing a simulation: a sample if one is due, or an error.
 type Due<T, const NQ: usize, const NV: usize, const NU: usize> = Result<Option<Sample<T, NQ, NV, NU>>, Error>;
 
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
@@ -120,7 +124,8 @@ where
     S: Method<T>,
     E: Events<T, NQ, NV>,
 {
-    /// Checks all settings and returns the initial progress, or the progress of an interrupted run.
+    /// Returns the progress with which a simulation continues: that of an interrupted run, otherwise the
+    /// initial progress, after checks of all settings.
     pub(super) fn begin(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
@@ -171,8 +176,9 @@ where
             return Ok(start);
         }
         let (mechanism, State { t, q, v }) = (self.system.mechanism, start);
-        let reported = |reason| Error::Constraint { t: to_f64(t), reason };
-        let parted = mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(reported)?;
+        let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
+        let parted =
+            mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(constraint_error)?;
         if parted == q {
             return Ok(start);
         }
@@ -291,7 +297,7 @@ where
         Ok(None)
     }
 
-    /// Advances to the end of a step.
+    /// Sets the progress of the run to the end of the step.
     fn go_ahead(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
         (run.node, run.elapsed, run.step, run.shown) = (step.end.timed(t), elapsed, None, false);
@@ -343,7 +349,7 @@ where
         settled(&self.system, state, state.t)
     }
 
-    /// Searches the first event after the cursor.
+    /// Searches for the first event after the current position on the step.
     fn search(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
@@ -353,7 +359,7 @@ where
             return Ok(());
         }
         let (system, origin, end) = (&self.system, run.node.t, step.end.timed(run.ahead.1));
-        let path = |theta: T| {
+        let state_along_step = |theta: T| {
             let state = step.at(system, theta);
             if theta < T::one() { state.timed(origin + state.t) } else { end }
         };
@@ -364,7 +370,7 @@ where
             }
             run.hit = self
                 .events
-                .locate(&path, run.cursor, to)
+                .locate(&state_along_step, run.cursor, to)
                 .map_err(|reason| failure(reason, to_f64(origin)))?;
             if let Some(hit) = run.hit {
                 run.cursor = hit.theta;
@@ -402,12 +408,12 @@ where
         };
         let moment = step.end.t * constant(SOON);
         let mechanism = self.system.mechanism;
-        let advanced = |state: &State<T, NQ, NV>| {
+        let advance_by_moment = |state: &State<T, NQ, NV>| {
             let q = mechanism.integrate(&state.q, &(state.v * moment));
             State { t: state.t + moment, q, ..*state }
         };
         let before = firing.state;
-        match self.events.act(index, &mut firing.state, &advanced) {
+        match self.events.act(index, &mut firing.state, &advance_by_moment) {
             Flow::Go => {}
             Flow::Stop => firing.stopped = true,
             Flow::Jump => {
@@ -433,7 +439,7 @@ where
         Ok(Some(sample))
     }
 
-    /// Begins a control period if one is due.
+    /// Starts a new control period of the inputs if one is due.
     fn renew(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
         if run.clock.control(run.control).is_some_and(|control| run.elapsed >= control) {

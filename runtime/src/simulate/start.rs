@@ -1,4 +1,4 @@
-//! Types of initial values of a simulation.
+//! Types that are accepted as initial values of a simulation.
 
 use crate::Real;
 use nalgebra::SVector;
@@ -34,7 +34,7 @@ use nalgebra::SVector;
     note = "they may be an array, an `SVector` (of `linkwork::nalgebra`), or a reference to one"
 )]
 pub trait Start<T, const N: usize> {
-    /// Returns the values as a vector.
+    /// Returns the initial values as a vector.
     fn vector(self) -> SVector<T, N>;
 }
 

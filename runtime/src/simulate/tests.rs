@@ -17,9 +17,9 @@ fn times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
 
 #[test]
 fn samples_are_on_time() {
-    let expected = |interval: f64| move |k: usize| k as f64 * interval;
+    let expected_sample_time = |interval: f64| move |k: usize| k as f64 * interval;
     for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
-        let mut wanted: Vec<f64> = (0..count).map(expected(interval)).collect();
+        let mut wanted: Vec<f64> = (0..count).map(expected_sample_time(interval)).collect();
         wanted.push(duration);
         assert_eq!(times(DormandPrince::new(), duration, interval), wanted);
         assert_eq!(times(Rk4::step(0.003), duration, interval), wanted);
@@ -77,12 +77,12 @@ fn a_plant_is_borrowed() {
 
 #[test]
 fn a_run_can_start_later() {
-    let pushed = |start| {
+    let simulate_pushed_from = |start| {
         let oscillator = oscillator::<f64>();
         let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
         run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
     };
-    let (t, q) = pushed(2.0);
+    let (t, q) = simulate_pushed_from(2.0);
     // q̈ = −q + t from rest at t = 2: q = t − 2 cos(t − 2) − sin(t − 2).
     assert_eq!(t, 3.0);
     assert!((q - (3.0 - 2.0 * 1.0_f64.cos() - 1.0_f64.sin())).abs() < 1e-7);
@@ -168,23 +168,23 @@ fn a_run_ends_where_it_is_told() {
     // A stone thrown upwards from the ground lands after t = 2 v; the start is no event.
     let stone = falling();
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
-    let check = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
+    let assert_stops_at_event = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
         let end = end.unwrap();
         assert!((end.t - 6.0).abs() < 1e-13 && (end.v[0] + 3.0).abs() < 1e-13, "{end:?}");
         assert_eq!(end.event, Some(0));
     };
-    check(run.clone().finish());
-    check(run.clone().method(Rk4::step(0.7)).finish());
-    check(run.clone().method(ImplicitMidpoint::step(0.7)).finish());
-    check(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
+    assert_stops_at_event(run.clone().finish());
+    assert_stops_at_event(run.clone().method(Rk4::step(0.7)).finish());
+    assert_stops_at_event(run.clone().method(ImplicitMidpoint::step(0.7)).finish());
+    assert_stops_at_event(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
     // The stone passes 4 m on its way up, and again on its way down.
-    let falls = |crossing| {
+    let time_of_fall_crossing = |crossing| {
         let run = simulate(&stone).from([0.0], [3.0]).until_crossing(crossing, |_, q, _| q[0] - 4.0);
         run.finish().unwrap().t
     };
-    assert!((falls(Crossing::Rising) - 2.0).abs() < 1e-13);
-    assert!((falls(Crossing::Either) - 2.0).abs() < 1e-13);
-    assert!((falls(Crossing::Falling) - 4.0).abs() < 1e-13);
+    assert!((time_of_fall_crossing(Crossing::Rising) - 2.0).abs() < 1e-13);
+    assert!((time_of_fall_crossing(Crossing::Either) - 2.0).abs() < 1e-13);
+    assert!((time_of_fall_crossing(Crossing::Falling) - 4.0).abs() < 1e-13);
 }
 
 #[test]
@@ -210,7 +210,7 @@ fn a_ball_bounces() {
     let ball = falling();
     let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
-    let check = |samples: &mut dyn Iterator<Item = Result<Sample<f64, 1, 1, 1>, Error>>| {
+    let assert_bounce_times = |samples: &mut dyn Iterator<Item = Result<Sample<f64, 1, 1, 1>, Error>>| {
         let hits: Vec<_> = samples.map(|s| s.unwrap()).filter(|s| s.event.is_some()).collect();
         let wanted = [(1.0, 0.5), (2.0, 0.25), (2.5, 0.125), (2.75, 0.0625), (2.875, 0.03125)];
         assert_eq!(hits.len(), wanted.len());
@@ -219,12 +219,12 @@ fn a_ball_bounces() {
         }
     };
     // The whole flight takes one step, or less.
-    check(&mut run.clone());
-    check(&mut run.clone().method(Rk4::step(2.9)));
-    check(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
-    check(&mut run.clone().method(Rk4::step(0.01)));
-    check(&mut run.clone().method(ImplicitMidpoint::step(0.01)).sample_every(0.1));
-    check(&mut run.clone().method(DormandPrince::new().max_step(0.05)).sample_every(0.125));
+    assert_bounce_times(&mut run.clone());
+    assert_bounce_times(&mut run.clone().method(Rk4::step(2.9)));
+    assert_bounce_times(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
+    assert_bounce_times(&mut run.clone().method(Rk4::step(0.01)));
+    assert_bounce_times(&mut run.clone().method(ImplicitMidpoint::step(0.01)).sample_every(0.1));
+    assert_bounce_times(&mut run.clone().method(DormandPrince::new().max_step(0.05)).sample_every(0.125));
 }
 
 #[test]
@@ -295,16 +295,16 @@ fn changing_a_setting_starts_over() {
     assert_eq!(run.duration(2.0).count(), 21);
 }
 
-/// Returns the energy gain of a mechanism in one unit of time, with code that is generic over mechanisms.
+/// Returns the gain of energy of a mechanism in one unit of time; the code is generic over mechanisms.
 fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: SVector<M::Scalar, NQ>,
     v: SVector<M::Scalar, NV>,
 ) -> M::Scalar {
     let t = nalgebra::zero();
-    let energy = |q, v| mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q);
+    let total_energy = |q, v| mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q);
     let end = simulate(mechanism).from(q, v).duration(nalgebra::one()).finish().unwrap();
-    energy(&end.q, &end.v) - energy(&q, &v)
+    total_energy(&end.q, &end.v) - total_energy(&q, &v)
 }
 
 #[test]
@@ -354,7 +354,7 @@ fn a_plastic_impact_is_an_error() {
     assert!((run.finish().unwrap().q[0] - 4.0).abs() < 1e-12);
 }
 
-/// All events of one instant take effect, in the order of declaration.
+/// Checks that all events of one instant take effect, in the order of their declaration.
 #[test]
 fn events_that_coincide_all_act() {
     let ball = falling();
@@ -404,17 +404,22 @@ fn a_run_may_be_its_start() {
     assert_eq!(run.sample_every(0.1).method(Rk4::step(0.1)).count(), 1);
 }
 
-/// In single precision, periods of a millisecond have the same length after an hour as at the start.
+/// Checks that control periods of one millisecond have the same length after hours as at the start, in single
+/// precision.
 #[test]
 fn single_precision_keeps_time() {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
     let start = 8192.0;
     let calls = Cell::new(0);
-    let control = |_: f32, _: &_, _: &_| {
+    let count_control_calls = |_: f32, _: &_, _: &_| {
         calls.set(calls.get() + 1);
         SVector::from([0.0])
     };
-    let run = simulate(&mass).from([0.0], [1.0]).start_at(start).duration(100.0).control_every(1e-3, control);
+    let run = simulate(&mass)
+        .from([0.0], [1.0])
+        .start_at(start)
+        .duration(100.0)
+        .control_every(1e-3, count_control_calls);
     for fixed in [true, false] {
         calls.set(0);
         let run = run.clone().sample_every(2e-3);
@@ -435,12 +440,12 @@ fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
     let mass = oscillator::<f64>();
     let run = simulate(&mass).from([1.0], [0.0]).start_at(start).method(method);
-    let exact = |sample: &Sample<f64, 1, 1, 1>| (sample.q[0] - (sample.t - start).cos()).abs();
+    let error_of_sample = |sample: &Sample<f64, 1, 1, 1>| (sample.q[0] - (sample.t - start).cos()).abs();
     let samples: Vec<_> = run.clone().sample_at(&looked).map(Result::unwrap).collect();
     assert_eq!(samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), looked);
-    assert!(samples.iter().all(|sample| exact(sample) < tolerance), "{samples:?}");
+    assert!(samples.iter().all(|sample| error_of_sample(sample) < tolerance), "{samples:?}");
     let end = run.clone().sample_at(&looked).finish().unwrap();
-    assert!(end.t == 5.75 && exact(&end) < tolerance);
+    assert!(end.t == 5.75 && error_of_sample(&end) < tolerance);
     // With a duration, the end is a sample, too, and later times are ignored. The start is a sample only if
     // its time is listed.
     for (duration, expected) in [(4.0, &[2.013, 5.75, 6.0][..]), (3.0, &[2.013, 5.0][..])] {
@@ -462,12 +467,22 @@ fn samples_come_when_they_are_asked_for() {
 #[test]
 fn times_of_samples_increase() {
     let mass = oscillator::<f64>();
-    let fails = |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();
-    let said = |times: &[f64]| std::string::ToString::to_string(&fails(times));
+    let simulation_error =
+        |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();
+    let simulation_error_message = |times: &[f64]| std::string::ToString::to_string(&simulation_error(times));
     let first = "the time from the start to the first sample must be finite and positive, found -0.5";
-    assert_eq!(said(&[0.5, 2.0]), first);
-    assert_eq!(said(&[1.0, 3.0, 2.0]), "the time between samples must be finite and positive, found -1");
-    assert_eq!(said(&[1.0, 1.0]), "the time between samples must be finite and positive, found 0");
-    assert!(said(&[1.0, f64::NAN]).ends_with("found NaN") && said(&[f64::INFINITY]).ends_with("found inf"));
-    assert_eq!(fails(&[]), Error::Endless);
+    assert_eq!(simulation_error_message(&[0.5, 2.0]), first);
+    assert_eq!(
+        simulation_error_message(&[1.0, 3.0, 2.0]),
+        "the time between samples must be finite and positive, found -1"
+    );
+    assert_eq!(
+        simulation_error_message(&[1.0, 1.0]),
+        "the time between samples must be finite and positive, found 0"
+    );
+    assert!(
+        simulation_error_message(&[1.0, f64::NAN]).ends_with("found NaN")
+            && simulation_error_message(&[f64::INFINITY]).ends_with("found inf")
+    );
+    assert_eq!(simulation_error(&[]), Error::Endless);
 }

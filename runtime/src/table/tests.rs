@@ -111,12 +111,12 @@ fn figures_that_are_no_table_are_told() {
     static BACK: [f64; 3] = [0.0, 2.0, 1.0];
     static HOLE: [f64; 2] = [0.0, f64::NAN];
     static TWO: [f64; 2] = [0.0, 1.0];
-    let error = |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
-    assert_eq!(error([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
-    assert_eq!(error([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
-    assert_eq!(error([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
-    assert_eq!(error([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
-    assert_eq!(error([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
+    let error_of_table = |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
+    assert_eq!(error_of_table([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
+    assert_eq!(error_of_table([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
+    assert_eq!(error_of_table([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
+    assert_eq!(error_of_table([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
+    assert_eq!(error_of_table([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
     let said = std::string::ToString::to_string(&TableError::Size { expected: 2, found: 3 });
     assert_eq!(said, "the grid of the table has 2 points, but there are 3 values");
 }

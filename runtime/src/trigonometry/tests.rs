@@ -4,7 +4,7 @@ mod large;
 use super::*;
 use crate::arithmetic::Compiled as A;
 
-/// Checks an angle with every available arithmetic.
+/// Checks sine and cosine of an angle with every set of instructions that the processor has.
 fn check(x: f64) {
     check_with::<A>(x);
     #[cfg(all(

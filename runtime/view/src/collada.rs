@@ -69,7 +69,8 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
 struct Reader<'a> {
     geometries: HashMap<&'a str, Node<'a, 'a>>,
     nodes: HashMap<&'a str, Node<'a, 'a>>,
-    /// Triangulated meshes by geometry, so that each is read once for all its instances.
+    /// Triangulated meshes by the geometry node of the file, so that each geometry is read once for all its
+    /// instances.
     meshes: HashMap<NodeId, Vec<Point3<f64>>>,
     instances: usize,
     corners: Vec<[f32; 3]>,
@@ -157,7 +158,7 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
     }
     let (offset, input) = vertices.ok_or_else(|| format!("a `{kind}` has no input for its vertices"))?;
     let points = positions(mesh, input)?;
-    let corner = |index: &[usize]| {
+    let corner_of_face = |index: &[usize]| {
         let found = index.get(offset).and_then(|k| points.get(*k)).copied();
         found.ok_or_else(|| format!("a `{kind}` refers to a vertex that does not exist"))
     };
@@ -165,7 +166,8 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
     let mut faces = Vec::new();
     for indices in children(list, "p") {
         let indices: Vec<usize> = numbers(indices)?;
-        let corners: Vec<Point3<f64>> = indices.chunks(stride).map(corner).collect::<Result<_, _>>()?;
+        let corners: Vec<Point3<f64>> =
+            indices.chunks(stride).map(corner_of_face).collect::<Result<_, _>>()?;
         let mut rest = &corners[..];
         while !rest.is_empty() {
             let count = match kind {
@@ -189,18 +191,19 @@ fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f6
         mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
     };
     let name = vertices.attribute("source").unwrap_or_default();
-    let missing = || format!("no source of positions at `{name}`");
-    let vertices = find_child("vertices", name.trim_start_matches('#')).ok_or_else(missing)?;
+    let missing_positions_error = || format!("no source of positions at `{name}`");
+    let vertices =
+        find_child("vertices", name.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
     let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
     let source = input.and_then(|input| input.attribute("source")).unwrap_or_default();
-    let source = find_child("source", source.trim_start_matches('#')).ok_or_else(missing)?;
-    let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing)?)?;
+    let source = find_child("source", source.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
+    let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing_positions_error)?)?;
     let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
-    let count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
+    let read_accessor_count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
         Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is not a count")),
         None => Ok(otherwise),
     };
-    let (stride, offset) = (count("stride", 3)?, count("offset", 0)?);
+    let (stride, offset) = (read_accessor_count("stride", 3)?, read_accessor_count("offset", 0)?);
     if stride < 3 {
         return Err("positions with fewer than three numbers".to_string());
     }
@@ -243,11 +246,11 @@ fn referred<'a>(instance: Node<'_, '_>, known: &HashMap<&str, Node<'a, 'a>>) -> 
 
 /// Parses the text of an element as a list of numbers.
 fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
-    let read = |word: &str| {
+    let read_number = |word: &str| {
         let shown: String = word.chars().take(60).collect();
         word.parse().map_err(|_| format!("`{shown}` in a `{}` is not a number", node.tag_name().name()))
     };
-    node.text().unwrap_or_default().split_whitespace().map(read).collect()
+    node.text().unwrap_or_default().split_whitespace().map(read_number).collect()
 }
 
 #[cfg(test)]
@@ -280,8 +283,8 @@ mod tests {
         <input semantic='NORMAL' source='#normals' offset='1'/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>";
     const SHOWN: &str = "<instance_geometry url='#square'/>";
 
-    /// Checks that triangles, polygons and fans of one square yield the same corners; a strip divides it
-    /// along the other diagonal.
+    /// Checks that triangles, polygons and triangle fans of one square yield the same corners. A strip
+    /// divides the square along the other diagonal.
     #[test]
     fn lists_of_faces_agree() {
         let square = corners(&file("", TWO, "")).unwrap();
@@ -300,7 +303,8 @@ mod tests {
         assert_eq!(corners(&file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
     }
 
-    /// Checks units and the order of nested transforms: inner ones are applied first.
+    /// Checks the length unit of the file and the order of nested transforms: inner transforms are applied
+    /// first.
     #[test]
     fn nodes_place_what_they_hold() {
         let nodes = format!(
@@ -329,8 +333,8 @@ mod tests {
     #[test]
     fn broken_files_are_told() {
         let vertex = "<input semantic='VERTEX' source='#v'/>";
-        let faces = |list: &str| corners(&file("", list, ""));
-        let placed = |nodes: &str| corners(&file("", TWO, &scene(nodes)));
+        let corners_of_faces = |list: &str| corners(&file("", list, ""));
+        let corners_of_scene = |nodes: &str| corners(&file("", TWO, &scene(nodes)));
         let bomb = (0..40).map(|k| {
             let next = format!("<instance_node url='#n{}'/>", k + 1);
             format!("<node id='n{k}'>{next}{next}</node>")
@@ -341,25 +345,28 @@ mod tests {
             ("not XML", corners("solid")),
             ("expected a `COLLADA` element, found `robot`", corners("<robot/>")),
             ("`meter`", corners(&file("<unit meter='0'/>", TWO, ""))),
-            ("is not a number", faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
-            ("a vertex that does not exist", faces(&format!("<triangles>{vertex}<p>0 1 9</p></triangles>"))),
-            ("do not fit its count", faces(&format!("<triangles>{vertex}<p>0 1</p></triangles>"))),
+            ("is not a number", corners_of_faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
+            (
+                "a vertex that does not exist",
+                corners_of_faces(&format!("<triangles>{vertex}<p>0 1 9</p></triangles>")),
+            ),
+            ("do not fit its count", corners_of_faces(&format!("<triangles>{vertex}<p>0 1</p></triangles>"))),
             (
                 "do not fit its count",
-                faces(&format!("<polylist>{vertex}<vcount>4</vcount><p>0 1 2</p></polylist>")),
+                corners_of_faces(&format!("<polylist>{vertex}<vcount>4</vcount><p>0 1 2</p></polylist>")),
             ),
-            ("no input for its vertices", faces("<triangles><p>0 1 2</p></triangles>")),
-            ("holes", faces(&format!("<polygons>{vertex}<ph><p>0 1 2</p></ph></polygons>"))),
+            ("no input for its vertices", corners_of_faces("<triangles><p>0 1 2</p></triangles>")),
+            ("holes", corners_of_faces(&format!("<polygons>{vertex}<ph><p>0 1 2</p></ph></polygons>"))),
             (
                 "no source of positions at `#w`",
-                faces("<triangles><input semantic='VERTEX' source='#w'/></triangles>"),
+                corners_of_faces("<triangles><input semantic='VERTEX' source='#w'/></triangles>"),
             ),
-            ("refers to `#cube`", placed("<node><instance_geometry url='#cube'/></node>")),
-            ("placed by `skew`", placed("<node><skew>1 2 3</skew></node>")),
-            ("skins", placed("<node><instance_controller url='#c'/></node>")),
-            ("endlessly nested", placed("<node id='a'><instance_node url='#a'/></node>")),
-            ("endlessly nested", placed(&bomb)),
-            ("endlessly nested", placed(&deep)),
+            ("refers to `#cube`", corners_of_scene("<node><instance_geometry url='#cube'/></node>")),
+            ("placed by `skew`", corners_of_scene("<node><skew>1 2 3</skew></node>")),
+            ("skins", corners_of_scene("<node><instance_controller url='#c'/></node>")),
+            ("endlessly nested", corners_of_scene("<node id='a'><instance_node url='#a'/></node>")),
+            ("endlessly nested", corners_of_scene(&bomb)),
+            ("endlessly nested", corners_of_scene(&deep)),
             ("not XML", corners(&format!("<!DOCTYPE x [<!ENTITY e 'lol'>]>{}", file("", TWO, "")))),
         ] {
             let message = found.unwrap_err();

@@ -4,7 +4,7 @@
 //! A channel consists of its first value, then 0 if it is constant, or 1 and the differences. Integers are
 //! written with seven bits per byte, lowest first, with the sign in the lowest bit.
 
-/// Concatenated channels.
+/// Binary data of several concatenated channels, such as the coordinates of a motion.
 #[derive(Default)]
 pub struct Stream {
     bytes: Vec<u8>,
@@ -35,7 +35,7 @@ impl Stream {
         self.bytes.push(rest as u8);
     }
 
-    /// Returns all channels in base64.
+    /// Returns the data of all channels in base64.
     pub fn text(&self) -> String {
         base64(&self.bytes)
     }
@@ -50,8 +50,8 @@ pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
-        let byte = |k: usize| u32::from(group.get(k).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        let byte_of_group = |k: usize| u32::from(group.get(k).copied().unwrap_or(0));
+        let word = byte_of_group(0) << 16 | byte_of_group(1) << 8 | byte_of_group(2);
         for k in 0..4 {
             let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
             out.push(if k <= group.len() { char::from(digit) } else { '=' });

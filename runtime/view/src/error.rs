@@ -1,4 +1,4 @@
-//! Errors of pages, logs and live views.
+//! Errors of pages, logs and live views of motions.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,70 +6,71 @@ use std::path::PathBuf;
 /// Reason why a page, log or live view cannot be created. Every variant names the cause.
 #[non_exhaustive]
 pub enum Error {
-    /// A motion without samples.
+    /// The motion has no samples.
     Empty {
-        /// Title of the motion.
+        /// Title of the motion without samples.
         motion: String,
     },
-    /// A time that is not finite, or before the previous one.
+    /// The time of a sample is not finite, or is before the previous time.
     Time {
-        /// Title of the motion.
+        /// Title of the motion with the invalid time.
         motion: String,
-        /// Index of the sample.
+        /// Index of the sample with the invalid time.
         sample: usize,
     },
     /// A frame whose placement is not finite, or a state that is not finite.
     NotFinite {
-        /// Title of the motion.
+        /// Title of the motion that is not finite.
         motion: String,
-        /// Index of the sample.
+        /// Index of the sample that is not finite.
         sample: usize,
-        /// Name of the frame, or `state`.
+        /// Name of the frame whose placement is not finite, or `state`.
         frame: String,
     },
     /// A list whose length differs from the number of samples or frames.
     Count {
-        /// Description of the list.
+        /// Description of the list that has the wrong length.
         what: String,
-        /// Expected number of entries.
+        /// Expected number of entries of the list.
         expected: usize,
-        /// Actual number of entries.
+        /// Actual number of entries of the list.
         found: usize,
     },
-    /// An unknown frame name.
+    /// The drawing has no frame of the requested name.
     Frame {
-        /// Requested name.
+        /// Requested name of the unknown frame.
         name: String,
-        /// Existing frames.
+        /// Names of the frames that exist.
         known: Vec<String>,
     },
     /// A port at which no live view can be opened, because another program uses it or the operating system
     /// denies it.
     Port {
-        /// Port number.
+        /// Port number at which no live view can be opened.
         port: u16,
-        /// Error of the operating system.
+        /// Error of the operating system when the port was opened.
         cause: std::io::Error,
     },
-    /// A surface that cannot be drawn over its region.
+    /// The surface cannot be drawn over its region, because bounds do not increase or a position is not
+    /// finite.
     Surface {
-        /// Name of the surface.
+        /// Name of the surface that cannot be drawn.
         name: String,
-        /// Description of the error.
+        /// Description of the error of the surface.
         what: String,
     },
     /// A file that cannot be read or written.
     File {
-        /// Path of the file.
+        /// Path of the file that cannot be read or written.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Error of the operating system for the file.
         cause: std::io::Error,
     },
-    /// A file without readable triangles.
+    /// The file contains no readable triangles.
     Mesh {
-        /// Path of the file.
+        /// Path of the mesh file.
         path: PathBuf,
-        /// Description of the error.
+        /// Description of the error in the mesh file.
         what: String,
     },
 }

@@ -18,7 +18,7 @@ pub struct Figure {
     pub(crate) gravity: [f64; 3],
 }
 
-/// Piece with its dimensions.
+/// Piece of a drawing with its dimensions, ready to be drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
     pub(crate) name: String,
@@ -42,7 +42,7 @@ pub(crate) fn plain<T: Real>(x: T) -> f64 {
 }
 
 impl Figure {
-    /// Returns the pieces that a mechanism declares, with the current values of its parameters.
+    /// Returns the drawing that a mechanism declares, for the current values of its parameters.
     pub fn of<M, const NQ: usize, const NV: usize>(mechanism: &M) -> Figure
     where
         M: Drawn<NQ, NV>,
@@ -133,8 +133,8 @@ impl Figure {
     /// [`Error::File`] if the folder or a file that is found cannot be read, [`Error::Mesh`] if a file has no
     /// readable triangles.
     pub fn meshes(mut self, folder: impl AsRef<Path>) -> Result<Figure, Error> {
-        let unreadable = |cause| Error::File { path: folder.as_ref().to_path_buf(), cause };
-        std::fs::read_dir(folder.as_ref()).map_err(unreadable)?;
+        let file_error = |cause| Error::File { path: folder.as_ref().to_path_buf(), cause };
+        std::fs::read_dir(folder.as_ref()).map_err(file_error)?;
         for shape in &mut self.shapes {
             if let (Kind::Mesh(path), Role::Visual) = (shape.kind, shape.role)
                 && let Some(found) = mesh::find(folder.as_ref(), path)
@@ -158,29 +158,30 @@ impl Figure {
         missing
     }
 
-    /// Iterates over the shapes that are drawn.
+    /// Iterates over the shapes that are drawn. Shapes of mass properties are omitted if all meshes of their
+    /// body were read.
     pub(crate) fn shown(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
     }
 
     /// Returns whether a shape represents the mass properties of a body whose meshes were all read.
     fn has_meshes(&self, shape: &Shape) -> bool {
-        let is_mesh = |s: &&Shape| {
+        let is_mesh_of_shape = |s: &&Shape| {
             s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
         };
-        let mut meshes = self.shapes.iter().filter(is_mesh).peekable();
+        let mut meshes = self.shapes.iter().filter(is_mesh_of_shape).peekable();
         shape.declared
             && matches!(shape.role, Role::Body | Role::Link)
             && meshes.peek().is_some()
             && meshes.all(|s| s.mesh.is_some())
     }
 
-    /// Returns the names of the frames.
+    /// Returns the names of the frames of the drawing.
     pub fn frames(&self) -> &[String] {
         &self.frames
     }
 
-    /// Returns the index of a frame.
+    /// Returns the index of a frame by its name, or [`Error::Frame`] if the drawing has no such frame.
     pub(crate) fn frame(&self, name: &str) -> Result<usize, Error> {
         let found = self.frames.iter().position(|known| known == name);
         found.ok_or_else(|| Error::Frame { name: name.to_string(), known: self.frames.clone() })
@@ -228,22 +229,23 @@ impl Figure {
         (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
     }
 
-    /// Returns the common direction of all revolute axes if they are parallel, which makes the motion planar.
+    /// Returns the common direction of all revolute axes of the drawing if they are parallel: the normal of a
+    /// planar motion.
     pub(crate) fn normal(
         &self,
         turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
     ) -> Option<Vector3<f64>> {
-        let axis = |s: &Shape| turn(s.frames[0], Vector3::from_column_slice(&s.numbers[3..6]));
+        let hinge_axis = |s: &Shape| turn(s.frames[0], Vector3::from_column_slice(&s.numbers[3..6]));
         let hinges: Vec<Vector3<f64>> =
-            self.shapes.iter().filter(|s| s.kind == Kind::Hinge).map(axis).collect();
+            self.shapes.iter().filter(|s| s.kind == Kind::Hinge).map(hinge_axis).collect();
         let first = hinges.first()?;
         hinges.iter().all(|other| other.cross(first).norm() < 1e-6).then_some(*first)
     }
 }
 
 impl Shape {
-    /// Returns the index of its first number among those of the declared pieces, and how many of its numbers
-    /// are those of the piece: of an equivalent ellipsoid the position alone.
+    /// Returns the index of the first number of the shape among the numbers of the declared pieces, and the
+    /// count of these numbers. An equivalent ellipsoid takes only its position from them.
     pub(crate) fn source(&self) -> Option<[usize; 2]> {
         let count = if self.fitted { 3 } else { self.numbers.len() };
         self.first.map(|first| [first, count])
@@ -253,29 +255,38 @@ impl Shape {
     /// beyond it.
     pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
-        let vector = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+        let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
         let [a, b] = self.frames;
-        let ends = |half: f64, radius: f64| {
-            vec![(a, vector(0) - vector(3) * half, radius), (a, vector(0) + vector(3) * half, radius)]
+        let spheres_at_ends = |half: f64, radius: f64| {
+            vec![
+                (a, vector_from_numbers(0) - vector_from_numbers(3) * half, radius),
+                (a, vector_from_numbers(0) + vector_from_numbers(3) * half, radius),
+            ]
         };
-        let norm = |k: usize| vector(k).norm();
+        let norm_of_vector = |k: usize| vector_from_numbers(k).norm();
         match self.kind {
-            Kind::Rod => ends(n[6] / 2.0, 0.0),
-            Kind::Cylinder | Kind::Capsule => ends(n[7] / 2.0, n[6]),
-            Kind::Cone => ends(n[7] * 0.75, n[6]),
-            Kind::Tube => ends(n[8] / 2.0, n[7]),
-            Kind::Ring | Kind::Disk => vec![(a, vector(0), n[6])],
-            Kind::Torus => vec![(a, vector(0), n[6] + n[7])],
-            Kind::Sphere => vec![(a, vector(0), n[3])],
-            Kind::Cuboid => vec![(a, vector(0), norm(12) / 2.0)],
-            Kind::Ellipsoid => vec![(a, vector(0), n[12].max(n[13]).max(n[14]))],
-            Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, vector(0), 0.0), (b, vector(3), 0.0)],
+            Kind::Rod => spheres_at_ends(n[6] / 2.0, 0.0),
+            Kind::Cylinder | Kind::Capsule => spheres_at_ends(n[7] / 2.0, n[6]),
+            Kind::Cone => spheres_at_ends(n[7] * 0.75, n[6]),
+            Kind::Tube => spheres_at_ends(n[8] / 2.0, n[7]),
+            Kind::Ring | Kind::Disk => vec![(a, vector_from_numbers(0), n[6])],
+            Kind::Torus => vec![(a, vector_from_numbers(0), n[6] + n[7])],
+            Kind::Sphere => vec![(a, vector_from_numbers(0), n[3])],
+            Kind::Cuboid => vec![(a, vector_from_numbers(0), norm_of_vector(12) / 2.0)],
+            Kind::Ellipsoid => vec![(a, vector_from_numbers(0), n[12].max(n[13]).max(n[14]))],
+            Kind::Bar | Kind::Coil | Kind::Damper => {
+                vec![(a, vector_from_numbers(0), 0.0), (b, vector_from_numbers(3), 0.0)]
+            }
             Kind::Terrain(_) => Vec::new(),
             // A surface has no definite size, like a plane.
             Kind::Mesh(_) if self.role == Role::Surface => Vec::new(),
             Kind::Mesh(_) => match &self.mesh {
                 Some(mesh) => {
-                    vec![(a, vector(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))]
+                    vec![(
+                        a,
+                        vector_from_numbers(0),
+                        mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()),
+                    )]
                 }
                 None => Vec::new(),
             },
@@ -289,13 +300,13 @@ impl Shape {
             | Kind::Spiral
             | Kind::Brake
             | Kind::Force(_)
-            | Kind::Torque(_) => vec![(a, vector(0), 0.0)],
+            | Kind::Torque(_) => vec![(a, vector_from_numbers(0), 0.0)],
         }
     }
 
-    /// Serialises the shape as JSON; `renumber` maps frame indices to those of the page.
+    /// Serialises the shape as JSON. `renumber` converts frame indices of the drawing to those of the page.
     pub(crate) fn json(&self, renumber: impl Fn(usize) -> usize) -> String {
-        let frame = |k: Option<usize>| k.map_or("-1".to_string(), |k| renumber(k).to_string());
+        let frame_number_text = |k: Option<usize>| k.map_or("-1".to_string(), |k| renumber(k).to_string());
         let (kind, more) = match self.kind {
             Kind::Force(k) => ("Force".to_string(), k.to_string()),
             Kind::Torque(k) => ("Torque".to_string(), k.to_string()),
@@ -306,16 +317,16 @@ impl Shape {
             text::json(&kind),
             text::json(&format!("{:?}", self.role)),
             text::json(&self.name),
-            frame(self.frames[0]),
-            frame(self.frames[1]),
+            frame_number_text(self.frames[0]),
+            frame_number_text(self.frames[1]),
             text::numbers(&self.numbers),
             more,
         ])
     }
 }
 
-/// Returns the homogeneous ellipsoid with a mass and an inertia: with principal moments `I₁ …`, its semi-axes
-/// satisfy `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, such as those of planar
+/// Returns the homogeneous ellipsoid of a given mass and inertia: with principal moments `I₁ …`, the
+/// semi-axes satisfy `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Impossible moments, such as those of planar
 /// mechanisms, yield flat ellipsoids.
 fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
     let [x, y, z, mass, xx, yy, zz, xy, xz, yz] = *numbers else { return (Kind::Point, vec![0.0; 3]) };
@@ -327,8 +338,8 @@ fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
     if axes.determinant() < 0.0 {
         axes.column_mut(2).neg_mut();
     }
-    let square = |k: usize| 5.0 * (i.sum() - 2.0 * i[k]) / (2.0 * mass);
-    let squares = [0, 1, 2].map(square);
+    let squared_semi_axis = |k: usize| 5.0 * (i.sum() - 2.0 * i[k]) / (2.0 * mass);
+    let squares = [0, 1, 2].map(squared_semi_axis);
     let largest = squares.into_iter().fold(0.0, f64::max);
     let halves = squares.map(|s| s.max(largest * 0.01).sqrt());
     let axes = axes.transpose();
@@ -344,8 +355,19 @@ mod tests {
     #[test]
     fn an_ellipsoid_is_its_own_equivalent() {
         let (m, [a, b, c]) = (3.0, [0.5, 0.2, 0.3_f64]);
-        let moment = |p: f64, q: f64| m * (p * p + q * q) / 5.0;
-        let numbers = [1.0, 2.0, 3.0, m, moment(b, c), moment(a, c), moment(a, b), 0.0, 0.0, 0.0];
+        let ellipsoid_moment = |p: f64, q: f64| m * (p * p + q * q) / 5.0;
+        let numbers = [
+            1.0,
+            2.0,
+            3.0,
+            m,
+            ellipsoid_moment(b, c),
+            ellipsoid_moment(a, c),
+            ellipsoid_moment(a, b),
+            0.0,
+            0.0,
+            0.0,
+        ];
         let (kind, n) = equivalent(&numbers);
         assert_eq!((kind, &n[..3]), (Kind::Ellipsoid, &[1.0, 2.0, 3.0][..]));
         // Each column of the axes is a coordinate axis, with the corresponding semi-axis.

@@ -1,5 +1,5 @@
-//! Free-body diagrams as SVG: a body, the points at which actions are applied, and forces and torques as
-//! arrows with their values.
+//! Free-body diagrams as SVG: the body, the points of application, and forces and torques as arrows, with a
+//! list of their values.
 
 use crate::figure::plain;
 use crate::text::html as escaped;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 /// Widths of the drawing and of the list next to it, pixels.
 const DRAWING: f64 = 480.0;
 const LIST: f64 = 420.0;
-/// Height of the drawing, pixels.
+/// Height of the free-body diagram, pixels.
 const HEIGHT: f64 = 480.0;
 /// Maximum length of an arrow, and maximum distance of a point from the centre of mass, pixels.
 const LONGEST: f64 = 110.0;
@@ -22,18 +22,18 @@ const ARC: f64 = 26.0;
 const SHORTEST: f64 = 1.5;
 /// Height of a line of the list, pixels.
 const LINE: f64 = 19.0;
-/// Torques below this fraction of the largest one count as zero.
+/// Fraction of the largest torque below which a torque counts as zero.
 const ZERO: f64 = 1e-9;
 
 /// Viewing direction of a free-body diagram, in the axes of the diagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// x to the right, y upward.
+    /// View along −z: x to the right, y upward.
     #[default]
     Xy,
-    /// x to the right, z upward.
+    /// View with x to the right and z upward.
     Xz,
-    /// y to the right, z upward.
+    /// View with y to the right and z upward.
     Yz,
     /// Isometric view: z upward, x and y towards the viewer, with equal foreshortening of all axes.
     Isometric,
@@ -102,7 +102,7 @@ pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -
     out
 }
 
-/// Action with its components in the picture.
+/// Force and torque that are drawn, with their components along the axes of the picture.
 struct Shown {
     name: &'static str,
     colour: &'static str,
@@ -149,14 +149,14 @@ fn scale(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
 fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     let all: Vec<&Shown> = all.iter().filter(|shown| shown.is_finite()).collect();
     let places = scale(all.iter().map(|s| length(s.point[0], s.point[1])), REACH);
-    let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let forces = scale(all.iter().map(|s| norm(s.force)), LONGEST);
-    let torques = scale(all.iter().map(|s| norm(s.torque)), LONGEST / 2.0);
-    let largest = all.iter().map(|s| norm(s.torque)).fold(0.0, f64::max);
-    let to_page = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
-    let center = to_page([0.0; 3]);
+    let vector_norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let forces = scale(all.iter().map(|s| vector_norm(s.force)), LONGEST);
+    let torques = scale(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
+    let largest = all.iter().map(|s| vector_norm(s.torque)).fold(0.0, f64::max);
+    let project_to_page = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
+    let center = project_to_page([0.0; 3]);
     for shown in &all {
-        let (x, y) = to_page(shown.point);
+        let (x, y) = project_to_page(shown.point);
         let _ = writeln!(
             out,
             "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{x:.2}\" y2=\"{y:.2}\" stroke=\"#ccc\" stroke-width=\"7\" \
@@ -172,7 +172,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     );
     write_axes(out, side);
     for shown in all {
-        let (x, y) = to_page(shown.point);
+        let (x, y) = project_to_page(shown.point);
         let [right, up, _] = shown.force.map(|c| c * forces);
         arrow(out, (x, y), (right, -up), shown.colour, 1);
         let away = if up < 0.0 { 16.0 } else { -8.0 };
@@ -187,11 +187,11 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
             shown.colour,
             escaped(shown.name)
         );
-        if norm(shown.torque) <= ZERO * largest {
+        if vector_norm(shown.torque) <= ZERO * largest {
             continue;
         }
         let [right, up, across] = shown.torque;
-        if across.abs() > 1e-6 * norm(shown.torque) {
+        if across.abs() > 1e-6 * vector_norm(shown.torque) {
             arc(out, (x, y), across > 0.0, shown.colour);
         }
         arrow(out, (x, y), (right * torques, -up * torques), shown.colour, 2);
@@ -271,7 +271,7 @@ fn arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &st
     );
 }
 
-/// Writes the list of all actions with their values, and their sum.
+/// Writes the values of all actions and their sum as a list next to the diagram.
 fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>, all: &[Shown]) {
     let x = DRAWING + 10.0;
     let mut y = 26.0;
@@ -296,7 +296,8 @@ fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>
     say(out, "#000", "normal", &format!("torque {} N·m", written(torque)));
 }
 
-/// Formats three components with four significant digits of the largest one.
+/// Formats the three components of a vector with as many decimals as give the largest one four significant
+/// digits.
 fn written(v: [f64; 3]) -> String {
     let largest = v.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let decimals = if largest > 0.0 && largest.is_finite() {

@@ -1,4 +1,4 @@
-//! Index of several pages.
+//! HTML index of several pages with still pictures.
 
 use crate::page::head;
 use crate::{Page, text};

@@ -39,9 +39,9 @@ use linkwork::{Drawn, Mechanism};
 #[derive(Debug)]
 pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     mechanism: &'m M,
-    /// Frames of the page.
+    /// Indices of the mechanism's frames that the page draws.
     frames: Vec<usize>,
-    /// Number of plotted coordinates.
+    /// Number of coordinates that the page plots.
     plotted: usize,
     server: Server,
     /// Newest message: the time in eight bytes, then for each frame its position and its quaternion x y z w,
@@ -110,18 +110,21 @@ where
         self.message.extend(plain(sample.t).to_le_bytes());
         let number = self.samples as usize;
         self.samples += 1;
-        let broken = |frame: &str| Error::NotFinite {
+        let not_finite_error = |frame: &str| Error::NotFinite {
             motion: "the live view".to_string(),
             sample: number,
             frame: frame.to_string(),
         };
         for frame in &self.frames {
-            let name = || broken(M::FRAMES.get(*frame).unwrap_or(&""));
-            let placement = self.mechanism.placement_of(*frame, sample.t, &sample.q).ok_or_else(name)?;
+            let frame_not_finite_error = || not_finite_error(M::FRAMES.get(*frame).unwrap_or(&""));
+            let placement = self
+                .mechanism
+                .placement_of(*frame, sample.t, &sample.q)
+                .ok_or_else(frame_not_finite_error)?;
             let placement = as_plain(&placement);
             let matrix = placement.rotation.matrix();
             if !placement.translation.vector.iter().chain(matrix.iter()).all(|x| x.is_finite()) {
-                return Err(name());
+                return Err(frame_not_finite_error());
             }
             let turn = UnitQuaternion::from_rotation_matrix(&placement.rotation);
             let numbers = placement.translation.vector.iter().chain(turn.coords.iter());
@@ -130,7 +133,7 @@ where
         let state = sample.q.iter().take(self.plotted).chain(&sample.u).map(|x| plain(*x));
         for x in state.clone().chain([plain(sample.t)]) {
             if !x.is_finite() {
-                return Err(broken("state"));
+                return Err(not_finite_error("state"));
             }
         }
         self.message.extend(state.flat_map(|x| (x as f32).to_le_bytes()));

@@ -60,7 +60,7 @@ where
     Ok(out)
 }
 
-/// Returns a field, quoted if necessary.
+/// Returns a field of a CSV file, in quotes if it contains commas, quotes or line breaks.
 fn field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),

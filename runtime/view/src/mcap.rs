@@ -84,7 +84,7 @@ where
         velocities: &M::VELOCITIES,
         inputs: &M::INPUTS,
     };
-    let instant = |sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
+    let instant_of_sample = |sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
         let frames = 0..M::FRAMES.len();
         Instant {
             t: plain(sample.t),
@@ -96,26 +96,26 @@ where
                 .collect(),
         }
     };
-    mcap_of(&names, samples.iter().map(instant))
+    mcap_of(&names, samples.iter().map(instant_of_sample))
 }
 
-/// Names of the logged quantities, in order.
+/// Names of the quantities in an MCAP log, in the order of their values.
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
-    /// Frames with placements.
+    /// Names of the frames whose placements are logged.
     pub frames: &'a [&'a str],
-    /// Entries of the configuration.
+    /// Names of the entries of the configuration.
     pub configuration: &'a [&'a str],
-    /// Entries of the velocity.
+    /// Names of the entries of the velocity.
     pub velocities: &'a [&'a str],
     /// Names of the inputs.
     pub inputs: &'a [&'a str],
 }
 
-/// Logged state at one instant of a motion.
+/// State, inputs and frame placements at one instant of a logged motion.
 #[derive(Clone, Debug)]
 pub struct Instant {
-    /// Time, s.
+    /// Time of the instant, s.
     pub t: f64,
     /// Configuration, one entry per name in [`Names::configuration`], m or rad.
     pub q: Vec<f64>,
@@ -144,7 +144,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
         let nanoseconds = (sample.t * 1e9).round() as u64;
         let stamp =
             format!("{{\"sec\":{},\"nsec\":{}}}", nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
-        let transform = |(name, placement): (&&str, &IsometryMatrix3<f64>)| {
+        let transform_message = |(name, placement): (&&str, &IsometryMatrix3<f64>)| {
             let at = placement.translation.vector;
             let q = UnitQuaternion::from_rotation_matrix(&placement.rotation);
             format!(
@@ -159,8 +159,8 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
                 q.w
             )
         };
-        let transforms = names.frames.iter().zip(&sample.placements).map(transform);
-        let joint = |(name, x): (&&str, &f64)| {
+        let transforms = names.frames.iter().zip(&sample.placements).map(transform_message);
+        let joint_message = |(name, x): (&&str, &f64)| {
             let rate = names.velocities.iter().position(|rate| rate == name)?;
             Some(format!(
                 "{{\"name\":{},\"position\":{x},\"velocity\":{}}}",
@@ -168,8 +168,8 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
                 sample.v[rate]
             ))
         };
-        let joints = names.configuration.iter().zip(&sample.q).filter_map(joint);
-        let by_name = |names: &[&str], numbers: &[f64]| {
+        let joints = names.configuration.iter().zip(&sample.q).filter_map(joint_message);
+        let json_by_name = |names: &[&str], numbers: &[f64]| {
             let entries = names.iter().zip(numbers);
             let entries: Vec<String> = entries.map(|(name, x)| format!("{}:{x}", text::json(name))).collect();
             format!("{{{}}}", entries.join(","))
@@ -180,9 +180,9 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
             format!(
                 "{{\"t\":{},\"q\":{},\"v\":{},\"u\":{}}}",
                 sample.t,
-                by_name(names.configuration, &sample.q),
-                by_name(names.velocities, &sample.v),
-                by_name(names.inputs, &sample.u)
+                json_by_name(names.configuration, &sample.q),
+                json_by_name(names.velocities, &sample.v),
+                json_by_name(names.inputs, &sample.u)
             ),
         ];
         for (channel, message) in (1..).zip(&messages) {
@@ -195,9 +195,9 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
 /// Reports values that the format cannot represent: times outside 64 bits of nanoseconds, and values that are
 /// not finite.
 fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
-    let motion = || "mcap".to_string();
+    let motion_title = || "mcap".to_string();
     let not_finite =
-        |frame: &str| Err(Error::NotFinite { motion: motion(), sample: k, frame: frame.to_string() });
+        |frame: &str| Err(Error::NotFinite { motion: motion_title(), sample: k, frame: frame.to_string() });
     for (what, list, found) in [
         ("frames", names.frames, sample.placements.len()),
         ("configuration", names.configuration, sample.q.len()),
@@ -210,7 +210,7 @@ fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(),
         }
     }
     if !(sample.t >= last && sample.t < 1e10) {
-        return Err(Error::Time { motion: motion(), sample: k });
+        return Err(Error::Time { motion: motion_title(), sample: k });
     }
     if sample.q.iter().chain(&sample.v).chain(&sample.u).any(|x| !x.is_finite()) {
         return not_finite("state");
@@ -223,7 +223,7 @@ fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(),
     Ok(())
 }
 
-/// MCAP file under construction.
+/// MCAP file to which messages are appended.
 struct File {
     bytes: Vec<u8>,
     /// Number of messages, and the first and last time of all messages, ns.
@@ -232,7 +232,7 @@ struct File {
     last: u64,
 }
 
-/// Content of a record.
+/// Content of an MCAP record under construction, in bytes.
 #[derive(Default)]
 struct Content(Vec<u8>);
 
@@ -264,7 +264,7 @@ impl File {
         self.bytes.extend(content.0);
     }
 
-    /// Writes the schemas and channels.
+    /// Writes the schema and the channel of each topic.
     fn describe(&mut self) {
         for (id, (topic, name, schema)) in (1_u16..).zip(TOPICS) {
             let id = id.to_le_bytes();

@@ -5,7 +5,7 @@ use crate::{Error, collada, text};
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Triangles, with three corners each.
+/// Triangle mesh as a list of corners, three for each triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Mesh {
     corners: Vec<[f32; 3]>,
@@ -31,7 +31,7 @@ impl Mesh {
         }
         let interpolate =
             |[low, high]: [f64; 2], k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
-        let corner = |j: u32, k: u32| {
+        let corner_of_grid = |j: u32, k: u32| {
             let (u, w) = (interpolate(u, j), interpolate(w, k));
             let place = place(u, w);
             match place.iter().all(|x| (*x as f32).is_finite()) {
@@ -42,8 +42,8 @@ impl Mesh {
         let mut corners = Vec::new();
         for j in 0..CELLS {
             for k in 0..CELLS {
-                let [a, b] = [corner(j, k)?, corner(j + 1, k)?];
-                let [c, d] = [corner(j + 1, k + 1)?, corner(j, k + 1)?];
+                let [a, b] = [corner_of_grid(j, k)?, corner_of_grid(j + 1, k)?];
+                let [c, d] = [corner_of_grid(j + 1, k + 1)?, corner_of_grid(j, k + 1)?];
                 corners.extend([a, b, c, a, c, d]);
             }
         }
@@ -52,8 +52,8 @@ impl Mesh {
 
     /// Returns the distance of the farthest corner from the origin.
     pub(crate) fn radius(&self) -> f64 {
-        let norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
-        self.corners.iter().map(norm).fold(0.0, f64::max)
+        let corner_norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
+        self.corners.iter().map(corner_norm).fold(0.0, f64::max)
     }
 
     /// Returns at most this number of corners, evenly chosen.
@@ -65,10 +65,11 @@ impl Mesh {
     /// Serialises the mesh as JSON, with 16 bits per coordinate and coinciding corners merged: lowest corner,
     /// step sizes, positions, indices.
     pub(crate) fn json(&self) -> String {
-        let bound = |f: fn(f32, f32) -> f32, from: f32| {
+        let bounds_of_corners = |f: fn(f32, f32) -> f32, from: f32| {
             [0, 1, 2].map(|k| self.corners.iter().map(|c| c[k]).fold(from, f))
         };
-        let (low, high) = (bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY));
+        let (low, high) =
+            (bounds_of_corners(f32::min, f32::INFINITY), bounds_of_corners(f32::max, f32::NEG_INFINITY));
         let steps = [0, 1, 2].map(|k| (f64::from(high[k]) - f64::from(low[k])).max(1e-12) / 65535.0);
         let (mut numbers, mut places, mut indices) = (HashMap::new(), Vec::new(), Vec::new());
         for corner in &self.corners {
@@ -107,7 +108,7 @@ pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
     candidates.into_iter().find(|candidate| candidate.is_file())
 }
 
-/// Reads a file in the format of its extension.
+/// Reads a triangle mesh in the format that the extension of the file determines.
 pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     let bytes = std::fs::read(path).map_err(|cause| Error::File { path: path.to_path_buf(), cause })?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
@@ -135,10 +136,10 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
 fn stl(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
     if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {
-        let float = |b: &[u8]| b.try_into().map_or(f32::NAN, f32::from_le_bytes);
+        let read_float = |b: &[u8]| b.try_into().map_or(f32::NAN, f32::from_le_bytes);
         let mut mesh = Mesh { corners: Vec::with_capacity(3 * count as usize) };
         for triangle in bytes[84..].chunks_exact(50) {
-            let numbers: Vec<f32> = triangle[12..48].chunks_exact(4).map(float).collect();
+            let numbers: Vec<f32> = triangle[12..48].chunks_exact(4).map(read_float).collect();
             mesh.corners.extend(numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]));
         }
         return Ok(mesh);
@@ -165,17 +166,18 @@ fn stl(bytes: &[u8]) -> Result<Mesh, String> {
 fn obj(text: &str) -> Result<Mesh, String> {
     let (mut corners, mut mesh): (Vec<[f32; 3]>, Mesh) = (Vec::new(), Mesh::default());
     for line in text.lines() {
-        let bad = || format!("cannot be read: `{}`", line.trim());
+        let unreadable_line_error = || format!("cannot be read: `{}`", line.trim());
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => corners.push(three(words).ok_or_else(bad)?),
+            Some("v") => corners.push(three(words).ok_or_else(unreadable_line_error)?),
             Some("f") => {
-                let corner = |word: &str| {
+                let corner_of_face = |word: &str| {
                     let n: i64 = word.split('/').next()?.parse().ok()?;
                     let at = if n < 0 { corners.len() as i64 + n } else { n - 1 };
                     corners.get(usize::try_from(at).ok()?).copied()
                 };
-                let face: Vec<[f32; 3]> = words.map(corner).collect::<Option<_>>().ok_or_else(bad)?;
+                let face: Vec<[f32; 3]> =
+                    words.map(corner_of_face).collect::<Option<_>>().ok_or_else(unreadable_line_error)?;
                 for pair in face.get(1..).unwrap_or_default().windows(2) {
                     mesh.corners.extend([face[0], pair[0], pair[1]]);
                 }

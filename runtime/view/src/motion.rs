@@ -8,9 +8,9 @@ use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Ve
 use linkwork::simulate::Sample;
 use linkwork::{Drawn, Mechanism};
 
-/// Quantisation step of quaternions.
+/// Quantisation step of quaternion components in the data of a page.
 const TURN: f64 = 1.0 / 16384.0;
-/// Quantisation step of time, s.
+/// Quantisation step of time in the data of a page, s.
 const TICK: f64 = 1e-5;
 /// Number of quantisation steps over the range of a plotted curve.
 const LEVELS: f64 = 4000.0;
@@ -31,9 +31,9 @@ pub struct Motion {
     title: String,
     figure: Figure,
     times: Vec<f64>,
-    /// Placements, indexed by sample, then by frame.
+    /// Placements of frames, indexed by sample, then by frame.
     placements: Vec<Vec<IsometryMatrix3<f64>>>,
-    /// Inputs, indexed by sample.
+    /// Inputs of the mechanism, indexed by sample.
     inputs: Vec<Vec<f64>>,
     plots: Vec<Plot>,
     trails: Vec<(usize, [f64; 3], f64)>,
@@ -44,14 +44,15 @@ pub struct Motion {
     simulated: Option<Simulated>,
 }
 
-/// Mechanism that a page simulates: its data as JSON, and the WebAssembly module of its functions.
+/// Mechanism that the page simulates in the browser: its data as JSON, and its functions as a WebAssembly
+/// module.
 #[derive(Clone, Debug)]
 struct Simulated {
     data: String,
     module: Vec<u8>,
 }
 
-/// Vector over time, drawn as an arrow.
+/// Vector over time, such as a force, that the page draws as an arrow.
 #[derive(Clone, Debug)]
 struct Arrow {
     kind: &'static str,
@@ -61,7 +62,7 @@ struct Arrow {
     values: Vec<[f64; 3]>,
 }
 
-/// Plot with curves over time.
+/// Plot of a page, with several curves over time.
 #[derive(Clone, Debug)]
 struct Plot {
     title: String,
@@ -94,9 +95,11 @@ impl Motion {
         motion.inputs = samples.iter().map(|s| s.u.iter().map(|u| plain(*u)).collect()).collect();
         if NQ > 0 && NQ <= PLOTTED {
             let units = units(&M::CONFIGURATION, if M::SPEEDS { &[] } else { &M::VELOCITY_UNITS });
-            let values = |k: usize| samples.iter().map(|s| plain(s.q[k])).collect();
-            motion =
-                motion.plots("Coordinates", (0..NQ).map(|k| (units[k], M::CONFIGURATION[k], values(k))))?;
+            let coordinate_values = |k: usize| samples.iter().map(|s| plain(s.q[k])).collect();
+            motion = motion.plots(
+                "Coordinates",
+                (0..NQ).map(|k| (units[k], M::CONFIGURATION[k], coordinate_values(k))),
+            )?;
         }
         Ok(motion.terrain(|number, place| {
             let place = place.map(linkwork::nalgebra::convert);
@@ -117,7 +120,7 @@ impl Motion {
         times: Vec<f64>,
         placements: Vec<Vec<IsometryMatrix3<f64>>>,
     ) -> Result<Motion, Error> {
-        let motion = || title.to_string();
+        let motion_title = || title.to_string();
         check_times(title, times.iter().copied())?;
         check(&format!("the placements of `{title}`"), times.len(), placements.len())?;
         for (sample, list) in placements.iter().enumerate() {
@@ -126,16 +129,21 @@ impl Motion {
                 figure.frames.len(),
                 list.len(),
             )?;
-            let numbers = |p: &IsometryMatrix3<f64>| p.to_homogeneous().iter().all(|x| x.is_finite());
-            if let Some(k) = list.iter().position(|p| !numbers(p)) {
-                return Err(Error::NotFinite { motion: motion(), sample, frame: figure.frames[k].clone() });
+            let has_finite_numbers =
+                |p: &IsometryMatrix3<f64>| p.to_homogeneous().iter().all(|x| x.is_finite());
+            if let Some(k) = list.iter().position(|p| !has_finite_numbers(p)) {
+                return Err(Error::NotFinite {
+                    motion: motion_title(),
+                    sample,
+                    frame: figure.frames[k].clone(),
+                });
             }
         }
         let inputs = vec![Vec::new(); times.len()];
         let (plots, trails, arrows, captions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (live, simulated) = (false, None);
         Ok(Motion {
-            title: motion(),
+            title: motion_title(),
             figure,
             times,
             placements,
@@ -220,7 +228,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// Removes all plots, including those of the coordinates.
+    /// Removes all plots from the motion, including those of the coordinates.
     pub fn without_plots(mut self) -> Motion {
         self.plots.clear();
         self
@@ -360,7 +368,7 @@ impl Motion {
         self.live()
     }
 
-    /// Returns whether the page simulates the mechanism.
+    /// Returns whether the page simulates the mechanism in the browser.
     pub(crate) fn is_simulated(&self) -> bool {
         self.simulated.is_some()
     }
@@ -374,7 +382,7 @@ impl Motion {
     /// Serialises the motion as the JSON data of a page.
     pub(crate) fn json(&self) -> String {
         let used = self.used();
-        let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
+        let index_of_used_frame = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
         let shown = self.shown();
         let scene = Scene::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
@@ -397,10 +405,14 @@ impl Motion {
         let inputs =
             (0..count).map(|k| curve_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream));
         let inputs: Vec<String> = inputs.collect();
-        let arrows = self.arrows.iter().map(|arrow| arrow.json(&shown, renumber, &mut stream));
+        let arrows = self.arrows.iter().map(|arrow| arrow.json(&shown, index_of_used_frame, &mut stream));
         let arrows: Vec<String> = arrows.collect();
         let trails = self.trails.iter().map(|(frame, point, seconds)| {
-            text::list([renumber(*frame).to_string(), text::numbers(point), text::number(*seconds)])
+            text::list([
+                index_of_used_frame(*frame).to_string(),
+                text::numbers(point),
+                text::number(*seconds),
+            ])
         });
         let captions =
             self.captions.iter().map(|(t, words)| text::list([text::number(t - start), text::json(words)]));
@@ -408,7 +420,7 @@ impl Motion {
         let fields = [
             ("title", text::json(&self.title)),
             ("frames", text::list(used.iter().map(|k| text::json(&self.figure.frames[*k])))),
-            ("pieces", text::list(shapes.map(|shape| shape.json(renumber)))),
+            ("pieces", text::list(shapes.map(|shape| shape.json(index_of_used_frame)))),
             ("count", shown.len().to_string()),
             ("start", text::number(start)),
             ("tick", text::number(TICK)),
@@ -423,7 +435,7 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source = |shape: &Shape| match shape.source() {
+        let source_range_json = |shape: &Shape| match shape.source() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
@@ -432,7 +444,7 @@ impl Motion {
                 ("simulated", data.clone()),
                 ("module", text::json(&base64(module))),
                 ("used", text::list(used.iter().map(ToString::to_string))),
-                ("sources", text::list(self.figure.shown().map(source))),
+                ("sources", text::list(self.figure.shown().map(source_range_json))),
             ]
         });
         let fields: Vec<String> = fields
@@ -467,8 +479,9 @@ impl Plot {
 /// Appends a curve to the stream, and returns its name, lowest value and quantisation step. A gap is encoded
 /// as the step −1.
 fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> String {
-    let finite = || values.clone().filter(|x| x.is_finite());
-    let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let finite_values = || values.clone().filter(|x| x.is_finite());
+    let (low, high) =
+        (finite_values().fold(f64::INFINITY, f64::min), finite_values().fold(f64::NEG_INFINITY, f64::max));
     let low = if low.is_finite() { low } else { 0.0 };
     let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
     let step = if high > low && step.is_finite() { step } else { 1.0 };
@@ -476,13 +489,13 @@ fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mu
     text::list([text::json(name), exact(low), exact(step)])
 }
 
-/// Formats a number in full precision.
+/// Formats a number with full precision in scientific notation.
 fn exact(x: f64) -> String {
     format!("{x:e}")
 }
 
-/// Returns the units of coordinates, derived from those of the velocities. The four entries of a quaternion
-/// are dimensionless and correspond to three velocities.
+/// Returns the units of the configuration entries, derived from the units of the velocities. The four entries
+/// of a quaternion are dimensionless and correspond to three velocities.
 fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
     let (mut units, mut rates) = (Vec::new(), of_rates.iter());
     for name in names {
@@ -518,15 +531,16 @@ pub(crate) fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMat
     IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// Returns quaternions x y z w, each with the sign that is nearer to the previous one.
+/// Returns the orientations as quaternions x y z w. The sign of each is chosen so that it is nearer to the
+/// previous quaternion.
 fn continuous(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
     let mut before = [0.0, 0.0, 0.0, 1.0];
-    let next = |p: &&IsometryMatrix3<f64>| {
+    let sign_continuous_quaternion = |p: &&IsometryMatrix3<f64>| {
         let q = UnitQuaternion::from_rotation_matrix(&p.rotation).into_inner().coords;
         let q = [q.x, q.y, q.z, q.w];
         let dot: f64 = q.iter().zip(&before).map(|(a, b)| a * b).sum();
         before = if dot < 0.0 { q.map(|x| -x) } else { q };
         before
     };
-    placements.iter().map(next).collect()
+    placements.iter().map(sign_continuous_quaternion).collect()
 }

@@ -18,7 +18,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// Creates a page without motions.
+    /// Creates a page with this title that contains no motions yet.
     pub fn new(title: &str) -> Page {
         Page { title: title.to_string(), ..Page::default() }
     }
@@ -39,13 +39,13 @@ impl Page {
         self
     }
 
-    /// Adds a motion, to the right of the previous ones.
+    /// Adds a motion to the page, to the right of the previous motions.
     pub fn motion(mut self, motion: Motion) -> Page {
         self.motions.push(motion);
         self
     }
 
-    /// Returns the complete page.
+    /// Returns the complete page as HTML.
     pub fn html(&self) -> String {
         let (title, mut about) = (text::html(&self.title), text::blocks(&self.text));
         if about.len() > 1 {
@@ -119,9 +119,9 @@ impl Page {
         concat!(include_str!("simulate.js"), include_str!("controls.js"))
     }
 
-    /// Returns the motions for a document that contains HTML, such as the documentation of a crate
-    /// (`#![doc = include_str!("pendulum.html")]`): a style sheet, an element, and its program. A document
-    /// may contain several of them.
+    /// Returns the motions of the page as HTML to embed in another document, such as the documentation of a
+    /// crate (`#![doc = include_str!("pendulum.html")]`): a style sheet, an element, and a script. A document
+    /// may embed several such pages.
     pub fn embedded(&self) -> String {
         let simulation = if self.simulates() { Page::simulation() } else { "" };
         format!(
@@ -145,8 +145,8 @@ impl Page {
         let path = path.as_ref();
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let made = folder.map_or(Ok(()), std::fs::create_dir_all);
-        let failed = |cause| Error::File { path: path.to_path_buf(), cause };
-        made.and_then(|()| std::fs::write(path, self.html())).map_err(failed)
+        let file_error = |cause| Error::File { path: path.to_path_buf(), cause };
+        made.and_then(|()| std::fs::write(path, self.html())).map_err(file_error)
     }
 }
 

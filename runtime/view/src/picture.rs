@@ -7,22 +7,22 @@ use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// Width and height of the picture, pixels.
+/// Width and height of the still picture, pixels.
 const SIZE: [f64; 2] = [640.0, 420.0];
-/// Margin of the picture, pixels.
+/// Margin around the drawing in the still picture, pixels.
 const MARGIN: f64 = 24.0;
-/// Number of points on a circle.
+/// Number of points by which a circle is drawn.
 const ROUND: usize = 28;
 /// Maximum number of corners of a mesh whose outline is drawn.
 const CORNERS: usize = 2000;
-/// Colours of bodies, as in moving pictures.
+/// Colours of bodies, the same as in moving pages.
 const COLOURS: [&str; 8] =
     ["#407ac9", "#de803d", "#54a173", "#a16ebd", "#cc616e", "#4da1b3", "#b59c47", "#80859e"];
 
-/// Outline of a shape on the picture.
+/// Outline of a shape in the still picture, in picture coordinates.
 struct Outline {
     points: Vec<[f64; 2]>,
-    /// Distance towards the viewer.
+    /// Distance of the shape towards the viewer, by which outlines are sorted.
     depth: f64,
     colour: &'static str,
     /// Width of a line without area, m; zero for areas.
@@ -35,11 +35,11 @@ pub(crate) fn svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &
     let mut bodies: Vec<String> = Vec::new();
     let mut outlines: Vec<Outline> = Vec::new();
     for shape in figure.shown() {
-        let place = |frame: Option<usize>, p: Vector3<f64>| {
+        let place_in_world = |frame: Option<usize>, p: Vector3<f64>| {
             frame.map_or(p, |k| (placements[k] * Point3::from(p)).coords)
         };
         let (points, line) = samples(shape, scene.size);
-        let seen: Vec<Vector3<f64>> = points.into_iter().map(|(frame, p)| place(frame, p)).collect();
+        let seen: Vec<Vector3<f64>> = points.into_iter().map(|(frame, p)| place_in_world(frame, p)).collect();
         let flat: Vec<[f64; 2]> = seen.iter().map(|p| [p.dot(&right), p.dot(&up)]).collect();
         let points = if line > 0.0 { flat } else { hull(flat) };
         if points.len() < 2 {
@@ -52,7 +52,7 @@ pub(crate) fn svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &
     drawn(&outlines)
 }
 
-/// Returns the colour of a shape; shapes of one body have the same one.
+/// Returns the colour in which a shape is drawn. All shapes of one body have the same colour.
 fn colour(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
     match shape.role {
         Role::Link => "#8f99a8",
@@ -75,7 +75,7 @@ fn colour(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
     }
 }
 
-/// Returns the picture of outlines, in their order.
+/// Returns the outlines as an SVG picture; later outlines cover earlier ones.
 fn drawn(outlines: &[Outline]) -> String {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in outlines.iter().flat_map(|outline| &outline.points) {
@@ -87,14 +87,14 @@ fn drawn(outlines: &[Outline]) -> String {
     let [width, height] = SIZE;
     let scale = (0..2).map(|k| (SIZE[k] - 2.0 * MARGIN) / (high[k] - low[k]).max(1e-9));
     let scale = scale.fold(f64::INFINITY, f64::min);
-    let pixel = |p: &[f64; 2]| {
+    let pixel_coordinates = |p: &[f64; 2]| {
         let x = width / 2.0 + scale * (p[0] - (low[0] + high[0]) / 2.0);
         let y = height / 2.0 - scale * (p[1] - (low[1] + high[1]) / 2.0);
         format!("{x:.1},{y:.1}")
     };
     let mut out = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"drawing\">");
     for Outline { points, colour, line, .. } in outlines {
-        let points = points.iter().map(pixel).collect::<Vec<_>>().join(" ");
+        let points = points.iter().map(pixel_coordinates).collect::<Vec<_>>().join(" ");
         let _ = match *line > 0.0 {
             true => write!(
                 out,
@@ -120,45 +120,57 @@ type FramePoint = (Option<usize>, Vector3<f64>);
 /// `size` is the size of the mechanism.
 fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
-    let vector = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+    let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
     let in_frame = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
-    let round = |half: f64, radius: f64| {
-        let (axis, at) = (vector(3), vector(0));
+    let points_of_round_solid = |half: f64, radius: f64| {
+        let (axis, at) = (vector_from_numbers(3), vector_from_numbers(0));
         in_frame([-half, half].iter().flat_map(|h| circle(at + axis * *h, axis, radius)).collect())
     };
-    let scaled = |corners: &[[f64; 3]]| {
+    let points_of_scaled_corners = |corners: &[[f64; 3]]| {
         let axes = Matrix3::from_row_slice(&n[3..12]);
         in_frame(
-            corners.iter().map(|c| vector(0) + axes * Vector3::from(*c).component_mul(&vector(12))).collect(),
+            corners
+                .iter()
+                .map(|c| {
+                    vector_from_numbers(0) + axes * Vector3::from(*c).component_mul(&vector_from_numbers(12))
+                })
+                .collect(),
         )
     };
-    let ball =
-        |radius: f64| in_frame(sphere().iter().map(|c| vector(0) + Vector3::from(*c) * radius).collect());
+    let ball = |radius: f64| {
+        in_frame(sphere().iter().map(|c| vector_from_numbers(0) + Vector3::from(*c) * radius).collect())
+    };
     let areas = match shape.kind {
-        Kind::Bar => return (vec![(a, vector(0)), (b, vector(3))], 0.018 * size),
-        Kind::Coil | Kind::Damper => return (vec![(a, vector(0)), (b, vector(3))], 0.03 * size),
-        Kind::Rod => round(n[6] / 2.0, (0.018 * n[6]).max(0.006 * size)),
-        Kind::Ring | Kind::Disk => round(0.04 * n[6], n[6]),
-        Kind::Torus => round(n[7], n[6] + n[7]),
-        Kind::Cylinder => round(n[7] / 2.0, n[6]),
-        Kind::Capsule => round(n[7] / 2.0 + n[6] / 2.0, n[6]),
-        Kind::Tube => round(n[8] / 2.0, n[7]),
+        Kind::Bar => return (vec![(a, vector_from_numbers(0)), (b, vector_from_numbers(3))], 0.018 * size),
+        Kind::Coil | Kind::Damper => {
+            return (vec![(a, vector_from_numbers(0)), (b, vector_from_numbers(3))], 0.03 * size);
+        }
+        Kind::Rod => points_of_round_solid(n[6] / 2.0, (0.018 * n[6]).max(0.006 * size)),
+        Kind::Ring | Kind::Disk => points_of_round_solid(0.04 * n[6], n[6]),
+        Kind::Torus => points_of_round_solid(n[7], n[6] + n[7]),
+        Kind::Cylinder => points_of_round_solid(n[7] / 2.0, n[6]),
+        Kind::Capsule => points_of_round_solid(n[7] / 2.0 + n[6] / 2.0, n[6]),
+        Kind::Tube => points_of_round_solid(n[8] / 2.0, n[7]),
         Kind::Cone => {
-            let mut points = in_frame(circle(vector(0) - vector(3) * (n[7] / 4.0), vector(3), n[6]));
-            points.push((a, vector(0) + vector(3) * (0.75 * n[7])));
+            let mut points = in_frame(circle(
+                vector_from_numbers(0) - vector_from_numbers(3) * (n[7] / 4.0),
+                vector_from_numbers(3),
+                n[6],
+            ));
+            points.push((a, vector_from_numbers(0) + vector_from_numbers(3) * (0.75 * n[7])));
             points
         }
         Kind::Sphere => ball(n[3]),
-        Kind::Cuboid => scaled(&cube()),
-        Kind::Ellipsoid => scaled(&sphere()),
+        Kind::Cuboid => points_of_scaled_corners(&cube()),
+        Kind::Ellipsoid => points_of_scaled_corners(&sphere()),
         Kind::Mesh(_) => {
             let corners = shape.mesh.as_ref().map(|mesh| mesh.some_corners(CORNERS)).unwrap_or_default();
-            scaled(&corners)
+            points_of_scaled_corners(&corners)
         }
         Kind::Point => ball(0.028 * size),
         Kind::Ball => ball(0.03 * size),
-        Kind::Hinge | Kind::Slide => round(0.0425 * size, 0.02 * size),
+        Kind::Hinge | Kind::Slide => points_of_round_solid(0.0425 * size, 0.02 * size),
         _ => Vec::new(),
     };
     (areas, 0.0)
@@ -169,20 +181,20 @@ fn circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>
     let helper = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let x = helper.cross(&axis).normalize();
     let y = axis.cross(&x);
-    let point = |k: usize| {
+    let point_on_circle = |k: usize| {
         let (sine, cosine) = (TAU * k as f64 / ROUND as f64).sin_cos();
         at + (x * cosine + y * sine) * radius
     };
-    (0..ROUND).map(point).collect()
+    (0..ROUND).map(point_on_circle).collect()
 }
 
-/// Returns points on the unit sphere.
+/// Returns points on the unit sphere, from which its outline is computed.
 fn sphere() -> Vec<[f64; 3]> {
-    let ring = |j: usize| {
+    let ring_of_sphere = |j: usize| {
         let (height, radius) = (std::f64::consts::PI * (j as f64 / 8.0 - 0.5)).sin_cos();
         circle(Vector3::z() * height, Vector3::z(), radius)
     };
-    (0..=8).flat_map(ring).map(Into::into).collect()
+    (0..=8).flat_map(ring_of_sphere).map(Into::into).collect()
 }
 
 /// Returns the corners of the unit cube about the origin.

@@ -9,15 +9,15 @@ use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
 pub(crate) struct Scene {
     /// Extent of the mechanism in the first sample, m.
     pub(crate) size: f64,
-    /// Centre of the motion.
+    /// Centre of the region through which the mechanism moves.
     centre: Vector3<f64>,
     /// Maximum distance of any point of the motion from the centre, m.
     radius: f64,
-    /// Unit vector opposite to gravity.
+    /// Unit vector upward, opposite to gravity.
     up: Vector3<f64>,
-    /// Unit vector towards the eye.
+    /// Unit vector from the scene towards the viewer.
     eye: Vector3<f64>,
-    /// Whether the motion is planar.
+    /// Whether the motion is planar, so that the camera looks along its normal.
     plane: bool,
     /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no
     /// terrain.
@@ -25,34 +25,36 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Computes the scene of a drawing whose frames are placed sample by sample. `shown` has the indices of
-    /// the samples that are shown, including the first one.
+    /// Computes the scene of a motion from the drawing and the placements of its frames in each sample.
+    /// `shown` has the indices of the samples that are shown, including the first one.
     pub(crate) fn new(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
         let pieces: Vec<&Shape> = figure.shown().collect();
-        let place = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
+        let place_in_world = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
         let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
         for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reach()) {
-            start.add(&place(0, frame, point), beyond);
+            start.add(&place_in_world(0, frame, point), beyond);
         }
         let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reach()).collect();
         for k in shown {
             for (frame, point, beyond) in &reaches {
-                let at = place(*k, *frame, *point);
+                let at = place_in_world(*k, *frame, *point);
                 lowest = lowest.min(at.dot(&up) - beyond);
                 whole.add(&at, *beyond);
             }
         }
-        let fits = |size: &f64| *size > 0.0 && size.is_finite();
-        let size = [start.size(), whole.size()].into_iter().find(fits).unwrap_or(1.0);
-        let turn = |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
-        let normal = figure.normal(turn).filter(|n| n.dot(&up).abs() < 1e-6);
-        let terrain = |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
-        let hills = pieces.iter().any(terrain);
+        let is_valid_size = |size: &f64| *size > 0.0 && size.is_finite();
+        let size = [start.size(), whole.size()].into_iter().find(is_valid_size).unwrap_or(1.0);
+        let rotate_to_world =
+            |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
+        let normal = figure.normal(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
+        let is_fixed_terrain =
+            |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
+        let hills = pieces.iter().any(is_fixed_terrain);
         let floor = gravity.norm() > 0.0 && !hills;
         let plane = figure.ground_along(&up);
         Scene {
@@ -92,9 +94,9 @@ impl Figure {
     /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
     fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
-        let level = planes.filter(|s| vector(s, 3).dot(up) > 1.0 - 1e-9);
-        level.map(|s| vector(s, 0).dot(up)).reduce(f64::min)
+        let vector_from_numbers = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let level = planes.filter(|s| vector_from_numbers(s, 3).dot(up) > 1.0 - 1e-9);
+        level.map(|s| vector_from_numbers(s, 0).dot(up)).reduce(f64::min)
     }
 }
 
@@ -110,7 +112,7 @@ impl Shape {
     }
 }
 
-/// Axis-aligned box around the drawn points.
+/// Axis-aligned bounding box of the drawn points.
 struct Extent {
     low: Vector3<f64>,
     high: Vector3<f64>,

@@ -12,7 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Maximum number of simultaneous connections.
+/// Maximum number of simultaneous connections to the live view.
 const MAX_CONNECTIONS: usize = 16;
 /// Maximum length of the head of a request, bytes.
 const LONGEST_HEAD: usize = 16_384;
@@ -20,7 +20,7 @@ const LONGEST_HEAD: usize = 16_384;
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Interval between pings while there are no messages.
 const SILENCE: Duration = Duration::from_millis(500);
-/// Minimum interval between messages, about one screen refresh.
+/// Minimum interval between messages to a browser, about one screen refresh.
 const SCREEN: Duration = Duration::from_nanos(16_000_000);
 
 const BINARY: u8 = 0x82;
@@ -55,9 +55,9 @@ struct Newest {
 impl Server {
     /// Serves a page at a port of this machine, or at any free port for port 0.
     pub(crate) fn open(port: u16, page: String) -> Result<Server, Error> {
-        let failed = |cause| Error::Port { port, cause };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
+        let port_error = |cause| Error::Port { port, cause };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(port_error)?;
+        let address = listener.local_addr().map_err(port_error)?;
         let shared = Arc::new(Shared {
             hosts: ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", address.port())),
             page,
@@ -67,7 +67,7 @@ impl Server {
         });
         let guests = shared.clone();
         let thread = thread::Builder::new().name("linkwork-view".to_string());
-        let thread = thread.spawn(move || accept(&listener, &guests)).map_err(failed)?;
+        let thread = thread.spawn(move || accept(&listener, &guests)).map_err(port_error)?;
         Ok(Server { address, shared, thread: Some(thread) })
     }
 
@@ -101,7 +101,8 @@ impl Drop for Server {
 }
 
 impl Shared {
-    /// Locks the newest message. A thread that panicked has left it unchanged.
+    /// Locks the newest message for the browsers. A lock that a thread poisoned by a panic is still usable,
+    /// because the message is unchanged.
     fn newest(&self) -> MutexGuard<'_, Newest> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -137,7 +138,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     }
 }
 
-/// Answers a request.
+/// Answers one HTTP request: sends the page, or opens a web socket and sends the messages of the live view.
 fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
@@ -145,17 +146,17 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     let head = head(&mut stream)?;
     let mut words = head.split(' ');
     let (method, path) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
-    let field = |name: &str| {
+    let header_field = |name: &str| {
         let mut fields = head.lines().skip(1).filter_map(|line| line.split_once(':'));
         fields.find(|(known, _)| known.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim())
     };
     // Rejects pages of other origins, including those that reach this machine by a host name of their own.
-    let host = field("host").filter(|host| shared.hosts.iter().any(|known| known == host));
+    let host = header_field("host").filter(|host| shared.hosts.iter().any(|known| known == host));
     let Some(host) = host else { return answer(&mut stream, "403 Forbidden", "") };
-    if field("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
+    if header_field("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
         return answer(&mut stream, "403 Forbidden", "");
     }
-    match (method, path, field("sec-websocket-key")) {
+    match (method, path, header_field("sec-websocket-key")) {
         ("GET", "/socket", Some(key)) => {
             let accept = base64(&sha1(format!("{key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11").as_bytes()));
             write!(
@@ -198,8 +199,8 @@ fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     let (mut seen, mut message) = (0, Vec::new());
     loop {
         let newest = shared.newest();
-        let waits = |newest: &mut Newest| newest.number == seen && !newest.closed;
-        let waited = shared.news.wait_timeout_while(newest, SILENCE, waits);
+        let is_waiting_for_news = |newest: &mut Newest| newest.number == seen && !newest.closed;
+        let waited = shared.news.wait_timeout_while(newest, SILENCE, is_waiting_for_news);
         let (newest, silence) = waited.unwrap_or_else(PoisonError::into_inner);
         if newest.closed {
             drop(newest);
@@ -217,7 +218,7 @@ fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-/// Sends a frame: its kind, its length and its content.
+/// Sends a web-socket frame: a byte for its kind, its length, and its content.
 fn send(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
     let mut frame = vec![kind];
     match content.len() {

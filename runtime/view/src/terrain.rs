@@ -33,8 +33,8 @@ impl Figure {
                 true => [low - beyond, high + beyond],
                 false => [-beyond, beyond],
             });
-            let place = |u: f64, w: f64| [u, w, height(number, [u, w]).unwrap_or(f64::NAN)];
-            if let Ok(mesh) = Mesh::surface(u, w, place) {
+            let point_on_terrain = |u: f64, w: f64| [u, w, height(number, [u, w]).unwrap_or(f64::NAN)];
+            if let Ok(mesh) = Mesh::surface(u, w, point_on_terrain) {
                 (shape.kind, shape.mesh) = (Kind::Mesh(""), Some(mesh));
                 // Unit scales along the axes.
                 shape.numbers.extend([1.0; 3]);

@@ -112,7 +112,7 @@ pub fn json(text: &str) -> String {
     out
 }
 
-/// Returns a JSON list.
+/// Formats JSON texts as a JSON array.
 pub fn list(items: impl IntoIterator<Item = String>) -> String {
     let items: Vec<String> = items.into_iter().collect();
     format!("[{}]", items.join(","))
@@ -128,7 +128,7 @@ pub fn number(x: f64) -> String {
     format!("{}", rounded + 0.0)
 }
 
-/// Returns a JSON list of numbers.
+/// Formats numbers as a JSON array.
 pub fn numbers(list: &[f64]) -> String {
     self::list(list.iter().map(|x| number(*x)))
 }

@@ -1,4 +1,4 @@
-//! Pages in a browser, if one is installed: without console errors, with controls, and with a picture.
+//! Checks pages in a browser, if one is installed: they have controls and a picture, and no console errors.
 
 use linkwork::prelude::*;
 use linkwork::simulate::Sample;
@@ -78,8 +78,8 @@ fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String
         return None;
     }
     // With software rendering, the browser reports that drawing is slow.
-    let is_said = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
-    let console: Vec<&str> = log.lines().filter(is_said).collect();
+    let is_console_message = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
+    let console: Vec<&str> = log.lines().filter(is_console_message).collect();
     assert!(console.is_empty(), "{console:?}");
     assert!(dom.contains("class=\"play\"") && dom.contains("<output>"), "the controls are there");
     assert!(!dom.contains("class=\"failure\""), "the picture could be made");
@@ -89,13 +89,17 @@ fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String
 #[test]
 fn a_browser_plays_the_page() {
     let samples: Vec<_> = (0..120).map(|k| sample(0.0, k)).collect();
-    let motion = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
+    let motion_of_arm = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
     let pull = samples.iter().map(|s| [0.0, s.t, 0.0]).collect::<Vec<_>>();
-    let first =
-        motion().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap().force(Some("lower"), [1.0, 0.0, 0.0], pull);
-    let hill = |u: f64, w: f64| [u, -1.0 + 0.1 * u.sin(), w];
-    let second = motion().drawn().surface("hill", None, [-1.0, 1.0], [-1.0, 1.0], hill).unwrap();
-    let page = Page::new("Two arms").motion(first.unwrap()).motion(motion().figure(second).unwrap());
+    let first = motion_of_arm().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap().force(
+        Some("lower"),
+        [1.0, 0.0, 0.0],
+        pull,
+    );
+    let point_on_hill = |u: f64, w: f64| [u, -1.0 + 0.1 * u.sin(), w];
+    let second =
+        motion_of_arm().drawn().surface("hill", None, [-1.0, 1.0], [-1.0, 1.0], point_on_hill).unwrap();
+    let page = Page::new("Two arms").motion(first.unwrap()).motion(motion_of_arm().figure(second).unwrap());
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser.html");
     page.write(&file).unwrap();
     let Some(dom) = look("browser", &format!("file://{}", file.display()), || ()) else { return };
@@ -106,16 +110,16 @@ fn a_browser_plays_the_page() {
     );
 }
 
-/// Checks a live view of a loop whose clock begins at 1000 s.
+/// Checks a live view in a browser for a loop whose time begins at 1000 s.
 #[test]
 fn a_browser_looks_on() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let (url, mut k) = (live.url(), 0);
-    let meanwhile = || {
+    let show_next_sample = || {
         live.show(&sample(1000.0, k)).unwrap();
         k += 1;
     };
-    let Some(dom) = look("live", &url, meanwhile) else { return };
+    let Some(dom) = look("live", &url, show_next_sample) else { return };
     let (_, clock) = dom.split_once("<output>").unwrap();
     let time: f64 = clock.split_once(" s<").unwrap().0.parse().unwrap();
     assert!((1000.0..=sample(1000.0, k).t).contains(&time), "{time}");

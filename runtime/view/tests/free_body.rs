@@ -1,4 +1,4 @@
-//! Free-body diagrams as SVG.
+//! Checks of free-body diagrams as SVG.
 
 use linkwork::prelude::*;
 use linkwork_view::{Side, free_body};
@@ -18,13 +18,15 @@ struct Rod {
 
 /// Returns the endpoint displacements of the straight lines of a colour, to the right and upward.
 fn arrows(svg: &str, colour: &str) -> Vec<[f64; 2]> {
-    let number = |line: &str, name: &str| -> f64 {
+    let number_of_attribute = |line: &str, name: &str| -> f64 {
         let rest = line.split(&format!("{name}=\"")).nth(1).expect("an attribute");
         rest.split('"').next().and_then(|text| text.parse().ok()).expect("a number")
     };
     let lines = svg.lines().filter(|line| line.starts_with("<line") && line.contains(colour));
-    let arrow = |line: &str| [["x2", "x1"], ["y1", "y2"]].map(|[a, b]| number(line, a) - number(line, b));
-    lines.map(arrow).collect()
+    let arrow_from_line = |line: &str| {
+        [["x2", "x1"], ["y1", "y2"]].map(|[a, b]| number_of_attribute(line, a) - number_of_attribute(line, b))
+    };
+    lines.map(arrow_from_line).collect()
 }
 
 #[test]

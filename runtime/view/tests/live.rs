@@ -57,7 +57,7 @@ fn take<const N: usize>(stream: &mut TcpStream) -> [u8; N] {
     bytes
 }
 
-/// Opens a web socket and checks the answer to its handshake.
+/// Opens a web socket to the server of a live view and checks the answer to the handshake.
 fn socket(url: &str) -> TcpStream {
     let mut stream = ask(url, "/socket", UPGRADE);
     let mut head = Vec::new();
@@ -125,8 +125,8 @@ fn a_browser_gets_the_page_and_then_samples() {
     assert_eq!((kind, reason), (0x88, 1001_u16.to_be_bytes().to_vec()));
 }
 
-/// Checks that the loop does not block while one client reads nothing and another reads all: the newest
-/// sample arrives.
+/// Checks that a program which shows samples does not block while one client reads nothing, and that another
+/// client receives the newest sample.
 #[test]
 fn the_loop_waits_for_nobody() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
@@ -151,16 +151,16 @@ fn what_is_no_page_of_its_own_is_refused() {
     let live = Live::open(&Arm {}, 0).unwrap();
     let url = live.url();
     let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
-    let status = |path: &str, fields: &str| text(ask(&url, path, fields))[9..12].to_string();
-    assert_eq!(status("/else", ""), "404");
-    assert_eq!(status("/socket", ""), "404");
-    assert_eq!(status("/socket", &format!("{UPGRADE}Origin: http://elsewhere.example\r\n")), "403");
-    assert_eq!(status("/", &format!("Host: rebound.example:{port}\r\n")), "403");
-    assert_eq!(status("/", &format!("Host: localhost:{port}\r\n")), "200");
+    let response_status = |path: &str, fields: &str| text(ask(&url, path, fields))[9..12].to_string();
+    assert_eq!(response_status("/else", ""), "404");
+    assert_eq!(response_status("/socket", ""), "404");
+    assert_eq!(response_status("/socket", &format!("{UPGRADE}Origin: http://elsewhere.example\r\n")), "403");
+    assert_eq!(response_status("/", &format!("Host: rebound.example:{port}\r\n")), "403");
+    assert_eq!(response_status("/", &format!("Host: localhost:{port}\r\n")), "200");
     // Invalid data ends its own connection only.
     let mut noise = ask(&url, "/", "");
     noise.write_all(&[0xff; 20_000]).ok();
-    assert_eq!(status("/", ""), "200");
+    assert_eq!(response_status("/", ""), "200");
 }
 
 #[test]

@@ -54,7 +54,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the records of a file with their offsets.
+/// Returns the records of an MCAP file, each with its offset, its kind and its content.
 fn records(file: &[u8]) -> Vec<(usize, u8, Reader<'_>)> {
     let magic = b"\x89MCAP0\r\n";
     assert!(file.starts_with(magic) && file.ends_with(magic));
@@ -108,8 +108,8 @@ fn records_follow_the_format() {
     assert_eq!((footer.number(8), footer.number(8), footer.number(4)), (summary, 0, 0));
 }
 
-/// Checks that placements are those of the mechanism, up to rounding of quaternions, and that values have
-/// full precision.
+/// Checks that the logged placements are those of the mechanism, up to rounding of quaternions, and that all
+/// other values have full precision.
 #[test]
 fn messages_say_what_the_samples_say() {
     let sample = sample(0.25);
@@ -127,10 +127,10 @@ fn messages_say_what_the_samples_say() {
             (&"ground".into(), &Boat::FRAMES[k].into())
         );
         assert_eq!(transform["timestamp"]["nsec"], 250_000_000);
-        let number = |of: &str, axis: &str| transform[of][axis].as_f64().unwrap();
-        let at = ["x", "y", "z"].map(|axis| number("translation", axis));
+        let transform_number = |of: &str, axis: &str| transform[of][axis].as_f64().unwrap();
+        let at = ["x", "y", "z"].map(|axis| transform_number("translation", axis));
         assert_eq!(at, <[f64; 3]>::from(placement.translation.vector));
-        let [x, y, z, w] = ["x", "y", "z", "w"].map(|axis| number("rotation", axis));
+        let [x, y, z, w] = ["x", "y", "z", "w"].map(|axis| transform_number("rotation", axis));
         let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
         assert!((turn.to_rotation_matrix().matrix() - placement.rotation.matrix()).norm() < 1e-12);
     }

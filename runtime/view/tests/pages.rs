@@ -38,11 +38,13 @@ fn samples_come_back_to_half_a_step() {
         for (n, name) in motion["frames"].as_array().unwrap().iter().enumerate() {
             let frame = index_of(&Humanoid::FRAMES, name.as_str().unwrap()).unwrap();
             let placement = Humanoid.frame_placements(&sample.q)[frame];
-            let read = |j: usize| channels[1 + 7 * n + j][k] as f64;
+            let read_channel = |j: usize| channels[1 + 7 * n + j][k] as f64;
             for j in 0..3 {
-                assert!((read(j) * quantum - placement.translation.vector[j]).abs() <= quantum * 0.51);
+                assert!(
+                    (read_channel(j) * quantum - placement.translation.vector[j]).abs() <= quantum * 0.51
+                );
             }
-            let [x, y, z, w] = [3, 4, 5, 6].map(|j| read(j) * turn);
+            let [x, y, z, w] = [3, 4, 5, 6].map(|j| read_channel(j) * turn);
             let read = UnitQuaternion::from_quaternion(linkwork::nalgebra::Quaternion::new(w, x, y, z));
             // Four entries with an error of half a step each; the rotation angle is twice that of the
             // quaternion.
@@ -128,11 +130,12 @@ fn every_solid_has_its_numbers() {
         find_pieces("tube", Role::Body),
         [(Kind::Tube, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.6][..])]
     );
-    let kinds = |name| find_pieces(name, Role::Body).into_iter().map(|(kind, _)| kind).collect::<Vec<_>>();
-    assert_eq!(kinds("disk"), [Kind::Disk, Kind::Cylinder]);
-    assert_eq!(kinds("sphere"), [Kind::Sphere; 2]);
-    assert_eq!(kinds("plate"), [Kind::Cuboid, Kind::Ellipsoid]);
-    assert_eq!(kinds("figures"), [Kind::Inertia]);
+    let kinds_of_pieces =
+        |name| find_pieces(name, Role::Body).into_iter().map(|(kind, _)| kind).collect::<Vec<_>>();
+    assert_eq!(kinds_of_pieces("disk"), [Kind::Disk, Kind::Cylinder]);
+    assert_eq!(kinds_of_pieces("sphere"), [Kind::Sphere; 2]);
+    assert_eq!(kinds_of_pieces("plate"), [Kind::Cuboid, Kind::Ellipsoid]);
+    assert_eq!(kinds_of_pieces("figures"), [Kind::Inertia]);
     // A rotation by 90° about z maps the first edge to y.
     let cuboid = find_pieces("cuboid", Role::Body)[0].1;
     assert!((Vector3::new(cuboid[3], cuboid[6], cuboid[9]) - Vector3::y()).norm() < 1e-12);
@@ -150,7 +153,7 @@ fn joints_and_links_meet() {
     let turn = SVector::<f64, { Solids::NV }>::from_fn(|k, _| 0.3 + 0.1 * k as f64);
     q = solids.integrate(&q, &turn);
     let (numbers, frames) = (solids.drawing_numbers(), solids.frame_placements(&q));
-    let place = |frame: Option<usize>, n: &[f64]| {
+    let place_in_world = |frame: Option<usize>, n: &[f64]| {
         let point = Point3::new(n[0], n[1], n[2]);
         frame.map_or(point, |k| frames[k] * point)
     };
@@ -160,13 +163,13 @@ fn joints_and_links_meet() {
     };
     let (hinge, ring) = (find_piece("b", Role::Joint), find_piece("rod", Role::Link));
     // The bars of the rod begin at its joint with the ground, and lead to its joint with the ring.
-    assert!((place(hinge.0[0], hinge.1) - place(ring.0[1], &ring.1[3..])).norm() < 1e-12);
+    assert!((place_in_world(hinge.0[0], hinge.1) - place_in_world(ring.0[1], &ring.1[3..])).norm() < 1e-12);
     let ring = solids.frame_placement(linkwork::frame!(Solids, "ring"), &q).translation.vector;
-    assert!((place(hinge.0[0], hinge.1).coords - ring).norm() < 1e-12);
+    assert!((place_in_world(hinge.0[0], hinge.1).coords - ring).norm() < 1e-12);
     let damper = find_piece("damper", Role::Element);
-    assert!((place(damper.0[0], damper.1).coords - ring).norm() < 1e-12);
+    assert!((place_in_world(damper.0[0], damper.1).coords - ring).norm() < 1e-12);
     let figures = solids.frame_placement(linkwork::frame!(Solids, "figures"), &q).translation.vector;
-    assert!((place(damper.0[1], &damper.1[3..]).coords - figures).norm() < 1e-12);
+    assert!((place_in_world(damper.0[1], &damper.1[3..]).coords - figures).norm() < 1e-12);
 }
 
 #[mechanism(urdf = "tests/shapes.urdf", drawing)]
@@ -222,12 +225,12 @@ fn missing_meshes_are_replaced_and_listed() {
         assert!(html.contains(&format!("{note}{list}.</p>")));
         let motion = &motions(&html)[0];
         let pieces = motion["pieces"].as_array().unwrap();
-        let of_role = |role: &str| -> Vec<&str> {
+        let names_with_role = |role: &str| -> Vec<&str> {
             pieces.iter().filter(|p| p[1] == role).map(|p| p[2].as_str().unwrap()).collect()
         };
-        assert_eq!(of_role("Body"), bodies);
+        assert_eq!(names_with_role("Body"), bodies);
         // Bars from the shoulder to the wrist and to the centre of mass.
-        assert_eq!(of_role("Link").iter().filter(|name| **name == "arm").count(), 2);
+        assert_eq!(names_with_role("Link").iter().filter(|name| **name == "arm").count(), 2);
     }
     let error = Figure::of(&Shapes).meshes("/nowhere/meshes").unwrap_err();
     assert!(matches!(&error, Error::File { path, .. } if path.ends_with("meshes")), "{error}");
@@ -349,10 +352,13 @@ fn pages_need_nothing_and_names_are_only_text() {
 #[test]
 fn what_cannot_be_shown_is_told() {
     let samples = flight(0.1);
-    let motion = || Motion::of("", &Humanoid, &samples).unwrap();
+    let humanoid_motion = || Motion::of("", &Humanoid, &samples).unwrap();
     assert!(matches!(page::<_, 36, 35, 29>("", &Humanoid, &[]), Err(Error::Empty { .. })));
-    assert!(matches!(motion().plot("", "", [("few", vec![1.0])]), Err(Error::Count { found: 1, .. })));
-    let nowhere = motion().trail("nose", [0.0; 3], 1.0);
+    assert!(matches!(
+        humanoid_motion().plot("", "", [("few", vec![1.0])]),
+        Err(Error::Count { found: 1, .. })
+    ));
+    let nowhere = humanoid_motion().trail("nose", [0.0; 3], 1.0);
     assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "nose"));
     let mut broken = samples.clone();
     broken[2].q[0] = f64::NAN;
@@ -363,11 +369,11 @@ fn what_cannot_be_shown_is_told() {
     assert!(matches!(wrong, Err(Error::Count { expected: 4, found: 3, .. })));
 }
 
-/// Checks that surplus samples are omitted and gaps in curves are preserved. A motion of one second has at
-/// most 600 samples, one of a minute at most 60 per second.
+/// Checks that samples above the limit are omitted and that gaps in plotted curves are preserved. A motion of
+/// one second has at most 600 samples, one of a minute at most 60 per second.
 #[test]
 fn samples_are_thinned_and_gaps_kept() {
-    let sample = |k: i32| {
+    let sample_at_step = |k: i32| {
         let t = f64::from(k) * 1e-3;
         linkwork::simulate::Sample {
             t,
@@ -378,10 +384,10 @@ fn samples_are_thinned_and_gaps_kept() {
             violation: 0.0,
         }
     };
-    let samples: Vec<_> = (0..=1000).map(sample).collect();
-    let gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };
+    let samples: Vec<_> = (0..=1000).map(sample_at_step).collect();
+    let value_with_gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };
     let motion = Motion::of("", &Turning {}, &samples).unwrap().without_plots();
-    let motion = motion.plot("", "", [("gap", (0..samples.len()).map(gap).collect())]).unwrap();
+    let motion = motion.plot("", "", [("gap", (0..samples.len()).map(value_with_gap).collect())]).unwrap();
     let html = Page::new("").motion(motion).html();
     let motion = &motions(&html)[0];
     assert_eq!(motion["count"], 501, "every second one");
@@ -389,8 +395,8 @@ fn samples_are_thinned_and_gaps_kept() {
     assert_eq!(channels[channels.len() - 1][0], -1);
     // The last sample is always shown.
     assert_eq!(channels[0].last(), Some(&100_000));
-    let slow = |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample(k) };
-    let minute: Vec<_> = (0..=10_000).map(slow).collect();
+    let slow_sample = |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample_at_step(k) };
+    let minute: Vec<_> = (0..=10_000).map(slow_sample).collect();
     let html = page("", &Turning {}, &minute).unwrap();
     assert_eq!(motions(&html)[0]["count"], 3335, "of samples 6 ms apart every third, and the last");
 }
@@ -403,7 +409,7 @@ struct Turning {
     axle: Pin,
 }
 
-/// Checks that there is one plot per unit: positions, quaternions, angles.
+/// Checks that coordinates of the same unit share one plot: positions, quaternions, angles.
 #[test]
 fn coordinates_of_a_unit_are_plotted_together() {
     #[mechanism(drawing)]

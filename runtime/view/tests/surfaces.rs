@@ -80,13 +80,13 @@ fn a_terrain_is_drawn_by_its_declaration() {
     let size = motion["scene"][0].as_f64().unwrap();
     assert!((size - 0.2 * 3.0_f64.sqrt()).abs() < 1e-3, "{size}");
     let (low, high) = (-size, 0.2 + size);
-    let height = |u: f64| 0.2 * (3.0 * u).sin();
-    assert_bounds(surface, [[low, high], [-size, size], [height(low), height(0.5)]]);
+    let terrain_height = |u: f64| 0.2 * (3.0 * u).sin();
+    assert_bounds(surface, [[low, high], [-size, size], [terrain_height(low), terrain_height(0.5)]]);
     assert!(motion["scene"][6].is_null(), "no floor under it");
 }
 
-/// Checks a terrain from a table with parameters on a tilted, moving tray: positions are along the axes of
-/// the tray.
+/// Checks the drawing of a terrain from a table with parameters on a tilted, moving tray. Its positions are
+/// along the axes of the tray.
 #[test]
 fn a_terrain_may_be_a_table_on_a_body() {
     #[mechanism(gravity = -9.81 * z, drawing)]
@@ -127,19 +127,22 @@ fn a_terrain_may_be_a_table_on_a_body() {
 
 #[test]
 fn surfaces_that_cannot_be_drawn_are_told() {
-    let figure = || Figure::of(&Ball {});
-    let message = |found: Result<Figure, Error>| found.unwrap_err().to_string();
-    let pole = message(figure().surface("pole", None, [0.0, 1.0], [0.0, 1.0], |u, w| [u, w, 1.0 / u]));
+    let figure_of_ball = || Figure::of(&Ball {});
+    let error_message = |found: Result<Figure, Error>| found.unwrap_err().to_string();
+    let pole =
+        error_message(figure_of_ball().surface("pole", None, [0.0, 1.0], [0.0, 1.0], |u, w| [u, w, 1.0 / u]));
     assert!(pole.contains("the surface `pole`") && pole.contains("at 0, 0"), "{pole}");
     for bounds in [[1.0, 1.0], [0.0, f64::NAN], [f64::NEG_INFINITY, 0.0]] {
-        assert!(message(figure().surface("", None, bounds, [0.0, 1.0], hill)).contains("increase"));
+        assert!(
+            error_message(figure_of_ball().surface("", None, bounds, [0.0, 1.0], hill)).contains("increase")
+        );
     }
-    let nowhere = figure().surface("", Some("moon"), [0.0, 1.0], [0.0, 1.0], hill);
+    let nowhere = figure_of_ball().surface("", Some("moon"), [0.0, 1.0], [0.0, 1.0], hill);
     assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "moon"));
 }
 
-/// Checks that the components of an arrow are decoded to one quantisation step; components that are not
-/// finite are missing.
+/// Checks that decoded components of an arrow equal the given vectors to one quantisation step. Components
+/// that are not finite are missing.
 #[test]
 fn arrows_are_the_vectors_that_were_given() {
     let vectors = vec![[0.0, 1.0, 20.0], [3.0, f64::NAN, 10.0], [-3.0, 0.0, 0.0]];
@@ -150,20 +153,21 @@ fn arrows_are_the_vectors_that_were_given() {
     assert_eq!((&arrows[1][0], &arrows[1][1]), (&"Torque".into(), &(-1).into()));
     let channels = channels(&motion);
     let first = channels.len() - 6;
-    let value = |arrow: usize, axis: usize, sample: usize| {
+    let arrow_component = |arrow: usize, axis: usize, sample: usize| {
         let step = channels[first + 3 * arrow + axis][sample];
         let [low, size] = [1, 2].map(|k| arrows[arrow][3][axis][k].as_f64().unwrap());
         (step >= 0).then_some(low + size * step as f64)
     };
     for (sample, z) in [20.0, 10.0, 0.0].into_iter().enumerate() {
-        assert!((value(0, 2, sample).unwrap() - z).abs() < 0.01);
+        assert!((arrow_component(0, 2, sample).unwrap() - z).abs() < 0.01);
     }
-    assert_eq!((value(0, 1, 1), value(1, 2, 2)), (None, Some(2.0)));
+    assert_eq!((arrow_component(0, 1, 1), arrow_component(1, 2, 2)), (None, Some(2.0)));
     let few = ball().force(None, [0.0; 3], vec![[0.0; 3]]);
     assert!(matches!(few, Err(Error::Count { expected: 3, found: 1, .. })));
 }
 
-/// Checks a wedge in centimetres, with edges of 0.1 m and 0.05 m along x.
+/// Checks that a Collada file in centimetres is read in metres: a wedge with edges of 0.1 m and 0.05 m along
+/// x.
 #[test]
 fn collada_files_are_read_in_metres() {
     let mut numbers = [0.0; 15];

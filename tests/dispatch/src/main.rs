@@ -1,5 +1,5 @@
-//! Functions that select their instructions at run time agree to rounding with functions that do not. Batched
-//! functions agree with those of single states. Generated code contains no `unsafe`.
+//! Checks that functions which select SIMD instructions at run time agree to rounding with functions that do
+//! not. Batched functions agree with those of single states, and generated code contains no `unsafe`.
 #![forbid(unsafe_code)]
 
 /// Declares the same mechanisms for each of two compile options.
@@ -8,11 +8,11 @@ macro_rules! mechanisms {
         mod $name {
             use linkwork::prelude::*;
 
-            /// Arm with constant values.
+            /// Panda arm, whose inertial values are constants.
             #[mechanism(urdf = "../../models/urdf/panda.urdf", batch, derivatives, $($option)*)]
             pub struct Panda;
 
-            /// Quadruped with limbs as SIMD lanes.
+            /// Quadruped whose identical limbs are evaluated as SIMD lanes.
             #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, batch, derivatives, $($option)*)]
             pub struct Solo12;
 
@@ -178,7 +178,7 @@ where
     assert_eq!(differ, chooses(), "the choice");
 }
 
-/// Compares the derivatives of two mechanisms.
+/// Compares the derivatives of the same mechanism with and without the compile option, at random states.
 macro_rules! compare_derivatives {
     ($a:expr, $b:expr) => {{
         let (a, b) = ($a, $b);
@@ -187,17 +187,18 @@ macro_rules! compare_derivatives {
         for _ in 0..64 {
             let q = one.integrate(&one.neutral(), &numbers.moderate());
             let (v, x, u) = (numbers.moderate(), numbers.moderate(), numbers.moderate());
-            let close = |(a, b): (f64, f64)| assert!(a < 1e-9 && b < 1e-9, "derivatives: {a:e}, {b:e}");
+            let assert_small_differences =
+                |(a, b): (f64, f64)| assert!(a < 1e-9 && b < 1e-9, "derivatives: {a:e}, {b:e}");
             let found = one.inverse_dynamics_derivatives(&q, &v, &x);
             let expected = other.inverse_dynamics_derivatives(&q, &v, &x);
-            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
             let found = one.forward_dynamics_derivatives(&q, &v, &x);
             let expected = other.forward_dynamics_derivatives(&q, &v, &x);
-            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
             let inverse = one.mass_matrix_inverse(&q);
-            close((difference(&found.2, &expected.2), difference(&inverse, &expected.2)));
+            assert_small_differences((difference(&found.2, &expected.2), difference(&inverse, &expected.2)));
             let (found, expected) = (one.linearize(&q, &v, &u), other.linearize(&q, &v, &u));
-            close((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
         }
     }};
 }

@@ -77,8 +77,13 @@ fn parallelogram(angle: f64, rate: f64) -> Branch<3, 1> {
 
 fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
     let jets = flat_branch(lengths, at_pi, angle, side);
-    let part = |k: usize| SVector::<f64, 3>::from_fn(|i, _| jets[i].0[k]);
-    Branch { q: part(0), by: part(1), bend: part(2) * rate * rate, rate: [rate].into() }
+    let coefficients_of_jets = |k: usize| SVector::<f64, 3>::from_fn(|i, _| jets[i].0[k]);
+    Branch {
+        q: coefficients_of_jets(0),
+        by: coefficients_of_jets(1),
+        bend: coefficients_of_jets(2) * rate * rate,
+        rate: [rate].into(),
+    }
 }
 
 /// Seeds of later cases that were difficult: a kite with a heavy body at rest, windows of which one rotates
@@ -174,8 +179,8 @@ fn stacked_windows_accelerate_as_two_pendulums() {
         let (low, first) = approach(random, 0.0);
         let (near, second) = approach(random, PI);
         let high = if random.uniform(1.0) > 0.0 { near } else { random.uniform(1.0) };
-        let moving = |rate: f64, other: f64| if rate == 0.0 { other } else { rate };
-        let (first, second) = (moving(first, 0.4), moving(second, -0.7));
+        let rate_unless_zero = |rate: f64, other: f64| if rate == 0.0 { other } else { rate };
+        let (first, second) = (rate_unless_zero(first, 0.4), rate_unless_zero(second, -0.7));
         let stacked = stacked(random, style);
         let off = off(&stacked, &stack([low, high], [first, second]));
         (
@@ -196,10 +201,10 @@ where
     M: Mechanism<NV, NV, 0, Scalar = f64>,
     S: Method<f64>,
 {
-    let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
-    let start = energy(&q, &v);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
+    let start = total_energy(&q, &v);
     let end = simulate(m).from(q, v).method(method).duration(end).finish()?;
-    Ok((energy(&end.q, &end.v) - start).abs())
+    Ok((total_energy(&end.q, &end.v) - start).abs())
 }
 
 /// Seeds of later motions that were difficult: steps that end within 1e-6 of a singular configuration and off
@@ -207,7 +212,7 @@ where
 /// constraints, and assembly modes that curve within a step.
 const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 
-/// Motions that pass singular configurations at random fractions of their steps conserve their energy.
+/// Checks that motions which pass singular configurations at random fractions of their steps conserve energy.
 #[test]
 fn random_linkages_keep_their_energy_through_flat_positions() {
     for seed in cases(60).chain(HARD_MOTIONS) {
@@ -234,17 +239,17 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
         }
         let h = 2e-3_f64.min(0.02 / fast.amax()).min(0.05 / change.component_div(&fast).amax());
         let end = end.min(2000.0 * h);
-        let check = |name: &str, found: Result<f64, Error>, most: f64| {
+        let assert_small_energy_gain = |name: &str, found: Result<f64, Error>, most: f64| {
             let share = found.map(|gain| gain / whole);
             assert!(
                 share.is_ok_and(|share| share < most),
                 "seed {seed}, {name}, {h} s: {share:?} of {whole} J, {rate} rad/s, {m:?}"
             );
         };
-        check("Runge–Kutta", gain(&m, state, end, Rk4::step(h)), 1e-3);
-        check("Dormand–Prince", gain(&m, state, end, DormandPrince::new()), 1e-4);
-        check("midpoint", gain(&m, state, end, ImplicitMidpoint::step(h)), 1e-2);
-        check("Euler", gain(&m, state, end, SemiImplicitEuler::step(h)), 0.2);
+        assert_small_energy_gain("Runge–Kutta", gain(&m, state, end, Rk4::step(h)), 1e-3);
+        assert_small_energy_gain("Dormand–Prince", gain(&m, state, end, DormandPrince::new()), 1e-4);
+        assert_small_energy_gain("midpoint", gain(&m, state, end, ImplicitMidpoint::step(h)), 1e-2);
+        assert_small_energy_gain("Euler", gain(&m, state, end, SemiImplicitEuler::step(h)), 0.2);
     }
 }
 

@@ -27,21 +27,21 @@ struct Parallelogram {
 /// Returns the largest error of a crank's angle after two and a half revolutions, over eight states.
 fn farthest<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
     const COUNT: usize = 8;
-    let rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
-    let start = |k: usize| 0.3 + 0.05 * k as f64;
-    let column = |f: &dyn Fn(usize) -> f64| {
+    let initial_rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
+    let initial_angle = |k: usize| 0.3 + 0.05 * k as f64;
+    let column_of_states = |f: &dyn Fn(usize) -> f64| {
         // The array is grouped by coordinate. Both cranks rotate by the same angle, and the coupler's
         // relative angle is its negative.
         [1.0, 1.0, -1.0].iter().flat_map(|sign| (0..COUNT).map(move |k| sign * f(k))).collect::<Vec<f64>>()
     };
-    let (mut q, mut v) = (column(&start), column(&rate));
-    let nothing = |_, _, _: &_, _: &_| SVector::zeros();
+    let (mut q, mut v) = (column_of_states(&initial_angle), column_of_states(&initial_rate));
+    let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
     let rollout = Rollout::new(method, steps);
     Parallelogram {}
         .lanes::<4>()
-        .roll_out(&rollout, &mut q, &mut v, nothing, unwatched)
+        .roll_out(&rollout, &mut q, &mut v, zero_inputs, unwatched)
         .expect("no step fails");
-    (0..COUNT).map(|k| (q[k] - start(k) - rate(k) * time).abs()).fold(0.0, f64::max)
+    (0..COUNT).map(|k| (q[k] - initial_angle(k) - initial_rate(k) * time).abs()).fold(0.0, f64::max)
 }
 
 #[test]

@@ -24,7 +24,7 @@ struct FourBar {
     closing: Pin,
 }
 
-/// Pendulum in Cartesian coordinates of the plane.
+/// Pendulum in Cartesian coordinates of a plane, with the length of the rod as a constraint.
 #[mechanism(gravity = -9.81 * y)]
 struct Bob {
     #[particle(mass = 1)]
@@ -35,7 +35,7 @@ struct Bob {
     rod: Holonomic,
 }
 
-/// Body with quaternion coordinates, suspended from a rod at one of its points.
+/// Body with quaternion coordinates that hangs on a rod, which is a distance constraint of one of its points.
 #[mechanism(gravity = -9.81 * z)]
 struct Hung {
     #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.25))]
@@ -60,7 +60,7 @@ struct FreeDisk {
 const DISK: RollingDisk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
 const BOWL: BallInBowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
 
-/// Mechanism with an initial state.
+/// Mechanism with the initial state of a long run.
 struct Start<'m, M, const NQ: usize, const NV: usize> {
     m: &'m M,
     q: SVector<f64, NQ>,
@@ -86,13 +86,14 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
-        let run = || simulate(self.m).from(self.q, self.v).duration(0.5);
-        let exact = run().method(DormandPrince::new().tolerance(1e-12, 1e-12)).finish().expect("it moves");
-        let error = |h: f64| {
-            let end = run().method(method(h)).finish().expect("it moves");
+        let simulate_start = || simulate(self.m).from(self.q, self.v).duration(0.5);
+        let exact =
+            simulate_start().method(DormandPrince::new().tolerance(1e-12, 1e-12)).finish().expect("it moves");
+        let error_with_step = |h: f64| {
+            let end = simulate_start().method(method(h)).finish().expect("it moves");
             self.m.difference(&exact.q, &end.q).norm() + (end.v - exact.v).norm()
         };
-        (error(h) / error(h / 2.0)).log2()
+        (error_with_step(h) / error_with_step(h / 2.0)).log2()
     }
 
     /// Returns the maximum energy errors in the first and in the last quarter of a run, and the mean errors.
@@ -105,16 +106,16 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
     {
-        let energy = |q: &_, v: &_| {
+        let total_energy = |q: &_, v: &_| {
             Mechanism::kinetic_energy(self.m, 0.0, q, v) + Mechanism::potential_energy(self.m, 0.0, q)
         };
-        let start = energy(&self.q, &self.v);
+        let start = total_energy(&self.q, &self.v);
         let (mut worst, mut mean) = ([0.0_f64; 2], [0.0; 2]);
         let run = simulate(self.m).from(self.q, self.v).method(method).duration(h * steps as f64);
         for (k, sample) in run.enumerate() {
             let Sample { q, v, .. } = sample.expect("it moves");
             let quarter = 4 * k / steps;
-            let off = energy(&q, &v) - start;
+            let off = total_energy(&q, &v) - start;
             if quarter == 0 || quarter == 3 {
                 let late = usize::from(quarter == 3);
                 worst[late] = worst[late].max(off.abs());
@@ -220,23 +221,25 @@ fn midpoint_rule_is_reversible() {
 #[test]
 fn steps_that_are_too_long_are_errors() {
     let pendulum = Bob {};
-    let run = || simulate(&pendulum).from([1.0, 0.0], [0.0, 50.0]).duration(10.0);
+    let simulate_pendulum = || simulate(&pendulum).from([1.0, 0.0], [0.0, 50.0]).duration(10.0);
     for end in [
-        run().method(ImplicitMidpoint::step(1.0)).finish(),
-        run().method(SemiImplicitEuler::step(1.0)).finish(),
+        simulate_pendulum().method(ImplicitMidpoint::step(1.0)).finish(),
+        simulate_pendulum().method(SemiImplicitEuler::step(1.0)).finish(),
     ] {
         assert!(matches!(end, Err(Error::NotConverged { .. })), "{end:?}");
     }
 }
 
-/// For constraints stabilized by feedback, the midpoint rule converges to the motion of other methods.
+/// Checks that the midpoint rule, for constraints stabilized by feedback, converges to the motion of other
+/// methods.
 #[test]
 fn feedback_is_integrated_by_the_midpoint_rule() {
     let pendulum = Bob {};
     let steady = linkwork::constraint::stabilized(&pendulum, 20.0);
-    let run = || simulate(&steady).from([0.6, -0.8], [0.4, 0.3]).duration(1.0);
-    let exact = run().method(DormandPrince::new().tolerance(1e-10, 1e-10)).finish().expect("it swings");
-    let end = run().method(ImplicitMidpoint::step(1e-3)).finish().expect("it swings");
+    let simulate_steady = || simulate(&steady).from([0.6, -0.8], [0.4, 0.3]).duration(1.0);
+    let exact =
+        simulate_steady().method(DormandPrince::new().tolerance(1e-10, 1e-10)).finish().expect("it swings");
+    let end = simulate_steady().method(ImplicitMidpoint::step(1e-3)).finish().expect("it swings");
     assert!((end.q - exact.q).norm() < 1e-5 && (end.v - exact.v).norm() < 1e-4, "{end:?} for {exact:?}");
 }
 
@@ -246,10 +249,10 @@ fn constrained_rollouts_do_not_mix() {
     let linkage = FourBar {};
     let states: Vec<_> =
         [1.2, 1.3, 1.5].map(|crank| Start::projected(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
-    let all = |entry: &dyn Fn(&Start<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
+    let entries_of_all_states = |entry: &dyn Fn(&Start<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
         (0..3).flat_map(|i| states.iter().map(move |s| entry(s, i))).collect()
     };
-    let (mut q, mut v) = (all(&|s, i| s.q[i]), all(&|s, i| s.v[i]));
+    let (mut q, mut v) = (entries_of_all_states(&|s, i| s.q[i]), entries_of_all_states(&|s, i| s.v[i]));
     let rollout = Rollout::new(SemiImplicitEuler::step(1e-3), 200);
     linkage
         .lanes::<4>()

@@ -1,12 +1,12 @@
-//! Nearly dependent constraints: light bodies between heavy ones, and singular configurations, in which a
-//! linkage loses rank.
+//! Checks of nearly dependent constraints: light bodies between heavy ones, and singular configurations, in
+//! which the constraints of a linkage lose rank.
 
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
 use linkwork_models::TwoWindows;
 use std::f64::consts::FRAC_PI_2;
 
-/// Two heavy slides that a light one couples: a force on one accelerates both equally.
+/// Two heavy slides that a light body couples, so that a force on one accelerates both equally.
 #[mechanism]
 struct Slides<T> {
     heavy: T,
@@ -50,11 +50,11 @@ const WINDOWS: TwoWindows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
 /// Returns the configuration and velocity with all posts at this clockwise angle from the upward vertical,
 /// and at this rate.
 fn posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
-    let all = |x: f64| SVector::from([-x, x, -x, x, -x]);
-    (all(angle), all(rate))
+    let alternating_signs = |x: f64| SVector::from([-x, x, -x, x, -x]);
+    (alternating_signs(angle), alternating_signs(rate))
 }
 
-/// Returns the error of the accelerations against those of a pendulum with the same motion:
+/// Returns the error of the accelerations of the linkage against those of an equivalent pendulum:
 /// `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
 fn off(angle: f64, rate: f64) -> f64 {
     let (q, v) = posts(angle, rate);
@@ -62,8 +62,8 @@ fn off(angle: f64, rate: f64) -> f64 {
     (a - posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
 }
 
-/// Accelerations are continuous through the singular configuration. At 90° all links are on one line, and the
-/// rank of the constraints decreases from four to two.
+/// Checks that accelerations are continuous through a singular configuration. At 90° all links are on one
+/// line, and the rank of the constraints decreases from four to two.
 #[test]
 fn accelerations_go_on_through_singular_positions() {
     for exponent in 1..=16 {
@@ -109,8 +109,8 @@ fn runge_kutta_keeps_its_order_through_singular_positions() {
     }
 }
 
-/// Pendulum that is dynamically equivalent to the windows: it has the same inertia and the same moment of its
-/// weight.
+/// Pendulum that is dynamically equivalent to the linkage of windows: it has the same inertia and the same
+/// moment of its weight.
 #[mechanism(gravity = -9.81 * y)]
 struct Swing {
     #[body(mass = 49 / 9, com = 9 / 14 * y, inertia = rod(49 / 9, 9 / 7, y))]
@@ -122,10 +122,10 @@ struct Swing {
 /// Returns the same errors as [`turned`], for the equivalent pendulum.
 fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
-    let energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
+    let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
     let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
     let end = simulate(&swing).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+    (off_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 /// Implicit methods have the accuracy of the equivalent pendulum while the windows pass their singular
@@ -159,28 +159,40 @@ fn linkages_are_released_near_singular_positions() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
         let (q, v) = posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
         let start = WINDOWS.potential_energy(&q);
-        let check = |end: Sample<f64, 5, 5, 0>, most: f64| {
+        let assert_energy_and_branch = |end: Sample<f64, 5, 5, 0>, most: f64| {
             let energy = WINDOWS.kinetic_energy(&end.q, &end.v) + WINDOWS.potential_energy(&end.q);
             assert!((energy - start).abs() < most, "{} J from 1e-{exponent}", energy - start);
             let aside = (end.q - posts(-end.q[0], 0.0).0).amax();
             assert!(aside < 1e-6, "{aside} rad off the branch from 1e-{exponent}");
         };
-        let run = || simulate(&WINDOWS).from(q, v).duration(2.0);
-        check(run().method(Rk4::step(2e-3)).finish().expect("it swings"), 1e-7);
+        let simulate_windows = || simulate(&WINDOWS).from(q, v).duration(2.0);
+        assert_energy_and_branch(
+            simulate_windows().method(Rk4::step(2e-3)).finish().expect("it swings"),
+            1e-7,
+        );
         // Bounds from the order of the method: h ω, with ω ≈ 3/s, to this power times 30 J, or the damping of
         // Rosenbrock.
-        check(run().method(ImplicitMidpoint::step(2e-3)).finish().expect("it swings"), 1e-5);
-        check(run().method(Rosenbrock::step(2e-3)).finish().expect("it swings"), 1e-3);
-        check(run().method(SemiImplicitEuler::step(2e-3)).finish().expect("it swings"), 0.2);
+        assert_energy_and_branch(
+            simulate_windows().method(ImplicitMidpoint::step(2e-3)).finish().expect("it swings"),
+            1e-5,
+        );
+        assert_energy_and_branch(
+            simulate_windows().method(Rosenbrock::step(2e-3)).finish().expect("it swings"),
+            1e-3,
+        );
+        assert_energy_and_branch(
+            simulate_windows().method(SemiImplicitEuler::step(2e-3)).finish().expect("it swings"),
+            0.2,
+        );
         if exponent == 4 {
             let method = DormandPrince::new().tolerance(1e-12, 1e-12);
             let end = simulate(&WINDOWS).from(q, v).method(method).duration(0.5).finish().expect("it swings");
-            check(end, 1e-7);
+            assert_energy_and_branch(end, 1e-7);
         }
     }
 }
 
-/// Declares a four-bar linkage of slender rods that can lie flat on one line.
+/// Declares a four-bar linkage of slender rods whose lengths allow all bars to lie on one line.
 macro_rules! flat {
     ($name:ident, [$ground:tt, $crank:tt, $coupler:tt, $rocker:tt]) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -208,26 +220,42 @@ flat!(Parallelogram, [1, 1, 1, 1]);
 // differ.
 flat!(ChangePoint, [2, 1, 3, 2]);
 
-/// Every method passes singular configurations without a change of direction, in each revolution, with an
-/// error of its order.
+/// Checks that every method passes singular configurations in each revolution without a change of direction,
+/// with an error of its order.
 #[test]
 fn cranks_turn_through_flat_positions() {
     fn check<M: Mechanism<3, 3, 0, Scalar = f64>>(m: &M, q: SVector<f64, 3>, v: SVector<f64, 3>, name: &str) {
-        let run = || simulate(m).from(q, v).duration(2.0);
-        let energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
-        let whole = energy(&q, &v);
-        let exact = run().method(DormandPrince::new().tolerance(1e-11, 1e-11)).finish().expect("it turns");
-        assert!((energy(&exact.q, &exact.v) - whole).abs() < 1e-7 * whole);
+        let simulate_mechanism = || simulate(m).from(q, v).duration(2.0);
+        let total_energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
+        let whole = total_energy(&q, &v);
+        let exact = simulate_mechanism()
+            .method(DormandPrince::new().tolerance(1e-11, 1e-11))
+            .finish()
+            .expect("it turns");
+        assert!((total_energy(&exact.q, &exact.v) - whole).abs() < 1e-7 * whole);
         assert!((exact.q[0] - q[0]).abs() > 10.0, "{name} turns {}", exact.q);
-        let compare = |end: Result<Sample<f64, 3, 3, 0>, Error>, most: f64, method: &str| {
+        let compare_with_exact = |end: Result<Sample<f64, 3, 3, 0>, Error>, most: f64, method: &str| {
             let end = end.expect(method);
-            let (off, gain) = ((end.q - exact.q).amax(), (energy(&end.q, &end.v) - whole).abs() / whole);
+            let (off, gain) =
+                ((end.q - exact.q).amax(), (total_energy(&end.q, &end.v) - whole).abs() / whole);
             assert!(off < most && gain < most, "{name}, {method}: {off} rad, {gain} of the energy");
         };
         for h in [2e-3, 5e-4] {
-            compare(run().method(ImplicitMidpoint::step(h)).finish(), 4e2 * h * h, "midpoint");
-            compare(run().method(SemiImplicitEuler::step(h)).finish(), 2e1 * h, "Euler");
-            compare(run().method(Rosenbrock::step(h)).finish(), 1e4 * h * h, "Rosenbrock");
+            compare_with_exact(
+                simulate_mechanism().method(ImplicitMidpoint::step(h)).finish(),
+                4e2 * h * h,
+                "midpoint",
+            );
+            compare_with_exact(
+                simulate_mechanism().method(SemiImplicitEuler::step(h)).finish(),
+                2e1 * h,
+                "Euler",
+            );
+            compare_with_exact(
+                simulate_mechanism().method(Rosenbrock::step(h)).finish(),
+                1e4 * h * h,
+                "Rosenbrock",
+            );
         }
     }
     for rate in [-12.0, -9.0] {
@@ -240,7 +268,7 @@ fn cranks_turn_through_flat_positions() {
     }
 }
 
-/// Declares a four-bar linkage that is solved by multipliers or by the velocity of its rocker.
+/// Declares a four-bar linkage whose constraints are solved by multipliers or by the velocity of its rocker.
 macro_rules! four_bar {
     ($name:ident $(, $word:ident = $value:tt)*) => {
         #[mechanism(gravity = -9.81 * y $(, $word = $value)*)]
@@ -266,8 +294,8 @@ macro_rules! four_bar {
 four_bar!(ByMultipliers);
 four_bar!(BySpeeds, formulation = speeds, independent = (third));
 
-/// With crank and coupler on one line, the rocker is instantaneously at rest while they move, so its velocity
-/// determines no other. The runtime then falls back to multipliers.
+/// Checks the fallback to multipliers. With crank and coupler on one line, the rocker is instantaneously at
+/// rest while they move, so that its velocity does not determine theirs.
 #[test]
 fn speeds_are_left_where_others_do_not_follow_from_them() {
     let (plain, speeds) = (ByMultipliers {}, BySpeeds {});
@@ -330,17 +358,20 @@ fn stiff_springs_act_in_singular_positions() {
 
 /// Returns the maximum change of the energy in a run, relative to the initial energy.
 fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time: f64, method: M) -> f64 {
-    let convert = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
-    let m = Sprung { stiffness: convert(stiffness) };
-    let configuration = |x: f64| SVector::from([convert(x), convert(-x), convert(x)]);
-    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
-    let start = energy(&configuration(angle), &configuration(rate));
-    let run =
-        simulate(&m).from(configuration(angle), configuration(rate)).method(method).duration(convert(time));
+    let convert_number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
+    let m = Sprung { stiffness: convert_number(stiffness) };
+    let configuration_with_angle =
+        |x: f64| SVector::from([convert_number(x), convert_number(-x), convert_number(x)]);
+    let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let start = total_energy(&configuration_with_angle(angle), &configuration_with_angle(rate));
+    let run = simulate(&m)
+        .from(configuration_with_angle(angle), configuration_with_angle(rate))
+        .method(method)
+        .duration(convert_number(time));
     let mut most = T::zero();
-    for sample in run.sample_every(convert(time / 100.0)) {
+    for sample in run.sample_every(convert_number(time / 100.0)) {
         let Sample { q, v, .. } = sample.expect("it goes on");
-        most = most.max((energy(&q, &v) - start).abs());
+        most = most.max((total_energy(&q, &v) - start).abs());
     }
     linkwork::nalgebra::try_convert::<T, f64>(most / start.abs()).expect("a number")
 }
@@ -376,7 +407,8 @@ fn stiff_springs_swing_through_singular_positions() {
     }
 }
 
-/// In single precision every method passes singular configurations with the accuracy of double precision.
+/// Checks that every method in single precision passes singular configurations as closely as in double
+/// precision, up to rounding.
 #[test]
 fn single_precision_passes_singular_positions() {
     for start in [(1.0, 6.0), (1.0, 12.0), (0.7, 0.0)] {

@@ -1,5 +1,5 @@
-//! Random states, including pathological ones: results are finite and satisfy the contact conditions, or are
-//! errors.
+//! Checks of contacts at random states, including pathological ones. Results are finite and satisfy the
+//! contact conditions, or are errors.
 
 use super::laws::{Chain, Pile, Random};
 use linkwork::contact::{self, Contacts};
@@ -102,8 +102,8 @@ where
     errors
 }
 
-/// Returns a coefficient of friction from zero to a million, and one of restitution in its range, including
-/// both ends.
+/// Returns random coefficients: friction from zero to a million, and restitution in its range, including both
+/// ends.
 fn laws(random: &mut Random) -> (f64, f64) {
     let friction = if random.next() > 0.7 { 0.0 } else { 10.0_f64.powf(1.5 + 4.5 * random.next()) };
     (friction, random.one_of([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
@@ -170,8 +170,9 @@ fn a_block_turns_about_two_of_many_points() {
     super::laws::check(&m, &q, &v);
 }
 
-/// A heavy ball that falls between two others pushes a light one away. The removal of overlaps once moved the
-/// light ball 14 mm through the floor. No overlap exceeds the motion of a ball in one step.
+/// Checks that the removal of overlaps does not create others: a heavy ball that falls between two others
+/// pushes a light one away, once 14 mm through the floor. No overlap exceeds the motion of a ball in one
+/// step.
 #[test]
 fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     let m = Pile { friction: 24.6, restitution: 0.0 };
@@ -191,9 +192,9 @@ fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     }
 }
 
-/// At most one state in ten thousand returns an error. `LINKWORK_ORACLE` is the number of blocks of a hundred
-/// states of each of the five mechanisms, or their range: `20`, or `20..40`; 2000 blocks are a million
-/// states.
+/// Checks that at most one random state in ten thousand returns an error. `LINKWORK_ORACLE` is the number of
+/// blocks of a hundred states of each of five mechanisms, or their range: `20`, or `20..40`; 2000 blocks are
+/// a million states.
 #[test]
 fn states_at_random_have_answers() {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();

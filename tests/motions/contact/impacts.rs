@@ -20,8 +20,8 @@ struct Dice {
     wall: Contact,
 }
 
-/// A block on its face and against a wall has up to eight corners in contact, some of them in two contacts.
-/// The impulses are not unique; friction ranges from zero to values beyond those of any material.
+/// Checks impacts of a block on its face and against a wall, with up to eight corners in contact, some in two
+/// contacts. Impulses are not unique; friction ranges from zero to unphysically large values.
 #[test]
 fn a_block_in_a_corner_obeys_the_laws() {
     let mut random = Random(1);
@@ -38,7 +38,8 @@ fn a_block_in_a_corner_obeys_the_laws() {
     }
 }
 
-/// Heavy ball on a light one and another: all pairs and two of the contacts with the floor are closed.
+/// Checks impacts of a heavy ball on a light one and another: all pairs, and two of the contacts with the
+/// floor, are closed.
 #[test]
 fn balls_in_a_pile_obey_the_laws() {
     let mut random = Random(2);
@@ -52,8 +53,8 @@ fn balls_in_a_pile_obey_the_laws() {
     }
 }
 
-/// For a double pendulum whose tip collides with the floor, Newton's restitution with friction could increase
-/// the energy (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8); the impact must not.
+/// Checks that an impact of a double pendulum's tip on the floor adds no energy. Newton's restitution with
+/// friction alone could (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8).
 #[test]
 fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
     let mut random = Random(3);

@@ -59,8 +59,9 @@ fn between_impacts_the_order_is_two() {
     assert!(errors[2][0].max(errors[2][1]) < 1e-3, "{errors:?}");
 }
 
-/// For a cart on a spring with `ω = 4 rad/s` the leapfrog method conserves `(1 − ω² h²/4) v² + ω² x²`, so
-/// that the relative error of the energy is at most `ω² h²/4`, for any number of oscillations.
+/// Checks that energy does not drift. For a cart on a spring with `ω = 4 rad/s`, the leapfrog method
+/// conserves `(1 − ω² h²/4) v² + ω² x²`, so that the relative energy error is at most `ω² h²/4` for any
+/// number of oscillations.
 #[test]
 fn the_energy_of_oscillations_does_not_drift() {
     let (m, h) = (Cart {}, 0.01);

@@ -1,4 +1,4 @@
-//! Robots that stand on their feet.
+//! Checks of legged robots that stand on contacts at their feet.
 
 use super::laws::Random;
 use linkwork::contact::{self, Contacts};
@@ -83,19 +83,20 @@ struct Humanoid {
 #[test]
 fn a_humanoid_stands() {
     let m = Humanoid {};
-    let hold = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
+    let holding_torques = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
         SVector::from_fn(|k, _| -1e4 * (q[7 + k] + 0.05 * v[6 + k]))
     };
     let mut q = m.neutral();
     q[2] -= m.contact_gaps(&q).min() - 0.01;
-    let run = simulate(&m).from(q, [0.0; 35]).inputs(|_, q, v| hold(q, v));
+    let run = simulate(&m).from(q, [0.0; 35]).inputs(|_, q, v| holding_torques(q, v));
     let run = run.method(TimeStepping::step(1e-3)).sample_every(0.5).duration(6.0);
     let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
     let (before, after) = (samples[samples.len() - 2], samples[samples.len() - 1]);
     let creep = (after.q - before.q).norm() / 0.5;
     assert!(creep < 1e-6, "{creep:e}");
     assert!(m.contact_gaps(&after.q).amax() < 1e-9);
-    let forces = contact::forces(&m, after.t, &after.q, &after.v, &hold(&after.q, &after.v), 1e-3).unwrap();
+    let forces =
+        contact::forces(&m, after.t, &after.q, &after.v, &holding_torques(&after.q, &after.v), 1e-3).unwrap();
     let weight = m.total_mass() * 9.81;
     let normal: f64 = (0..8).map(|k| forces[3 * k]).sum();
     assert!((0..8).all(|k| forces[3 * k] >= 0.0) && (normal - weight).abs() < 1e-5 * weight, "{forces}");
@@ -156,11 +157,11 @@ where
     let rows = DMatrix::from_column_slice(NR, NV, jacobian.as_slice());
     let velocities = mass.lu().solve(&rows.transpose()).unwrap();
     let rates = &rows * &velocities;
-    let error = |found: &[f64], expected: &DMatrix<f64>| {
+    let relative_error = |found: &[f64], expected: &DMatrix<f64>| {
         let difference = found.iter().zip(expected.iter()).map(|(a, b)| (a - b).abs());
         difference.fold(0.0, f64::max) / expected.amax()
     };
-    [error(found.velocities.as_slice(), &velocities), error(found.rates.as_slice(), &rates)]
+    [relative_error(found.velocities.as_slice(), &velocities), relative_error(found.rates.as_slice(), &rates)]
 }
 
 /// The contact-space inverse inertia with limbs as SIMD lanes equals that of the mass matrix. The cases have

@@ -22,7 +22,7 @@ struct Dominoes {
     next: [Contact; 4],
 }
 
-/// Two bricks on the ground with a third one on both, and a ball that hits the wall.
+/// Two bricks on the ground with a third one on top of both, and a ball that hits this wall.
 #[mechanism(gravity = -9.81 * z)]
 struct Wall {
     #[body(mass = 0.5, inertia = cuboid(0.5, 0.1, 0.2, 0.08))]
@@ -69,7 +69,8 @@ where
     (end, violation)
 }
 
-/// The first domino knocks over the others. The last one lies on the ground, and the others lean on it.
+/// Checks a row of dominoes: the first one knocks over the others. The last one lies on the ground, and the
+/// others lean on it.
 fn dominoes() {
     let m = Dominoes { friction: 0.3 };
     let (mut q, mut v) = (m.neutral(), SVector::zeros());

@@ -1,9 +1,9 @@
-//! Tower of boxes on each other.
+//! Checks of a tower of boxes.
 
 use linkwork::prelude::*;
 use std::thread;
 
-/// Ten boxes, each with the corners of its base on the top of the one below.
+/// Tower of ten boxes, whose contacts are between the corners of each base and the top of the box below.
 #[mechanism(gravity = -9.81 * z)]
 struct Tower {
     #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]

@@ -27,7 +27,7 @@ fn control(q: &Joints, v: &Joints, target: &Joints) -> Joints {
     Arm.inverse_dynamics(q, v, &acceleration)
 }
 
-/// Returns the arm's state a millisecond later.
+/// Returns the state of the arm after one step of a millisecond.
 fn step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
     let v = v + Arm.forward_dynamics(q, v, &Arm.generalized_forces(q, u)) * 1e-3;
     (Arm.integrate(q, &(v * 1e-3)), v)
@@ -53,7 +53,7 @@ fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
         && Arm.momentum(q, v).norm() + Arm.momentum_rate(q, v).norm() + height + Arm.potential_energy(q) < 1e9
 }
 
-/// Whether arms in SIMD lanes move in the same way as a single one.
+/// Whether several arms in SIMD lanes move in the same way as a single arm.
 fn side_by_side(q: &Joints, v: &Joints) -> bool {
     const COUNT: usize = 5;
     let (mut qs, mut vs) = ([0.0; 7 * COUNT], [0.0; 7 * COUNT]);
@@ -63,15 +63,16 @@ fn side_by_side(q: &Joints, v: &Joints) -> bool {
         vs.fill(*v);
     }
     let rollout = Rollout::new(Rk4::step(1e-3), 2);
-    let push = |_, _, _: &_, v: &SVector<f64x4, 7>| *v * Lanes::splat(-1.0);
-    let done = Arm.lanes::<4>().roll_out(&rollout, &mut qs, &mut vs, push, unwatched);
-    let inputs = |_, _: &Joints, v: &Joints| -v;
-    let Ok(one) = simulate(&Arm).from(*q, *v).inputs(inputs).method(Rk4::step(1e-3)).duration(2e-3).finish()
+    let damping_force = |_, _, _: &_, v: &SVector<f64x4, 7>| *v * Lanes::splat(-1.0);
+    let done = Arm.lanes::<4>().roll_out(&rollout, &mut qs, &mut vs, damping_force, unwatched);
+    let damping_inputs = |_, _: &Joints, v: &Joints| -v;
+    let Ok(one) =
+        simulate(&Arm).from(*q, *v).inputs(damping_inputs).method(Rk4::step(1e-3)).duration(2e-3).finish()
     else {
         return false;
     };
-    let same = |(numbers, x): (&[f64], &f64)| numbers.iter().all(|y| (x - y).abs() < 1e-12);
-    done.is_ok() && qs.chunks_exact(COUNT).zip(one.q.iter()).all(same)
+    let is_same_in_all_lanes = |(numbers, x): (&[f64], &f64)| numbers.iter().all(|y| (x - y).abs() < 1e-12);
+    done.is_ok() && qs.chunks_exact(COUNT).zip(one.q.iter()).all(is_same_in_all_lanes)
 }
 
 /// Body in the air with a pendulum on a ball joint.
@@ -90,23 +91,25 @@ struct Flight {
     thruster: Force,
 }
 
-/// Whether all integrators give the same flight.
+/// Whether all integrators compute the same flight of a body.
 fn flies(mass: f64) -> bool {
     let flight = Flight { mass };
     let v = SVector::from([1.0, 0.0, 3.0, 0.1, 0.2, 0.3, -0.5, 0.4, 0.3]);
-    let run = || simulate(&flight).from(flight.neutral(), v).duration(0.1);
-    let driven = || run().control_every(0.03, |t, _, _| SVector::from([t]));
-    let (Ok(precise), Ok(driven)) = (run().finish(), driven().finish()) else { return false };
+    let simulate_flight = || simulate(&flight).from(flight.neutral(), v).duration(0.1);
+    let simulate_with_control = || simulate_flight().control_every(0.03, |t, _, _| SVector::from([t]));
+    let (Ok(precise), Ok(driven)) = (simulate_flight().finish(), simulate_with_control().finish()) else {
+        return false;
+    };
     let fixed = [
-        run().method(Rk4::step(1e-3)).finish(),
-        run().method(ImplicitMidpoint::step(1e-3)).finish(),
-        run().method(SemiImplicitEuler::step(1e-3)).finish(),
+        simulate_flight().method(Rk4::step(1e-3)).finish(),
+        simulate_flight().method(ImplicitMidpoint::step(1e-3)).finish(),
+        simulate_flight().method(SemiImplicitEuler::step(1e-3)).finish(),
     ];
-    let close = |end: &_| match end {
+    let is_close_to_precise = |end: &_| match end {
         Ok(Sample { q, .. }) => flight.difference(&precise.q, q).norm() < 1e-2,
         Err(_) => false,
     };
-    driven.t == precise.t && fixed.iter().all(close)
+    driven.t == precise.t && fixed.iter().all(is_close_to_precise)
 }
 
 /// Crank, rod and piston in a closed loop.
@@ -147,7 +150,7 @@ fn turns(length: f64) -> bool {
     consistent && finite && (held - end.q).norm() < 1e-9
 }
 
-/// Sledge on two runners.
+/// Sledge with contacts at the rear and front of its runners, with friction.
 #[mechanism(gravity = -9.81 * y)]
 struct Sledge {
     friction: f64,
@@ -164,9 +167,11 @@ struct Sledge {
 /// Whether the sledge falls, slides and comes to rest, with time stepping and with located events.
 fn rests(friction: f64) -> bool {
     let sledge = Sledge { friction };
-    let run = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);
-    let steps = run().method(TimeStepping::step(1e-3)).finish();
-    let (Ok(steps), Ok(events)) = (steps, run().method(EventDriven::new()).finish()) else { return false };
+    let simulate_sledge = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);
+    let steps = simulate_sledge().method(TimeStepping::step(1e-3)).finish();
+    let (Ok(steps), Ok(events)) = (steps, simulate_sledge().method(EventDriven::new()).finish()) else {
+        return false;
+    };
     let is_at_rest = |end: &Sample<f64, 3, 3, 0>| (end.q[1] - 0.1).abs() < 1e-7 && end.v.norm() < 1e-9;
     is_at_rest(&steps) && is_at_rest(&events) && (steps.q - events.q).norm() < 1e-2
 }

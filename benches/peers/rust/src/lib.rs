@@ -14,7 +14,7 @@ use std::path::Path;
 const G: f64 = 9.81;
 const G_OF_DYNIBO: f64 = 9.80665;
 
-/// State with the joints in dynibo's order.
+/// State of a robot, with the joints in the order of the crate dynibo.
 struct State {
     base: BaseState,
     q: Vec<f64>,
@@ -31,7 +31,7 @@ enum Kind {
     Free(FloatingRobot),
 }
 
-/// Robot with its states.
+/// Robot of a Rust peer with the states at which it is evaluated.
 pub struct Peer {
     kind: Kind,
     states: Vec<State>,
@@ -47,12 +47,12 @@ impl Peer {
         let model = RobotModel::from_urdf(folder.join("robot.urdf"))?;
         let names = std::fs::read_to_string(folder.join("joints"))?;
         let names: Vec<&str> = names.lines().collect();
-        let place = |k: usize| {
+        let index_of_joint_name = |k: usize| {
             let name = model.joint_name(k)?;
             let found = names.iter().position(|other| *other == name);
             found.ok_or_else(|| Failure::from(format!("what is the joint {name}?")))
         };
-        let order = (0..model.joint_count()).map(place).collect::<Result<Vec<_>, Failure>>()?;
+        let order = (0..model.joint_count()).map(index_of_joint_name).collect::<Result<Vec<_>, Failure>>()?;
         let free = folder.join("free").exists();
         let kind = if free { Kind::Free(model.floating_robot()?) } else { Kind::Fixed(model.robot()) };
         let nv = names.len() + if free { 6 } else { 0 };
@@ -70,12 +70,12 @@ impl Peer {
         let (base_q, base_v) = if free { (7, 6) } else { (0, 0) };
         let (q, rest) = row.split_at(n + base_q);
         let [v, a, tau] = [0, 1, 2].map(|k| &rest[k * (n + base_v)..(k + 1) * (n + base_v)]);
-        let sorted = |all: &[f64]| self.order.iter().map(|&k| all[k]).collect::<Vec<f64>>();
+        let reordered_joint_values = |all: &[f64]| self.order.iter().map(|&k| all[k]).collect::<Vec<f64>>();
         let base = if free { base(q, v, a)? } else { BaseState::stationary(Frame::identity())? };
         let mut state = State {
-            q: sorted(&q[base_q..]),
-            v: sorted(&v[base_v..]),
-            a: sorted(&a[base_v..]),
+            q: reordered_joint_values(&q[base_q..]),
+            v: reordered_joint_values(&v[base_v..]),
+            a: reordered_joint_values(&a[base_v..]),
             tau: Vec::new(),
             lack: vec![0.0; n + base_v],
             base,
@@ -90,7 +90,7 @@ impl Peer {
                 [0, 3].map(|k| state.base.frame().rotation * Vector3::from_column_slice(&tau[k..k + 3]));
             state.tau.extend(torque.iter().chain(force.iter()));
         }
-        state.tau.extend(sorted(&tau[base_v..]));
+        state.tau.extend(reordered_joint_values(&tau[base_v..]));
         state.tau.iter_mut().zip(&state.lack).for_each(|(tau, lack)| *tau -= lack);
         Ok(state)
     }

@@ -12,14 +12,14 @@ use linkwork_models::{
 };
 use std::rc::Rc;
 
-/// Step of the simulations, s.
+/// Step size of the simulations, s.
 const STEP: f64 = 1e-3;
 
-/// Mechanism with its measured functions.
+/// Constrained mechanism with its measured functions.
 pub struct Mechanism {
-    /// Title in the table.
+    /// Title of the mechanism in the table.
     pub title: &'static str,
-    /// Name of its folder.
+    /// Name of the folder with the mechanism's peer code.
     pub name: &'static str,
     /// Number of coordinates.
     pub nq: usize,
@@ -27,9 +27,9 @@ pub struct Mechanism {
     pub nv: usize,
     /// Number of scalar constraints.
     pub nc: usize,
-    /// `q`, `v`, `v̇` and zero forces of every state, one after another.
+    /// `q`, `v`, `v̇` and zero forces of every state, concatenated.
     pub numbers: Vec<f64>,
-    /// Accelerations in all states.
+    /// Contender that computes the accelerations in all states.
     pub accelerations: Box<dyn Contender>,
     /// Motion of a hundred steps from the first state.
     pub motion: Box<dyn Contender>,
@@ -56,7 +56,7 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Clone + 'static,
 {
     let (middle, start) = (q.into(), v.into());
-    let state = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| {
+    let consistent_state = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| {
         let q = m.assemble(0.0, q, &[]).ok()?;
         let v = m.project_velocity(0.0, &q, v).ok()?;
         let tau = SVector::zeros();
@@ -65,10 +65,10 @@ where
     };
     let mut random = Random::new(7);
     let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform(limit));
-    let mut states = Vec::from_iter(state(&middle, &start));
+    let mut states = Vec::from_iter(consistent_state(&middle, &start));
     while states.len() < STATES {
         let speed = start.amax().max(1.0);
-        states.extend(state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
+        states.extend(consistent_state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
     }
     let states = Rc::new(states);
     let numbers = states.iter().flat_map(State::numbers).collect();

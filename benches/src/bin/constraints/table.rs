@@ -21,7 +21,7 @@ const LIBRARIES: [(&str, Owner); 4] = [
     ("libmujoco.so", Owner::Mujoco),
 ];
 
-/// Order of the columns in the table.
+/// Order of the owners' columns in the table.
 const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
 
 /// Writes a file for every mechanism with a state and its accelerations in each line, and prints the names of
@@ -31,25 +31,25 @@ pub fn write(folder: &Path) -> io::Result<()> {
         let m = make();
         let folder = folder.join(m.name);
         fs::create_dir_all(&folder)?;
-        let line = |row: &[f64]| {
+        let format_table_line = |row: &[f64]| {
             let numbers: Vec<String> = row[..m.nq + 2 * m.nv].iter().map(|x| format!("{x:e}")).collect();
             numbers.join(" ") + "\n"
         };
-        let lines: String = m.numbers.chunks_exact(m.nq + 3 * m.nv).map(line).collect();
+        let lines: String = m.numbers.chunks_exact(m.nq + 3 * m.nv).map(format_table_line).collect();
         fs::write(folder.join("states"), lines)?;
         println!("{}", m.name);
     }
     Ok(())
 }
 
-/// Results of a mechanism.
+/// Measured results of one mechanism.
 struct Line {
     mechanism: Mechanism,
     accelerations: Vec<Measured>,
     steps: Vec<Measured>,
     /// Nanoseconds of accelerations with lambdify and with PyDy, and milliseconds of a thousand steps.
     python: Option<[f64; 3]>,
-    /// Largest difference of MuJoCo's accelerations.
+    /// Largest difference between MuJoCo's accelerations and Linkwork's.
     soft: Option<f64>,
 }
 
@@ -97,7 +97,7 @@ pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// Returns all peers that have this mechanism.
+/// Returns the implementations of this function by all peers that have the mechanism.
 fn peers(folder: &Path, name: &str, function: Function, rows: Rows<'_>) -> Vec<Box<dyn Contender>> {
     let own = folder.join(name);
     let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {

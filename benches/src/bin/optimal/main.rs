@@ -35,14 +35,14 @@ const EFFORT: f64 = 1e-2 * PERIOD;
 /// Returns the processor time of a call, divided by the number of nodes, ns: the minimum over many
 /// repetitions.
 fn least(nodes: usize, mut f: impl FnMut()) -> f64 {
-    let now = || {
+    let cpu_time_in_nanoseconds = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
     };
     let times = (0..REPEATS).map(|_| {
-        let begin = now();
+        let begin = cpu_time_in_nanoseconds();
         f();
-        now() - begin
+        cpu_time_in_nanoseconds() - begin
     });
     times.fold(f64::INFINITY, f64::min) / nodes as f64
 }
@@ -51,14 +51,14 @@ type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, N
 type Node<const NQ: usize, const NV: usize, const NU: usize> =
     (discrete::Transition<f64, NQ, NV, NU>, Quadratic<f64, NV, NU>);
 
-/// Mechanism with its integrator and its goal.
+/// Optimal-control problem: a mechanism with its integrator and its target state.
 struct Problem<'m, M, const NQ: usize> {
     mechanism: &'m M,
     method: SemiImplicitEuler<f64>,
     goal: SVector<f64, NQ>,
 }
 
-/// Trajectory with the policies of an iteration, each in one allocation.
+/// Trajectory with the feedback policies of an iteration, each in one allocation.
 struct Trajectory<const NQ: usize, const NV: usize, const NU: usize> {
     states: Vec<State<NQ, NV>>,
     inputs: Vec<SVector<f64, NU>>,
@@ -237,23 +237,23 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 
 fn main() {
     let method = SemiImplicitEuler::step(PERIOD);
-    let uniform = |x: f64| SVector::<f64, 7>::repeat(x);
+    let uniform_joint_vector = |x: f64| SVector::<f64, 7>::repeat(x);
     // Torques that hold the arm at rest in its initial configuration.
-    let held = Panda.inverse_dynamics(&uniform(0.1), &SVector::zeros(), &SVector::zeros());
-    let panda = Problem { mechanism: &Panda, method, goal: uniform(-0.2) }.measure(
+    let held = Panda.inverse_dynamics(&uniform_joint_vector(0.1), &SVector::zeros(), &SVector::zeros());
+    let panda = Problem { mechanism: &Panda, method, goal: uniform_joint_vector(-0.2) }.measure(
         "panda",
-        uniform(0.1),
+        uniform_joint_vector(0.1),
         vec![held; NODES],
     );
 
     // A flying body moves its legs and rotates by reaction.
-    let flying = |x: f64| {
+    let neutral_with_joint_offset = |x: f64| {
         let displacement = SVector::from_fn(|k, _| if k < 6 { 0.0 } else { x });
         Solo.integrate(&Solo.neutral(), &displacement)
     };
-    let solo = Problem { mechanism: &Solo, method, goal: flying(-0.2) }.measure(
+    let solo = Problem { mechanism: &Solo, method, goal: neutral_with_joint_offset(-0.2) }.measure(
         "solo",
-        flying(0.1),
+        neutral_with_joint_offset(0.1),
         vec![SVector::zeros(); NODES],
     );
     println!("{{{panda}, {solo}, {}}}", trot::measure());

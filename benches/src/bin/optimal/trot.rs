@@ -63,18 +63,18 @@ const OF_CONES: f64 = 1e1;
 const OF_STATES: f64 = 1e1;
 const OF_INPUTS: f64 = 1e-1;
 
-/// Node of the gait.
+/// Node of the gait: contact states and targets at one instant.
 struct Phase {
     touches: [Touch; 4],
     /// Target position of the centre of mass.
     centre: Option<Place>,
     /// Target positions of the feet.
     feet: [Option<Place>; 4],
-    /// Whether the node is a touchdown.
+    /// Whether feet touch down at this node.
     lands: bool,
 }
 
-/// Returns the position of a foot.
+/// Returns the position of foot `k` in ground axes.
 fn foot(k: usize, q: &Configuration) -> Place {
     let m = Walker {};
     match k {
@@ -100,12 +100,14 @@ fn gait(start: &Configuration) -> Vec<Phase> {
     let mut feet: [Place; 4] = std::array::from_fn(|k| foot(k, start));
     let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
     centre.z = Walker {}.center_of_mass(start).z;
-    let stands = || Phase { touches: [Touch::Sticks; 4], centre: None, feet: [None; 4], lands: false };
+    let standing_phase =
+        || Phase { touches: [Touch::Sticks; 4], centre: None, feet: [None; 4], lands: false };
     let mut all = Vec::new();
     for (pair, reach) in [([1, 2], REACH / 2.0), ([0, 3], REACH)] {
-        all.extend((0..STAND).map(|_| stands()));
+        all.extend((0..STAND).map(|_| standing_phase()));
         let held: [bool; 4] = std::array::from_fn(|k| !pair.contains(&k));
-        let touches = |held: [bool; 4]| held.map(|held| if held { Touch::Sticks } else { Touch::Open });
+        let contact_modes_of_legs =
+            |held: [bool; 4]| held.map(|held| if held { Touch::Sticks } else { Touch::Open });
         let mut aimed = [None; 4];
         for k in 0..SWING {
             let (half, part) = (SWING as f64 / 2.0, (k + 1) as f64 / SWING as f64);
@@ -113,13 +115,18 @@ fn gait(start: &Configuration) -> Vec<Phase> {
             let forward = Place::new(reach * part, 0.0, height);
             pair.iter().for_each(|foot| aimed[*foot] = Some(feet[*foot] + forward));
             let centre = Some(centre + Place::new(reach * part / 2.0, 0.0, 0.0));
-            all.push(Phase { touches: touches(held), centre, feet: aimed, lands: false });
+            all.push(Phase { touches: contact_modes_of_legs(held), centre, feet: aimed, lands: false });
         }
-        all.push(Phase { touches: touches(held.map(|held| !held)), centre: None, feet: aimed, lands: true });
+        all.push(Phase {
+            touches: contact_modes_of_legs(held.map(|held| !held)),
+            centre: None,
+            feet: aimed,
+            lands: true,
+        });
         centre.x += reach / 2.0;
         pair.iter().for_each(|foot| feet[*foot].x += reach);
     }
-    all.push(stands());
+    all.push(standing_phase());
     all
 }
 
@@ -159,12 +166,12 @@ fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
 
 /// Returns the weights of squares of configuration and velocity in a phase.
 fn weights(phase: &Phase) -> [Motion; 2] {
-    let list = |base: [f64; 2], joints: f64| {
+    let weights_of_motion = |base: [f64; 2], joints: f64| {
         Motion::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
     };
     match phase.lands {
-        true => [list([1.0, 1.0], 10.0), list([10.0, 10.0], 10.0)],
-        false => [list([0.0, 500.0], 0.01), list([10.0, 10.0], 1.0)],
+        true => [weights_of_motion([1.0, 1.0], 10.0), weights_of_motion([10.0, 10.0], 10.0)],
+        false => [weights_of_motion([0.0, 500.0], 0.01), weights_of_motion([10.0, 10.0], 1.0)],
     }
 }
 
@@ -191,7 +198,7 @@ struct Trot {
     weights: Vec<[Motion; 2]>,
 }
 
-/// Trajectory with its policies.
+/// Trajectory with its feedback policies.
 struct Plan {
     states: Vec<State<19, 18>>,
     inputs: Vec<Inputs>,
@@ -306,8 +313,8 @@ impl Trot {
         Value { q, v, qq, qv, vv }
     }
 
-    /// Linearises and runs the backward recursion. Returns the expected change of the cost: its coefficients
-    /// of the step length and of its square.
+    /// Linearises the trajectory and runs the backward recursion. Returns the coefficients of the step
+    /// length, and of its square, in the expected change of the cost.
     fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
         let mut node = Node::zeros();
         let mut to_go = self.last(&plan.states[plan.inputs.len()]);
@@ -350,15 +357,15 @@ impl Trot {
 
     /// Returns the gait as JSON for a program with the same costs.
     fn written(&self) -> String {
-        let list = |place: &Option<Place>| {
+        let format_optional_point = |place: &Option<Place>| {
             place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
         };
         let phases = self.phases.iter().map(|phase| {
-            let feet = phase.feet.each_ref().map(list).join(", ");
+            let feet = phase.feet.each_ref().map(format_optional_point).join(", ");
             let holds = phase.touches.map(|touch| touch != Touch::Open);
             format!(
                 "{{\"holds\": {holds:?}, \"centre\": {}, \"feet\": [{feet}], \"lands\": {}}}",
-                list(&phase.centre),
+                format_optional_point(&phase.centre),
                 phase.lands
             )
         });

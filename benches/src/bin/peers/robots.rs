@@ -1,4 +1,4 @@
-//! The robots of the comparison.
+//! Robots of the comparison with other libraries.
 
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
@@ -9,10 +9,10 @@ use linkwork_benches::states::{State, states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
-/// Function with a contender that evaluates it.
+/// A function, and the contender that evaluates it.
 pub type Generated = (Function, Box<dyn Contender>);
 
-/// Robot with its generated functions.
+/// Robot with the generated functions that are compared.
 pub struct Robot {
     /// Name of the robot and of its folder.
     pub name: &'static str,
@@ -24,11 +24,11 @@ pub struct Robot {
     pub free: bool,
     /// Names of its moving joints in order, without that of the base.
     pub joints: &'static [&'static str],
-    /// Number of coordinates.
+    /// Number of coordinates of the robot.
     pub nq: usize,
-    /// Number of velocities.
+    /// Number of velocities of the robot.
     pub nv: usize,
-    /// `q`, `v`, `a` and `τ` of every state, one after another.
+    /// `q`, `v`, `a` and `τ` of every state, concatenated.
     pub numbers: Vec<f64>,
     /// Generated functions of the robot.
     pub functions: Vec<Generated>,
@@ -166,7 +166,7 @@ macro_rules! file {
 #[cfg(feature = "chains")]
 mod chains;
 
-/// Returns the constructors of all robots.
+/// Returns the constructors of all robots of the comparison.
 pub fn robots() -> Vec<fn() -> Robot> {
     const FIXED: Options<'static> = Options { free: false, lock: &[] };
     const FREE: Options<'static> = Options { free: true, lock: &[] };

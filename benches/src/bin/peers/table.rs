@@ -40,7 +40,7 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// Returns all implementations of a function.
+/// Returns the implementations of a function by all libraries that have it.
 fn contenders(
     folder: &Path,
     robot: &mut Robot,
@@ -69,20 +69,24 @@ fn contenders(
 
 /// Returns a line of the table, for one of Linkwork's functions.
 fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
-    let best = |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
-    let own = best(owner);
-    let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(best);
-    let number = |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
-    let time =
-        |m: Option<&Measured>| number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)));
-    let ratio = |m: Option<&Measured>| number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
+    let fastest_of_owner =
+        |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
+    let own = fastest_of_owner(owner);
+    let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(fastest_of_owner);
+    let format_optional_number =
+        |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
+    let time = |m: Option<&Measured>| {
+        format_optional_number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)))
+    };
+    let format_time_ratio =
+        |m: Option<&Measured>| format_optional_number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
     let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
     let mut cells = vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.title())];
-    cells.extend([own, best(Owner::Parameters), best(Owner::Prepared)].map(time));
+    cells.extend([own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(time));
     cells.extend(others.map(time));
-    cells.extend(others.map(ratio));
-    cells.push(number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
-    if let Some(casadi) = best(Owner::Casadi) {
+    cells.extend(others.map(format_time_ratio));
+    cells.push(format_optional_number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
+    if let Some(casadi) = fastest_of_owner(Owner::Casadi) {
         eprintln!("{} {}: CasADi's best is {}", robot.name, function.title(), casadi.variant);
     }
     format!("| {} |", cells.join(" | "))

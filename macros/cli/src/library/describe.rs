@@ -5,10 +5,10 @@ use linkwork_compiler::export::without_links;
 use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
-/// Returns the description as JSON.
+/// Returns the description of the mechanism as JSON.
 pub fn description(known: &Known<'_, '_>) -> String {
     let m = known.model;
-    let label = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
+    let names_with_units = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
         let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
         names.into_iter().zip(units).map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
     };
@@ -16,22 +16,29 @@ pub fn description(known: &Known<'_, '_>) -> String {
         list.iter().map(String::as_str).collect()
     }
     let docs = super::functions::docs(&known.source.mechanism.shell.attributes);
-    let unit_of = |function: &str| {
+    let unit_of_output = |function: &str| {
         let at = m.outputs.iter().position(|output| output.name == function)?;
         m.units.outputs.get(at).cloned()
     };
-    let functions: Vec<Value> = known.functions.iter().map(|f| of_function(f, unit_of(&f.name))).collect();
+    let functions: Vec<Value> =
+        known.functions.iter().map(|f| of_function(f, unit_of_output(&f.name))).collect();
     let all = json!({
         "name": known.input.declaration.name,
         "prefix": known.prefix,
         "version": env!("CARGO_PKG_VERSION"),
         "number": known.number(),
         "documentation": without_links(&docs.join("\n\n")),
-        "configuration": label(plain(&m.configuration), &m.units.configuration),
-        "velocities": label(m.velocities.iter().map(|(name, _)| name.as_str()).collect(), &m.units.velocities),
-        "inputs": label(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
-        "parameters": label(plain(&m.parameters), &m.units.parameters),
-        "outputs": label(m.outputs.iter().map(|output| output.name.as_str()).collect(), &m.units.outputs),
+        "configuration": names_with_units(plain(&m.configuration), &m.units.configuration),
+        "velocities": names_with_units(
+            m.velocities.iter().map(|(name, _)| name.as_str()).collect(),
+            &m.units.velocities,
+        ),
+        "inputs": names_with_units(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
+        "parameters": names_with_units(plain(&m.parameters), &m.units.parameters),
+        "outputs": names_with_units(
+            m.outputs.iter().map(|output| output.name.as_str()).collect(),
+            &m.units.outputs,
+        ),
         "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
         "limits": m.limits.iter().map(limit).collect::<Vec<_>>(),
         "constraints": m.constraints.len(),

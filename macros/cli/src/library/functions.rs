@@ -5,25 +5,25 @@ use quote::ToTokens;
 use std::fmt::Write;
 use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Type};
 
-/// Kind of an argument.
+/// Kind of an argument of a library function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Number passed by value.
     Number,
     /// Matrix with this number of rows and columns.
     Matrix(usize, usize),
-    /// Selection of velocities, by nonzero entries.
+    /// Selection of velocities: nonzero entries are selected.
     Marks,
-    /// Index of a frame.
+    /// Frame, passed by its index.
     Frame,
 }
 
-/// Function with an interface of plain arrays.
+/// Function of the exported library, with an interface of plain arrays.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Name.
+    /// Name of the function.
     pub name: String,
-    /// Paragraphs of documentation.
+    /// Paragraphs of the function's documentation.
     pub docs: Vec<String>,
     /// Names and kinds of the arguments.
     pub arguments: Vec<(String, Kind)>,
@@ -31,7 +31,7 @@ pub struct Function {
     pub results: Vec<(String, Vec<usize>)>,
     /// Call expression of `m` that reads the arguments from `g`.
     pub call: String,
-    /// Call expression for several states in SIMD lanes, if it exists.
+    /// Expression that calls the function for several states in SIMD lanes, if such a function exists.
     pub lanes: Option<String>,
 }
 
@@ -86,8 +86,7 @@ fn asks(bounds: Option<&syn::WhereClause>) -> bool {
     bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
 }
 
-/// Returns true for a function of several states at once: their number is a generic parameter. An output may
-/// have such a name as well.
+/// Returns whether a function evaluates several states at once: its number of states is a const parameter.
 fn has_lanes(function: &syn::ImplItemFn) -> bool {
     function.sig.generics.const_params().next().is_some()
 }
@@ -146,8 +145,9 @@ pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
     let text: Vec<String> = lines.map(|line| line.trim().to_string()).collect();
     let text = text.join("\n");
     // List items remain on separate lines.
-    let joined = |text: &str| text.trim().replace("\n- ", "\0- ").replace('\n', " ").replace('\0', "\n");
-    let paragraphs = text.split("\n\n").map(joined);
+    let join_paragraph_lines =
+        |text: &str| text.trim().replace("\n- ", "\0- ").replace('\n', " ").replace('\0', "\n");
+    let paragraphs = text.split("\n\n").map(join_paragraph_lines);
     paragraphs.filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
@@ -252,7 +252,7 @@ fn shape(kind: &Type) -> Option<Vec<usize>> {
     }
 }
 
-/// Returns the shapes of all results.
+/// Returns the shapes of all results of a function with this return type.
 fn shapes(kind: &Type) -> Option<Vec<Vec<usize>>> {
     if let Type::Tuple(tuple) = kind {
         if tuple.elems.is_empty() || tuple.elems.len() > 6 {

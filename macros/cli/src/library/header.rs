@@ -1,4 +1,4 @@
-//! C header of the library.
+//! C header of an exported library.
 
 use super::{Function, Kind, Known};
 use linkwork_compiler::export::{in_comment, in_comment_lines};

@@ -24,25 +24,25 @@ use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Generated crate.
+/// Crate of an exported library.
 pub struct Crate {
-    /// Prefix of names.
+    /// Prefix of the library's C names.
     pub prefix: String,
-    /// Files: path within the crate, and text.
+    /// Files of the crate: path within the crate, and text.
     pub files: Vec<(&'static str, String)>,
     /// Rust functions that the library does not have.
     pub left_out: Vec<String>,
 }
 
-/// Data of the mechanism for the generation.
+/// Data of the mechanism from which the crate is generated.
 struct Known<'a, 'g> {
     input: &'a Input,
     source: &'a Source,
     model: &'a Model<'g>,
     prefix: &'a str,
-    /// Values of the tables.
+    /// Values of the tables of the mechanism.
     tables: Vec<Grid>,
-    /// Functions, in the order of their indices.
+    /// Exported functions, in the order of their indices.
     functions: Vec<Function>,
     left_out: Vec<String>,
     equations: String,
@@ -168,54 +168,55 @@ fn frames(model: &Model<'_>) -> Vec<Function> {
         return Vec::new();
     }
     let (nq, nv) = (model.nq(), model.nv());
-    let q = || ("q".to_string(), Kind::Matrix(nq, 1));
-    let v = || ("v".to_string(), Kind::Matrix(nv, 1));
-    let a = || ("a".to_string(), Kind::Matrix(nv, 1));
+    let configuration_argument = || ("q".to_string(), Kind::Matrix(nq, 1));
+    let velocity_argument = || ("v".to_string(), Kind::Matrix(nv, 1));
+    let acceleration_argument = || ("a".to_string(), Kind::Matrix(nv, 1));
     let time = model.time.then(|| ("t".to_string(), Kind::Number));
-    let one = |name: &str, function: &str, rest: Vec<(String, Kind)>, shape: Vec<usize>, about: &str| {
-        let arguments: Vec<(String, Kind)> =
-            [("frame".to_string(), Kind::Frame)].into_iter().chain(time.clone()).chain(rest).collect();
-        let at = if model.time { "given(g, 1)" } else { "0.0" };
-        let first = if model.time { 2 } else { 1 };
-        let states: Vec<String> = (first..arguments.len()).map(|k| format!("&given(g, {k})")).collect();
-        Function {
-            name: name.to_string(),
-            docs: vec![about.to_string()],
-            call: format!("linkwork::Frames::{function}(m, frame(g)?, {at}, {})", states.join(", ")),
-            arguments,
-            results: vec![("result".to_string(), shape)],
-            lanes: None,
-        }
-    };
+    let frame_function =
+        |name: &str, function: &str, rest: Vec<(String, Kind)>, shape: Vec<usize>, about: &str| {
+            let arguments: Vec<(String, Kind)> =
+                [("frame".to_string(), Kind::Frame)].into_iter().chain(time.clone()).chain(rest).collect();
+            let at = if model.time { "given(g, 1)" } else { "0.0" };
+            let first = if model.time { 2 } else { 1 };
+            let states: Vec<String> = (first..arguments.len()).map(|k| format!("&given(g, {k})")).collect();
+            Function {
+                name: name.to_string(),
+                docs: vec![about.to_string()],
+                call: format!("linkwork::Frames::{function}(m, frame(g)?, {at}, {})", states.join(", ")),
+                arguments,
+                results: vec![("result".to_string(), shape)],
+                lanes: None,
+            }
+        };
     vec![
-        one(
+        frame_function(
             "frame_placement",
             "placement_of",
-            vec![q()],
+            vec![configuration_argument()],
             vec![4, 4],
             "Placement of a frame in the ground: a matrix of four rows and columns with its axes and its \
              origin, m.",
         ),
-        one(
+        frame_function(
             "frame_velocity",
             "velocity_of",
-            vec![q(), v()],
+            vec![configuration_argument(), velocity_argument()],
             vec![6],
             "Velocity of a frame: of its origin, m/s, then angular, rad/s; relative to the ground, in ground \
              axes.",
         ),
-        one(
+        frame_function(
             "frame_acceleration",
             "acceleration_of",
-            vec![q(), v(), a()],
+            vec![configuration_argument(), velocity_argument(), acceleration_argument()],
             vec![6],
             "Acceleration of a frame: of its origin, m/s², then angular, rad/s²; relative to the ground, in \
              ground axes; without gravity.",
         ),
-        one(
+        frame_function(
             "frame_jacobian",
             "jacobian_of",
-            vec![q()],
+            vec![configuration_argument()],
             vec![6, nv],
             "Jacobian of a frame: `frame_velocity` is this times `v`.",
         ),
@@ -228,7 +229,7 @@ fn limits(model: &Model<'_>) -> Vec<Function> {
         return Vec::new();
     }
     let (nq, nv) = (model.nq(), model.nv());
-    let one = |name: &str, about: &str, takes: Option<(&str, usize)>| Function {
+    let limit_function = |name: &str, about: &str, takes: Option<(&str, usize)>| Function {
         name: name.to_string(),
         docs: vec![about.to_string()],
         call: match takes {
@@ -240,38 +241,47 @@ fn limits(model: &Model<'_>) -> Vec<Function> {
         lanes: None,
     };
     vec![
-        one(
+        limit_function(
             "lower_limits",
             "Lower bounds of the coordinates, in the order of `v`; infinite where there are none.",
             None,
         ),
-        one(
+        limit_function(
             "upper_limits",
             "Upper bounds of the coordinates, in the order of `v`; infinite where there are none.",
             None,
         ),
-        one("velocity_limits", "Largest rates, in both directions; infinite where there are none.", None),
-        one(
+        limit_function(
+            "velocity_limits",
+            "Largest rates, in both directions; infinite where there are none.",
+            None,
+        ),
+        limit_function(
             "effort_limits",
             "Largest forces and torques, in both directions; infinite where there are none.",
             None,
         ),
-        one("clamp_configuration", "The configuration within its bounds.", Some(("q", nq))),
-        one("clamp_velocity", "The velocity within its bounds.", Some(("v", nv))),
-        one("clamp_effort", "Forces and torques within their bounds.", Some(("tau", nv))),
+        limit_function("clamp_configuration", "The configuration within its bounds.", Some(("q", nq))),
+        limit_function("clamp_velocity", "The velocity within its bounds.", Some(("v", nv))),
+        limit_function("clamp_effort", "Forces and torques within their bounds.", Some(("tau", nv))),
     ]
 }
 
 /// Returns the functions for steps of the classical Runge–Kutta method.
 fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [model.nq(), model.nv(), model.nu()];
-    let vector = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
+    let vector_argument = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
     let time = model.time.then(|| ("t".to_string(), Kind::Number));
-    let state = [vector("q", nq), vector("v", nv), vector("u", nu), ("h".to_string(), Kind::Number)];
+    let state = [
+        vector_argument("q", nq),
+        vector_argument("v", nv),
+        vector_argument("u", nu),
+        ("h".to_string(), Kind::Number),
+    ];
     let arguments: Vec<(String, Kind)> = time.into_iter().chain(state).collect();
     let first = usize::from(model.time);
     let at = if model.time { "given(g, 0)" } else { "0.0" };
-    let call = |function: &str| {
+    let format_step_call = |function: &str| {
         format!(
             "linkwork::discrete::{function}(m, &linkwork::integrate::Rk4::step(given(g, {})), {at}, \
              &given(g, {first}), &given(g, {}), &given(g, {}))",
@@ -289,10 +299,10 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
         ],
         arguments: arguments.clone(),
         results: vec![("q".to_string(), vec![nq]), ("v".to_string(), vec![nv])],
-        call: call("step"),
+        call: format_step_call("step"),
         lanes: None,
     };
-    let part = |name: &str, columns| (name.to_string(), vec![nv, columns]);
+    let derivative_block = |name: &str, columns| (name.to_string(), vec![nv, columns]);
     let transition = Function {
         name: "transition".to_string(),
         docs: vec![
@@ -305,14 +315,14 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
         results: vec![
             ("q".to_string(), vec![nq]),
             ("v".to_string(), vec![nv]),
-            part("q_by_q", nv),
-            part("q_by_v", nv),
-            part("q_by_u", nu),
-            part("v_by_q", nv),
-            part("v_by_v", nv),
-            part("v_by_u", nu),
+            derivative_block("q_by_q", nv),
+            derivative_block("q_by_v", nv),
+            derivative_block("q_by_u", nu),
+            derivative_block("v_by_q", nv),
+            derivative_block("v_by_v", nv),
+            derivative_block("v_by_u", nu),
         ],
-        call: call("transition"),
+        call: format_step_call("transition"),
         lanes: None,
     };
     std::iter::once(step).chain(with_jacobians.then_some(transition)).collect()

@@ -78,25 +78,25 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
     Ok(prettyplease::unparse(&syn::parse_str(&text)?))
 }
 
-/// Returns a row of the function table.
+/// Returns the row of a function in the library's function table.
 fn row(f: &Function, nv: usize) -> String {
     let arguments: Vec<String> =
         f.arguments.iter().map(|(_, kind)| Function::length(kind, nv).to_string()).collect();
     let results: Vec<String> =
         f.results.iter().map(|(_, shape)| shape.iter().product::<usize>().to_string()).collect();
-    let body = |call: &str| {
+    let format_row_closure = |call: &str| {
         let g = if f.arguments.is_empty() { "_" } else { "g" };
         format!("|m, {g}, to| Results::give({call}, to)")
     };
     let eight = f.lanes.as_ref().map_or("None".to_string(), |call| {
         let call = call.replacen("_lanes(", "_lanes::<8>(", 1);
-        format!("Some({})", body(&call))
+        format!("Some({})", format_row_closure(&call))
     });
     format!(
         "Function {{ arguments: &[{}], results: &[{}], one: {}, eight: {eight} }},\n",
         arguments.join(", "),
         results.join(", "),
-        body(&f.call)
+        format_row_closure(&f.call)
     )
 }
 
@@ -112,18 +112,18 @@ fn made(known: &Known<'_, '_>) -> String {
     let fields = by_field(&known.model.parameters);
     let own: Vec<String> =
         shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
-    let index = |field: &str| {
+    let index_of_field = |field: &str| {
         fields.get(field.trim_start_matches("r#")).and_then(|all| all.first()).copied().unwrap_or(usize::MAX)
     };
     if shell.file_fields.is_empty() {
-        let numbers = own.iter().map(|field| format!("{field}: parameter({})", index(field)));
+        let numbers = own.iter().map(|field| format!("{field}: parameter({})", index_of_field(field)));
         let tables = tables.iter().map(|[field, table]| format!("{field}: {table}"));
         return format!("{unused}{name} {{ {} }}", numbers.chain(tables).collect::<Vec<_>>().join(", "));
     }
     if !has_numbers && own.is_empty() && tables.is_empty() {
         return format!("{unused}{name}::FILE");
     }
-    let numbers = own.iter().map(|field| format!("parameter({})", index(field)));
+    let numbers = own.iter().map(|field| format!("parameter({})", index_of_field(field)));
     let tables = tables.iter().map(|[_, table]| table.clone());
     let values: Vec<String> = numbers.chain(tables).collect();
     if !has_numbers {
@@ -136,7 +136,7 @@ fn made(known: &Known<'_, '_>) -> String {
     text + "m"
 }
 
-/// Returns the tables as constants.
+/// Returns the Rust text of the mechanism's tables as constants.
 fn tables(known: &Known<'_, '_>) -> String {
     let mut text = String::new();
     for (k, grid) in known.tables.iter().enumerate() {

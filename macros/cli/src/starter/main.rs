@@ -29,12 +29,13 @@ pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
     let cart_pole = CartPole { pole_length: 1.0 };
     // Initial configuration q and velocity v, whose entries are named by `CartPole::CONFIGURATION` and
     // `CartPole::VELOCITIES`.
-    let motion = || simulate(&cart_pole).from([0.0, 0.2], [0.0, 0.0]).duration(8.0).sample_every(1.0 / 60.0);
-    let falls: Vec<_> = motion().collect::<Result<_, _>>()?;
+    let simulate_cart_pole =
+        || simulate(&cart_pole).from([0.0, 0.2], [0.0, 0.0]).duration(8.0).sample_every(1.0 / 60.0);
+    let falls: Vec<_> = simulate_cart_pole().collect::<Result<_, _>>()?;
     // At positive angles the pole leans to the left, and the cart must follow it.
     let controller =
         |_t, q: &SVector<f64, 2>, v: &SVector<f64, 2>| [q[0] + 2.0 * v[0] - 30.0 * q[1] - 8.0 * v[1]].into();
-    let stands: Vec<_> = motion().inputs(controller).collect::<Result<_, _>>()?;
+    let stands: Vec<_> = simulate_cart_pole().inputs(controller).collect::<Result<_, _>>()?;
     let page = Page::new("A cart with a pole")
         .text("Drag to rotate, scroll to zoom; the space bar plays and stops.");
     let falls = Motion::of("It falls", &cart_pole, &falls)?.trail("pole", [0.0, 1.0, 0.0], 1.0)?;

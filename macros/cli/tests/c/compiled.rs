@@ -15,13 +15,13 @@ pub struct Entry {
 
 /// Exported mechanism with the calls to be compared.
 pub struct Case {
-    /// Prefix of identifiers and files.
+    /// Prefix of identifiers and of file names.
     pub prefix: &'static str,
     pub parameters: Vec<f64>,
     /// C initialisers of tables, and the C arrays that they refer to.
     pub tables: [&'static str; 2],
     pub time: Option<f64>,
-    /// Arguments, by name.
+    /// Values of the arguments, by name.
     pub given: Vec<(&'static str, Vec<f64>)>,
     pub entries: Vec<Entry>,
     /// Maximum error of the results, relative to the largest entry of each.
@@ -31,7 +31,7 @@ pub struct Case {
 /// Returns a C program that prints the results of all calls, one line per call.
 pub fn program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
-    let list = |numbers: &[f64]| {
+    let format_number_list = |numbers: &[f64]| {
         let texts: Vec<String> = numbers.iter().map(|x| format!("({scalar}){x:?}")).collect();
         texts.join(", ")
     };
@@ -44,13 +44,16 @@ pub fn program(case: &Case, scalar: &str) -> String {
         true => "",
         false => {
             let [arrays, tables] = case.tables;
-            let _ =
-                writeln!(text, "{arrays}    static const {p} self = {{{}{tables}}};", list(&case.parameters));
+            let _ = writeln!(
+                text,
+                "{arrays}    static const {p} self = {{{}{tables}}};",
+                format_number_list(&case.parameters)
+            );
             "&self, "
         }
     };
     for (name, numbers) in case.given.iter().filter(|(_, numbers)| !numbers.is_empty()) {
-        let _ = writeln!(text, "    static const {scalar} {name}[] = {{{}}};", list(numbers));
+        let _ = writeln!(text, "    static const {scalar} {name}[] = {{{}}};", format_number_list(numbers));
     }
     for (name, _) in case.given.iter().filter(|(_, numbers)| numbers.is_empty()) {
         let _ = writeln!(text, "    static const {scalar} {name}[1] = {{0}};");
@@ -91,9 +94,10 @@ pub fn program(case: &Case, scalar: &str) -> String {
 }
 
 pub fn compilers() -> Vec<&'static str> {
-    let works = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
-    let known: Vec<&str> = ["gcc", "clang"].into_iter().filter(works).collect();
-    if known.is_empty() { ["cc"].into_iter().filter(works).collect() } else { known }
+    let is_compiler_available =
+        |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
+    let known: Vec<&str> = ["gcc", "clang"].into_iter().filter(is_compiler_available).collect();
+    if known.is_empty() { ["cc"].into_iter().filter(is_compiler_available).collect() } else { known }
 }
 
 pub fn folder(name: &str) -> PathBuf {
@@ -133,8 +137,9 @@ pub fn printed(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str
     let run = Command::new(&executable).output().expect("the program starts");
     assert!(run.status.success(), "{p}: {}", run.status);
     let text = String::from_utf8_lossy(&run.stdout).into_owned();
-    let line = |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    text.lines().map(line).collect()
+    let parse_numbers_of_line =
+        |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+    text.lines().map(parse_numbers_of_line).collect()
 }
 
 pub fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {

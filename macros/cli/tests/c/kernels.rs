@@ -10,17 +10,18 @@ const STATES: usize = 3;
 
 /// Returns the C++ compilers.
 pub fn compilers() -> Vec<&'static str> {
-    let works = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
-    ["g++", "clang++"].into_iter().filter(works).collect()
+    let is_compiler_available =
+        |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
+    ["g++", "clang++"].into_iter().filter(is_compiler_available).collect()
 }
 
 /// Returns a C++ program that prints the results of all calls for the last state of a batch.
 fn program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
     // Other states have other values.
-    let batch = |numbers: &[f64]| {
-        let scale = |k: usize| (k + 1) as f64 / STATES as f64;
-        let states = numbers.iter().flat_map(|x| (0..STATES).map(move |k| x * scale(k)));
+    let format_batch_numbers = |numbers: &[f64]| {
+        let scale_of_state = |k: usize| (k + 1) as f64 / STATES as f64;
+        let states = numbers.iter().flat_map(|x| (0..STATES).map(move |k| x * scale_of_state(k)));
         let texts: Vec<String> = states.map(|x| format!("({scalar}){x:?}")).collect();
         if texts.is_empty() { "0".to_string() } else { texts.join(", ") }
     };
@@ -32,13 +33,20 @@ fn program(case: &Case, scalar: &str) -> String {
     let [arrays, tables] = case.tables;
     text.push_str(arrays);
     for (name, numbers) in &case.given {
-        let _ =
-            writeln!(text, "    static const number {name}[] = {{{}}};\n    (void){name};", batch(numbers));
+        let _ = writeln!(
+            text,
+            "    static const number {name}[] = {{{}}};\n    (void){name};",
+            format_batch_numbers(numbers)
+        );
     }
     let own = match case.parameters.is_empty() {
         true => String::new(),
         false => {
-            let _ = writeln!(text, "    static const number own[] = {{{}}};", batch(&case.parameters));
+            let _ = writeln!(
+                text,
+                "    static const number own[] = {{{}}};",
+                format_batch_numbers(&case.parameters)
+            );
             let mut list = "own, ".to_string();
             for (k, table) in split_tables(tables).iter().enumerate() {
                 let _ = writeln!(text, "    static const {p}_device::{p}_table table{k} = {table};");
@@ -105,8 +113,9 @@ fn printed(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Vec<f64>> 
     let run = Command::new(&executable).output().expect("the program starts");
     assert!(run.status.success(), "{p}: {}", run.status);
     let text = String::from_utf8_lossy(&run.stdout).into_owned();
-    let line = |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    text.lines().map(line).collect()
+    let parse_numbers_of_line =
+        |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+    text.lines().map(parse_numbers_of_line).collect()
 }
 
 /// Exports kernels, compiles them for the processor and compares.

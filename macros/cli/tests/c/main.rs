@@ -17,7 +17,7 @@ fn numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
 }
 
-/// Calls of functions that every mechanism has.
+/// Expands to calls of the functions that every mechanism has.
 macro_rules! functions {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident) => {
         vec![
@@ -40,7 +40,7 @@ macro_rules! functions {
     };
 }
 
-/// Calls of functions of tree mechanisms.
+/// Expands to calls of the functions of tree mechanisms.
 macro_rules! of_trees {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident, $u:ident) => {{
         let (by_q, by_v) = $m.inverse_dynamics_derivatives($($t,)? &$q, &$v, &$a);
@@ -81,12 +81,12 @@ macro_rules! case {
     ($prefix:literal, $kind:ident, $m:expr, [$($p:expr),*], time($($t:ident = $time:expr)?), $functions:ident) => {{
         let m = &$m;
         $(let $t: f64 = $time;)?
-        let some = |n: usize, seed: f64| numbers(n, seed);
-        let q = m.integrate(&m.neutral(), &vector::<{ $kind::NV }>(&some($kind::NV, 0.3)));
-        let v = vector::<{ $kind::NV }>(&some($kind::NV, 1.1));
-        let a = vector::<{ $kind::NV }>(&some($kind::NV, 2.2));
-        let tau = vector::<{ $kind::NV }>(&some($kind::NV, 0.7)) * 10.0;
-        let u = vector::<{ $kind::NU }>(&some($kind::NU, 0.9));
+        let sample_numbers = |n: usize, seed: f64| numbers(n, seed);
+        let q = m.integrate(&m.neutral(), &vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.3)));
+        let v = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 1.1));
+        let a = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 2.2));
+        let tau = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.7)) * 10.0;
+        let u = vector::<{ $kind::NU }>(&sample_numbers($kind::NU, 0.9));
         let moved = m.integrate(&q, &a);
         let mut entries = functions!(m($($t)?), q, v, a, tau);
         entries.extend($functions!(m($($t)?), q, v, a, tau, u));
@@ -126,14 +126,15 @@ fn by_length<const NQ: usize, const NV: usize>(
     };
     let sides: Vec<[Vec<f64>; 2]> =
         [1.0, 2.0, 3.0].iter().map(|k| [change_at(k * d), change_at(-k * d)]).collect();
-    let slope = |i: usize| {
-        let part = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
-        (part(0, 45.0) + part(1, -9.0) + part(2, 1.0)) / (60.0 * d)
+    let finite_difference_by_length = |i: usize| {
+        let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
+        (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
+            / (60.0 * d)
     };
-    (0..2 * NV).map(slope).collect()
+    (0..2 * NV).map(finite_difference_by_length).collect()
 }
 
-/// Calls of steps and of their Jacobians.
+/// Expands to calls of discrete steps and of their Jacobians.
 macro_rules! steps {
     ($kind:ident, $m:expr, $case:ident) => {{
         const NX: usize = 2 * $kind::NV;
@@ -213,22 +214,31 @@ where
     M: Frames<NQ, NV, Scalar = f64>,
 {
     let (t, last) = (time.unwrap_or(0.0), M::FRAMES.len() - 1);
-    let placement = |frame| {
+    let frame_placement = |frame| {
         let x = m.placement_of(frame, t, &q).expect("there is such a frame");
         [x.rotation.matrix().as_slice(), x.translation.vector.as_slice()].concat()
     };
-    let entry = |name, arguments, result| Entry { name, arguments, results: vec![result], returned: false };
+    let single_result_entry =
+        |name, arguments, result| Entry { name, arguments, results: vec![result], returned: false };
     let some = "there is such a frame";
     vec![
-        entry("frame_placement 0", "q", placement(0)),
-        entry("frame_placement last", "q", placement(last)),
-        entry("frame_velocity last", "q, v", m.velocity_of(last, t, &q, &v).expect(some).as_slice().to_vec()),
-        entry(
+        single_result_entry("frame_placement 0", "q", frame_placement(0)),
+        single_result_entry("frame_placement last", "q", frame_placement(last)),
+        single_result_entry(
+            "frame_velocity last",
+            "q, v",
+            m.velocity_of(last, t, &q, &v).expect(some).as_slice().to_vec(),
+        ),
+        single_result_entry(
             "frame_acceleration last",
             "q, v, a",
             m.acceleration_of(last, t, &q, &v, &a).expect(some).as_slice().to_vec(),
         ),
-        entry("frame_jacobian last", "q", m.jacobian_of(last, t, &q).expect(some).as_slice().to_vec()),
+        single_result_entry(
+            "frame_jacobian last",
+            "q",
+            m.jacobian_of(last, t, &q).expect(some).as_slice().to_vec(),
+        ),
     ]
 }
 
@@ -299,12 +309,13 @@ fn declared_mechanisms() {
 fn names_that_c_does_not_have() {
     let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
-    let argument = |name: &str| {
+    let argument_values = |name: &str| {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
     };
-    let (q, v, a) = (vector(&argument("q")), vector(&argument("v")), vector(&argument("a")));
-    let (tau, u) = (vector(&argument("tau")), vector(&argument("u")));
+    let (q, v, a) =
+        (vector(&argument_values("q")), vector(&argument_values("v")), vector(&argument_values("a")));
+    let (tau, u) = (vector(&argument_values("tau")), vector(&argument_values("u")));
     let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(&q, &v, &a, &tau);
     case.entries.extend([
         scalar!("short", "q", m.short(&q)),

@@ -1,4 +1,4 @@
-//! Mechanisms that the tests of FMUs read.
+//! Mechanisms whose exported FMUs are tested.
 
 use linkwork::prelude::*;
 
@@ -44,7 +44,7 @@ pub struct Crate {
     floor: Contact,
 }
 
-/// Ball with restitution of impulses.
+/// Balls on each other with Poisson's restitution, which FMUs do not support.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Stack {
     pub bounce: f64,
@@ -56,7 +56,7 @@ pub struct Stack {
     floor: Contact,
 }
 
-/// Links without masses.
+/// Links without masses, whose accelerations are not determined.
 #[mechanism(inertia = none)]
 pub struct Skeleton {
     #[body]

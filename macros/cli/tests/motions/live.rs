@@ -1,4 +1,4 @@
-//! Pages that simulate: their trajectories equal those of the command, and closed forms of contacts.
+//! Tests of live pages: trajectories equal those of the command, and closed forms of contacts.
 
 use super::{folder, linkwork, rows};
 use std::path::{Path, PathBuf};
@@ -54,9 +54,9 @@ const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
 #[test]
 fn pages_and_the_command_compute_the_same_trajectories() {
     let here = folder("live");
-    let models = |file: &str| format!("{MODELS}/{file}");
+    let model_path = |file: &str| format!("{MODELS}/{file}");
     let [loop_, disk, rotor, arm] =
-        ["src/four_bar.rs", "src/rolling_disk.rs", "src/quadrotor.rs", "urdf/ur5.urdf"].map(models);
+        ["src/four_bar.rs", "src/rolling_disk.rs", "src/quadrotor.rs", "urdf/ur5.urdf"].map(model_path);
     let cases: [(&str, &str); 6] = [
         (super::FLAIL, "handle=0.5 v.flight.wx=2 v.chain.wy=-3 q.flight.z=1 u.thrust=3"),
         (super::JUGGLER, "axial=0.25 q.theta=0.4 v.ux=0.3 v.uy=-0.2 v.wx=0.4 v.wz=2 v.bend=-0.6"),
@@ -112,7 +112,7 @@ fn contacts_of_pages_have_their_closed_forms() {
             #[contact(ball.sphere(0.1), ground.plane(z), friction = 0.3)] floor: Contact,
         }";
     std::fs::write(here.join("contacts.rs"), text).unwrap();
-    let run = |name: &str, values: &[&str], seconds: f64| {
+    let simulate_with_values = |name: &str, values: &[&str], seconds: f64| {
         let set: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
         simulated(
             &here,
@@ -123,16 +123,16 @@ fn contacts_of_pages_have_their_closed_forms() {
     };
     // The highest point after the first impact: as long again as half of the fall.
     let fall = (2.0 * 0.9 / 9.81_f64).sqrt();
-    let Some(top) = run("Bouncing", &["q.height=1"], 1.5 * fall) else { return };
+    let Some(top) = simulate_with_values("Bouncing", &["q.height=1"], 1.5 * fall) else { return };
     assert!((top[0] - 0.1 - 0.9 / 4.0).abs() < 1e-3 && top[1].abs() < 5e-3, "{top:?}");
-    let at_rest = run("Bouncing", &["q.height=1"], 3.0).unwrap();
+    let at_rest = simulate_with_values("Bouncing", &["q.height=1"], 3.0).unwrap();
     assert!((at_rest[0] - 0.1).abs() < 1e-5 && at_rest[1].abs() < 1e-5, "{at_rest:?}");
-    let block = run("Sliding", &["q.pose.z=0.05", "v.pose.vx=2"], 1.0).unwrap();
+    let block = simulate_with_values("Sliding", &["q.pose.z=0.05", "v.pose.vx=2"], 1.0).unwrap();
     assert!(
         (block[0] - 4.0 / (2.0 * 0.3 * 9.81)).abs() < 1e-5 && (block[2] - 0.05).abs() < 1e-9,
         "{block:?}"
     );
-    let ball = run("Rolling", &["q.pose.z=0.1", "v.pose.vx=2"], 1.0).unwrap();
+    let ball = simulate_with_values("Rolling", &["q.pose.z=0.1", "v.pose.vx=2"], 1.0).unwrap();
     let energy = (5.0 / 7.0 * 2.0_f64).powi(2) * 1.4;
     assert!((ball[ball.len() - 3] - energy).abs() < 1e-5 && (ball[2] - 0.1).abs() < 1e-9, "{ball:?}");
 }
@@ -195,8 +195,8 @@ fn a_browser_simulates_the_page() {
         println!("skipped: this browser does not start without a screen");
         return;
     }
-    let is_said = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
-    let console: Vec<&str> = log.lines().filter(is_said).collect();
+    let is_console_message = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
+    let console: Vec<&str> = log.lines().filter(is_console_message).collect();
     assert!(console.is_empty(), "{console:?}");
     assert!(dom.contains("data-ready=\"true\"") && !dom.contains("class=\"failure\""), "{dom}");
     assert_eq!(dom.matches("class=\"row\"").count(), 5 + 4, "sliders of parameters and of the initial state");

@@ -9,36 +9,37 @@ const MOST: usize = 200;
 
 /// Maximum number of items for which every first extraction is tried.
 const FEW: usize = 10;
-/// Maximum nesting depth of parentheses.
+/// Maximum nesting depth of parentheses that common factors introduce.
 const NESTED: usize = 3;
 
 /// Selection of the items of a sum from which common factors are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FactorScope {
-    /// Takes common factors out of all items: for an equation.
+    /// Common factors are extracted from all items, as for an equation.
     All,
-    /// Takes common factors out of items of the same nonzero degree in rates, but never rates and positions:
-    /// for an energy.
+    /// Common factors are extracted from items of the same nonzero degree in velocities, but never velocities
+    /// and positions themselves, as for an energy.
     Kinds,
-    /// Takes no common factors out of the sum, and only shortens its coefficients: for a linear form.
+    /// No common factors are extracted from the sum; only its coefficients are shortened, as for a linear
+    /// form.
     None,
 }
 
-/// Takes common factors out of a sum and of the sums in its items.
+/// Extracts common factors from a sum and from the sums in its items.
 pub fn gathered(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
     let kept = if scope == FactorScope::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };
     factor_sums(&rules, &mut items);
-    let kind = |item: &Item| item.factor.only(order.rates).degree();
+    let degree_of_rates = |item: &Item| item.factor.only(order.rates).degree();
     let mut kinds: Vec<u32> = match scope {
         FactorScope::All => return gather(&rules, items),
-        FactorScope::Kinds => items.iter().map(kind).collect(),
+        FactorScope::Kinds => items.iter().map(degree_of_rates).collect(),
         FactorScope::None => return items,
     };
     kinds.dedup();
     let mut out = Vec::new();
     for n in kinds {
-        let (alike, rest) = items.into_iter().partition(|item| kind(item) == n);
+        let (alike, rest) = items.into_iter().partition(|item| degree_of_rates(item) == n);
         items = rest;
         out.extend(if n == 0 { alike } else { gather(&rules, alike) });
     }
@@ -55,13 +56,13 @@ struct Rules<'a> {
 }
 
 impl Rules<'_> {
-    /// Returns the rules for a sum in parentheses: one level less is allowed.
+    /// Returns the rules for a sum in parentheses, which may contain one level of parentheses less.
     fn inner(&self) -> Self {
         Rules { room: self.room.saturating_sub(1), ..*self }
     }
 }
 
-/// Takes common factors out of the sums within items.
+/// Extracts common factors from the sums within items.
 fn factor_sums(rules: &Rules<'_>, items: &mut [Item]) {
     let inner = rules.inner();
     for item in items {
@@ -91,7 +92,7 @@ fn unwrap(item: &mut Item) {
     }
 }
 
-/// Takes common factors out of a sum, except the atoms in `rules.kept`. In a short sum, every group is tried
+/// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group is tried
 /// as the first one, and the shortest result is used.
 fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
     let mut best = greedily(rules, items.clone());
@@ -127,7 +128,7 @@ struct Group {
     members: Vec<usize>,
     /// The sum of the members, with the common factor taken out.
     whole: Item,
-    /// Number of printed symbols that this saves.
+    /// Number of printed symbols that the extraction of the factor saves.
     saved: usize,
 }
 
@@ -152,14 +153,14 @@ fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<I
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
 fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
-    let size = |items: &[Item]| rules.order.size(items);
-    let group = |members: Vec<usize>| {
+    let size_of_items = |items: &[Item]| rules.order.size(items);
+    let group_of_members = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
         let whole = combined(rules, &before, members.len() == items.len())?;
-        let saved = size(&before).checked_sub(size(std::slice::from_ref(&whole)))?;
+        let saved = size_of_items(&before).checked_sub(size_of_items(std::slice::from_ref(&whole)))?;
         (saved > 0 && nested(&whole) <= rules.room).then_some(Group { members, whole, saved })
     };
-    candidates(rules, items).into_iter().filter_map(group).collect()
+    candidates(rules, items).into_iter().filter_map(group_of_members).collect()
 }
 
 /// Returns the sets of at least two items that share an atom or a sum.
@@ -209,8 +210,9 @@ fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     }
     let mut inner: Vec<Item> = left.into_iter().flat_map(opened).collect();
     let mut number = common_number(inner.iter().map(|item| item.coefficient));
-    let leads = |item: &Item| item.coefficient < 0.0 && item.factor.meets(rules.order.accelerations);
-    if !whole && inner.first().is_some_and(leads) {
+    let is_negative_acceleration_term =
+        |item: &Item| item.coefficient < 0.0 && item.factor.meets(rules.order.accelerations);
+    if !whole && inner.first().is_some_and(is_negative_acceleration_term) {
         number = -number.abs();
     }
     inner.iter_mut().for_each(|item| item.coefficient /= number);
@@ -246,15 +248,15 @@ fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
     if a.power != b.power || a.items.len() != b.items.len() {
         return None;
     }
-    let is = |sign: f64| a.items.iter().all(|x| b.items.iter().any(|y| equal(x, y, sign)));
-    match (is(1.0), is(-1.0)) {
+    let are_equal_with_sign = |sign: f64| a.items.iter().all(|x| b.items.iter().any(|y| equal(x, y, sign)));
+    match (are_equal_with_sign(1.0), are_equal_with_sign(-1.0)) {
         (true, _) => Some(1.0),
         (_, true) => Some(if a.power.is_multiple_of(2) { 1.0 } else { -1.0 }),
         _ => None,
     }
 }
 
-/// Returns true if the second item is the first one times a sign.
+/// Returns whether the second item is the first one times this sign.
 fn equal(a: &Item, b: &Item, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()

@@ -8,29 +8,29 @@ use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
 const NOISE: f64 = 1e-11;
 
-/// Removes terms that are only rounding error: those whose coefficients are small relative to other terms
-/// with the same parameters, the same degree in rates, and an acceleration or none.
+/// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
+/// parameters and the same degrees in velocities and accelerations.
 pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     let parameters = ring.mask(|_, rank| rank == Rank::Parameter);
     let rates = ring.mask(|_, rank| rank >= Rank::Rate);
     let accelerations = ring.mask(|_, rank| rank == Rank::Acceleration);
-    let kind = |t: &Term| {
+    let kind_of_term = |t: &Term| {
         let rates = t.monomial.only(rates);
         (t.monomial.only(parameters), rates.degree(), rates.meets(accelerations))
     };
     let mut largest: Vec<((Monomial, u32, bool), f64)> = Vec::new();
     for term in &p.terms {
-        let (kind, size) = (kind(term), term.coefficient.abs());
+        let (kind, size) = (kind_of_term(term), term.coefficient.abs());
         match largest.iter_mut().find(|(k, _)| *k == kind) {
             Some((_, largest)) => *largest = largest.max(size),
             None => largest.push((kind, size)),
         }
     }
-    let keep = |t: &&Term| {
-        let kind = kind(t);
+    let is_above_rounding_noise = |t: &&Term| {
+        let kind = kind_of_term(t);
         largest.iter().all(|(k, size)| *k != kind || t.coefficient.abs() > NOISE * size)
     };
-    Polynomial { terms: p.terms.iter().filter(keep).copied().collect() }
+    Polynomial { terms: p.terms.iter().filter(is_above_rounding_noise).copied().collect() }
 }
 
 /// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
@@ -85,9 +85,9 @@ fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
     items.extend(alike.iter().map(|(_, group)| item(order, group)));
     let mut terms: Vec<Term> = terms.drain(..).flat_map(|(_, group)| group).collect();
     while let Some(first) = terms.first().copied() {
-        let count = |k: usize| terms.iter().filter(|t| t.monomial.power(k) > 0).count();
+        let count_terms_with_atom = |k: usize| terms.iter().filter(|t| t.monomial.power(k) > 0).count();
         let of_first = order.factors(first.monomial).into_iter().map(|(k, _)| k);
-        let best = of_first.rev().max_by_key(|k| count(*k));
+        let best = of_first.rev().max_by_key(|k| count_terms_with_atom(*k));
         let (group, rest) =
             terms.iter().copied().partition(|t| *t == first || best.is_some_and(|k| t.monomial.power(k) > 0));
         let group: Vec<Term> = group;

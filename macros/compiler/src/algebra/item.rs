@@ -20,9 +20,9 @@ pub struct Item {
 /// A sum in parentheses that is a factor of an item.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
-    /// At least two summands.
+    /// Summands of the sum, at least two.
     pub items: Vec<Item>,
-    /// Exponent: one, or two for a square.
+    /// Exponent of the sum: one, or two for a square.
     pub power: u8,
 }
 
@@ -35,7 +35,7 @@ impl Item {
 
 /// Order of the factors and terms of printed polynomials.
 pub struct Order {
-    /// All atoms, in the order in which factors are printed.
+    /// All atoms of the ring, in the order in which factors are printed.
     pub atoms: Vec<usize>,
     /// Mask of the atoms that are velocities, functions of velocities, accelerations or inputs.
     pub rates: Monomial,
@@ -186,7 +186,7 @@ pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
 }
 
-/// Returns the greatest common divisor.
+/// Returns the greatest common divisor of two numbers.
 pub fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -7,7 +7,7 @@ use crate::expr::node::{Function, Id, Node, Symbol};
 use crate::expr::{Expr, Graph};
 
 const UNKNOWN: u32 = u32::MAX;
-/// Largest multiple of an angle whose sine and cosine are expressed in those of the angle itself.
+/// Largest multiple of an angle whose sine and cosine are expanded in those of the angle itself.
 const MULTIPLE: f64 = 4.0;
 
 /// Cache of normal forms of the expressions of one graph.
@@ -54,35 +54,39 @@ impl<'g> Normal<'g> {
     }
 
     fn rule(&mut self, id: Id) -> Option<Polynomial> {
-        let polynomial = |id: Id| &self.polynomials[self.known[id as usize] as usize];
+        let polynomial_of_node = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
             // This constant only prevents NaN for the direction of a zero-length vector. The equations do not
             // contain it.
             Node::Const(c) if c == TINY => return Some(Polynomial::default()),
             Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
-            Node::Neg(a) => return Some(polynomial(a).scaled(-1.0)),
-            Node::Add(a, b) => return self.ring.plus(polynomial(a), polynomial(b)),
-            Node::Sub(a, b) => return self.ring.plus(polynomial(a), &polynomial(b).scaled(-1.0)),
-            Node::Mul(a, b) => return self.ring.times(polynomial(a), polynomial(b)),
-            Node::Div(a, b) => {
-                let inverse = inverse(&mut self.ring, polynomial(b))?;
-                return self.ring.times(polynomial(a), &inverse);
+            Node::Neg(a) => return Some(polynomial_of_node(a).scaled(-1.0)),
+            Node::Add(a, b) => return self.ring.plus(polynomial_of_node(a), polynomial_of_node(b)),
+            Node::Sub(a, b) => {
+                return self.ring.plus(polynomial_of_node(a), &polynomial_of_node(b).scaled(-1.0));
             }
-            Node::Call(Function::Sin, a) => return wave(&mut self.ring, polynomial(a), false),
-            Node::Call(Function::Cos, a) => return wave(&mut self.ring, polynomial(a), true),
+            Node::Mul(a, b) => return self.ring.times(polynomial_of_node(a), polynomial_of_node(b)),
+            Node::Div(a, b) => {
+                let inverse = inverse(&mut self.ring, polynomial_of_node(b))?;
+                return self.ring.times(polynomial_of_node(a), &inverse);
+            }
+            Node::Call(Function::Sin, a) => return wave(&mut self.ring, polynomial_of_node(a), false),
+            Node::Call(Function::Cos, a) => return wave(&mut self.ring, polynomial_of_node(a), true),
             Node::Symbol(s) => Atom::Symbol(s),
-            Node::Call(f, a) => Atom::Call(f, polynomial(a).clone()),
-            Node::Atan2(a, b) => Atom::Atan2(polynomial(a).clone(), polynomial(b).clone()),
-            Node::Extreme(f, a, b) => Atom::Extreme(f, polynomial(a).clone(), polynomial(b).clone()),
+            Node::Call(f, a) => Atom::Call(f, polynomial_of_node(a).clone()),
+            Node::Atan2(a, b) => Atom::Atan2(polynomial_of_node(a).clone(), polynomial_of_node(b).clone()),
+            Node::Extreme(f, a, b) => {
+                Atom::Extreme(f, polynomial_of_node(a).clone(), polynomial_of_node(b).clone())
+            }
             Node::Table(lookup, a, b, c) => {
                 let arguments = [a, b, c].into_iter().take(lookup.variables());
                 Atom::Table(
                     self.graph.table_name(lookup),
                     lookup,
-                    arguments.map(|a| polynomial(a).clone()).collect(),
+                    arguments.map(|a| polynomial_of_node(a).clone()).collect(),
                 )
             }
-            Node::Pow(a, b) => Atom::Power(polynomial(a).clone(), polynomial(b).clone()),
+            Node::Pow(a, b) => Atom::Power(polynomial_of_node(a).clone(), polynomial_of_node(b).clone()),
             Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..) => {
                 return None;
             }

@@ -25,12 +25,12 @@ const MORE: usize = 20;
 /// A sum is rounding error, and set to zero, if its magnitude relative to its summands is at most this.
 const ROUNDING: f64 = 1e-13;
 
-/// A monomial with its coefficient.
+/// Term of a polynomial: a monomial with its coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
     /// Product of powers of atoms in the term.
     pub monomial: Monomial,
-    /// Coefficient, not zero.
+    /// Coefficient of the term, not zero.
     pub coefficient: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct Wave {
     pub cosine: bool,
 }
 
-/// An indivisible factor of monomials.
+/// Indivisible factor of monomials.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Atom {
@@ -71,17 +71,17 @@ pub enum Rank {
     Parameter,
     /// A position, or another symbol that varies in time.
     Position,
-    /// A function of positions.
+    /// Function of positions.
     Function,
-    /// A rate, or a function of rates.
+    /// Velocity, or a function of velocities.
     Rate,
-    /// A generalized acceleration.
+    /// Generalized acceleration.
     Acceleration,
-    /// An input of the mechanism.
+    /// Input of the mechanism.
     Input,
 }
 
-/// The atoms of a family of polynomials, with the rewrite rules for their products.
+/// Atoms of a family of polynomials, with the rewrite rules for their products.
 pub struct Ring {
     /// The atoms. The arguments of an atom contain earlier atoms only.
     pub atoms: Vec<Atom>,
@@ -94,7 +94,8 @@ pub struct Ring {
     rank: fn(Symbol) -> Rank,
     /// Atoms whose squares are replaced, with the polynomial that replaces the square.
     squares: Vec<(usize, Polynomial)>,
-    /// Bits that are set in a monomial if it contains a power above one of an atom in `squares`.
+    /// Mask of all powers above one of the atoms in `squares`: a monomial that meets it contains such a
+    /// square.
     squared: Monomial,
     /// Pairs of atoms whose product is one.
     inverses: Vec<(usize, usize)>,
@@ -111,7 +112,7 @@ impl Polynomial {
         Polynomial::single(Monomial::ONE, value)
     }
 
-    /// Returns a polynomial of one term, or zero if the coefficient is zero.
+    /// Returns the polynomial of one term; it is zero if the coefficient is zero.
     pub fn single(monomial: Monomial, coefficient: f64) -> Polynomial {
         let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
         Polynomial { terms }
@@ -161,8 +162,8 @@ impl Polynomial {
 
     /// Multiplies a polynomial by a number.
     pub fn scaled(&self, factor: f64) -> Polynomial {
-        let scale = |t: &Term| Term { coefficient: t.coefficient * factor, ..*t };
-        Polynomial { terms: self.terms.iter().map(scale).collect() }
+        let scale_term = |t: &Term| Term { coefficient: t.coefficient * factor, ..*t };
+        Polynomial { terms: self.terms.iter().map(scale_term).collect() }
     }
 
     /// Multiplies a polynomial by one term. This preserves the order of the monomials. `None` if a power
@@ -348,12 +349,12 @@ impl Ring {
     /// left.
     fn reduced(&mut self, mut p: Polynomial) -> Option<Polynomial> {
         loop {
-            let rewrites = |t: &Term| {
+            let is_reducible_term = |t: &Term| {
                 t.monomial.meets(self.squared)
                     || self.cancels(t.monomial).is_some()
                     || self.over_sine(t.monomial).is_some()
             };
-            if !p.terms.iter().any(rewrites) {
+            if !p.terms.iter().any(is_reducible_term) {
                 return (p.terms.len() <= self.terms).then_some(p);
             }
             let mut terms = Vec::with_capacity(p.terms.len() + 4);

@@ -94,9 +94,9 @@ fn product(ring: &Ring, term: &Term, mask: Monomial) -> Product {
 /// Returns the length of a sum: number of terms, number of multiple angles, number of sines and cosines. Sums
 /// are compared in this order.
 fn length(products: &[Product]) -> (usize, usize, usize) {
-    let waves = || products.iter().flat_map(|p| &p.waves);
-    let multiples = waves().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
-    (products.len(), multiples, waves().count())
+    let waves_of_products = || products.iter().flat_map(|p| &p.waves);
+    let multiples = waves_of_products().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
+    (products.len(), multiples, waves_of_products().count())
 }
 
 /// Merges pairs of products until no two of them can be merged.
@@ -160,10 +160,12 @@ fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
 
 /// Returns `x + ratio y` as a product of waves and a factor, if a rule covers it.
 fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
-    let is = |r: f64| is_close(ratio, r);
+    let has_coefficient_ratio = |r: f64| is_close(ratio, r);
     match (x, y) {
-        ([], [a, b]) if a == b && is(-1.0) => Some((vec![Wave { cosine: !a.cosine, ..*a }; 2], 1.0)),
-        ([], [a, b]) if a == b && is(-2.0) => {
+        ([], [a, b]) if a == b && has_coefficient_ratio(-1.0) => {
+            Some((vec![Wave { cosine: !a.cosine, ..*a }; 2], 1.0))
+        }
+        ([], [a, b]) if a == b && has_coefficient_ratio(-2.0) => {
             let sign = if a.cosine { -1.0 } else { 1.0 };
             Some(made(true, sum(a, b, 1), sign))
         }
@@ -178,8 +180,8 @@ fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
 fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
     let (first, second) = if a.angle == c.angle { (c, d) } else { (d, c) };
-    let opposite = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
-    if !opposite(a, first) || !opposite(b, second) {
+    let is_sine_cosine_pair = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
+    if !is_sine_cosine_pair(a, first) || !is_sine_cosine_pair(b, second) {
         return None;
     }
     match (a.cosine, b.cosine) {
@@ -199,15 +201,15 @@ fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     if up.iter().any(|n| n % 2 != 0) {
         return None;
     }
-    let half = |angle: [i8; ANGLES]| angle.map(|n| n / 2);
+    let half_of_angle = |angle: [i8; ANGLES]| angle.map(|n| n / 2);
     let ((first, up), (second, down), factor) = match (a.cosine, sign) {
         (true, 1) => ((true, up), (true, down), 2.0),
         (true, _) => ((false, up), (false, down), -2.0),
         (false, 1) => ((false, up), (true, down), 2.0),
         (false, _) => ((true, up), (false, down), 2.0),
     };
-    let (mut waves, f) = made(first, half(up), factor);
-    let (more, f) = made(second, half(down), f);
+    let (mut waves, f) = made(first, half_of_angle(up), factor);
+    let (more, f) = made(second, half_of_angle(down), f);
     waves.extend(more);
     waves.sort_unstable();
     Some((waves, f))
@@ -215,8 +217,8 @@ fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
 
 /// Replaces `sin 2a` by `2 sin a cos a`, which can be combined with `sin² a` and `cos² a`.
 fn unfolded(mut product: Product) -> Product {
-    let even = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
-    while let Some(k) = product.waves.iter().position(even) {
+    let is_sine_of_even_angle = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
+    while let Some(k) = product.waves.iter().position(is_sine_of_even_angle) {
         let angle = product.waves.remove(k).angle.map(|n| n / 2);
         product.waves.extend([Wave { angle, cosine: false }, Wave { angle, cosine: true }]);
         product.coefficient *= 2.0;
@@ -279,6 +281,6 @@ fn times(p: &Product, b: &Wave) -> Vec<Product> {
         (false, true) => [made(false, up, half), made(false, down, half)],
         (true, false) => [made(false, up, half), made(false, down, -half)],
     };
-    let product = |(waves, coefficient)| Product { waves, coefficient };
-    parts.into_iter().map(product).filter(|p| p.coefficient != 0.0).collect()
+    let product_of_waves = |(waves, coefficient)| Product { waves, coefficient };
+    parts.into_iter().map(product_of_waves).filter(|p| p.coefficient != 0.0).collect()
 }

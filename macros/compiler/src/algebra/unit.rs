@@ -12,8 +12,8 @@ const ROUNDING: f64 = 1e-11;
 /// found. Returns `p` itself if the ring lacks one of the symbols, and `None` if the work limit of the ring
 /// is exceeded.
 pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
-    let place = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
-    let Some(atoms) = symbols.iter().map(place).collect::<Option<Vec<usize>>>() else {
+    let index_of_symbol_atom = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
+    let Some(atoms) = symbols.iter().map(index_of_symbol_atom).collect::<Option<Vec<usize>>>() else {
         return Some(p.clone());
     };
     let squares: Option<Vec<Monomial>> =
@@ -40,16 +40,18 @@ fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<T
     let places: Vec<Monomial> = squares.iter().filter_map(|s| head.times(*s)).chain([head]).collect();
     let coefficient = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
     let before: Vec<f64> = places.iter().map(coefficient).collect();
-    let count = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
+    let count_nonzero = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
     let size = before.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
-    let clean = |c: f64| if c.abs() <= ROUNDING * size { 0.0 } else { c };
+    let round_noise_to_zero = |c: f64| if c.abs() <= ROUNDING * size { 0.0 } else { c };
     let last = before.len().checked_sub(1)?;
     let tries = before.iter().enumerate().map(|(k, c)| if k == last { -c } else { *c });
     let moved = tries.map(|shift| -> Vec<f64> {
         let all = before.iter().enumerate();
-        all.map(|(k, c)| clean(if k == last { c + shift } else { c - shift })).collect()
+        all.map(|(k, c)| round_noise_to_zero(if k == last { c + shift } else { c - shift })).collect()
     });
-    let best = moved.min_by_key(|list| count(list)).filter(|list| count(list) < count(&before))?;
+    let best = moved
+        .min_by_key(|list| count_nonzero(list))
+        .filter(|list| count_nonzero(list) < count_nonzero(&before))?;
     let mut out: Vec<Term> = terms.iter().filter(|t| !places.contains(&t.monomial)).copied().collect();
     let kept = places.iter().zip(best).filter(|(_, coefficient)| *coefficient != 0.0);
     out.extend(kept.map(|(monomial, coefficient)| Term { monomial: *monomial, coefficient }));
@@ -67,34 +69,35 @@ mod tests {
         let mut ring = Ring::new(|_| Rank::Position);
         let symbols = [0, 1, 2, 3].map(Symbol);
         let q = symbols.map(|s| ring.atom(Atom::Symbol(s)).unwrap());
-        let product = |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.times(q[*k])).unwrap();
-        let polynomial = |list: &[(f64, &[usize])]| {
-            let terms = list.iter().map(|(c, m)| Term { monomial: product(m), coefficient: *c });
+        let quaternion_monomial =
+            |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.times(q[*k])).unwrap();
+        let quaternion_polynomial = |list: &[(f64, &[usize])]| {
+            let terms = list.iter().map(|(c, m)| Term { monomial: quaternion_monomial(m), coefficient: *c });
             Polynomial::sum(terms.collect())
         };
         for (from, to) in [
             (
-                polynomial(&[(2.0, &[0, 0]), (2.0, &[1, 1]), (2.0, &[2, 2]), (2.0, &[3, 3])]),
-                polynomial(&[(2.0, &[])]),
+                quaternion_polynomial(&[(2.0, &[0, 0]), (2.0, &[1, 1]), (2.0, &[2, 2]), (2.0, &[3, 3])]),
+                quaternion_polynomial(&[(2.0, &[])]),
             ),
             (
-                polynomial(&[
+                quaternion_polynomial(&[
                     (8.0, &[0, 0, 0, 1]),
                     (8.0, &[0, 1, 1, 1]),
                     (8.0, &[0, 1, 2, 2]),
                     (5.0, &[0, 1, 3, 3]),
                     (1.0, &[2]),
                 ]),
-                polynomial(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
+                quaternion_polynomial(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
             ),
             // One minus three of the squares is the fourth.
             (
-                polynomial(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
-                polynomial(&[(1.0, &[3, 3])]),
+                quaternion_polynomial(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
+                quaternion_polynomial(&[(1.0, &[3, 3])]),
             ),
             (
-                polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
-                polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+                quaternion_polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+                quaternion_polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
             ),
         ] {
             assert_eq!(on_unit_sphere(&mut ring, &from, &symbols), Some(to));

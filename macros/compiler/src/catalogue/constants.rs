@@ -1,4 +1,4 @@
-//! Associated constants of generated types.
+//! Rows of the catalogue for the associated constants of generated types.
 
 use super::facts::{Facts, Need};
 use crate::syntax::Word;
@@ -42,6 +42,10 @@ pub fn is_constant(name: &str) -> bool {
 
 /// Returns the constants that a mechanism with these facts lacks because of a need.
 pub fn absent_constants(need: Need, facts: &Facts) -> Vec<&'static str> {
-    let first = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meet(*need));
-    CONSTANTS.iter().filter(|(_, needs)| first(needs) == Some(need)).map(|(name, _)| *name).collect()
+    let first_unmet_need = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meet(*need));
+    CONSTANTS
+        .iter()
+        .filter(|(_, needs)| first_unmet_need(needs) == Some(need))
+        .map(|(name, _)| *name)
+        .collect()
 }

@@ -83,8 +83,8 @@ fn bias(f: &Facts) -> Argument {
     Argument::Given("bias", Supplied::Bias, constraint_facts(f).all)
 }
 
-/// Returns the argument with the signs of the normal forces of sliding contacts, empty without such
-/// constraints.
+/// Returns the argument with the signs of the normal forces of sliding contacts; the list is empty without
+/// such contacts.
 fn sides(f: &Facts) -> Vec<Argument> {
     let slipping = constraint_facts(f).slipping;
     if slipping > 0 { vec![Argument::Given("sides", Supplied::Side, slipping)] } else { Vec::new() }

@@ -1,4 +1,4 @@
-//! Functions of the option `derivatives`.
+//! Rows of the catalogue for the functions of the option `derivatives`.
 
 use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
@@ -16,7 +16,7 @@ const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
 const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints];
 
-/// Rows of first derivatives of the dynamics.
+/// Rows of the catalogue for the first derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
     Row::derived(
         Id::MassMatrixInverse,
@@ -153,7 +153,7 @@ pub const ROWS: &[Row] = &[
 
 const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
 
-/// Rows of derivatives of momenta.
+/// Rows of the catalogue for the derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
     Row::derived(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
         Declaration {
@@ -184,7 +184,7 @@ const SECOND: &[Need] = &[Need::Inertia, Need::Asks(Word::SecondDerivatives)];
 const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, \
                          with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 
-/// Rows of second derivatives of the dynamics.
+/// Rows of the catalogue for the second derivatives of the dynamics.
 pub const SECOND_ROWS: &[Row] = &[
     Row::derived(Id::InverseDynamicsSecondDerivatives, "inverse_dynamics_second_derivatives", SECOND, |f| {
         Declaration {

@@ -1,4 +1,4 @@
-//! Rows of the functions of every mechanism.
+//! Rows of the catalogue for the functions that every mechanism has.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};

@@ -3,7 +3,7 @@
 use crate::mechanism::Model;
 use crate::syntax::{Requests, Word};
 
-/// A requirement of a function.
+/// Requirement that a mechanism must meet to have a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// The mechanism has masses and inertias.
@@ -97,8 +97,8 @@ impl Need {
     }
 }
 
-/// Maximum number of contact velocities for which the Delassus matrix is generated: the length of its code is
-/// proportional to their square.
+/// Maximum number of contact velocities for which the Delassus matrix is generated. The length of its code is
+/// proportional to the square of their number.
 const FEW_CONTACT_RATES: usize = 36;
 
 /// Facts about a mechanism on which the signatures of its functions depend.
@@ -128,7 +128,8 @@ pub struct Facts {
     pub calls: bool,
     /// True if the linear system is assembled from the derivatives of forward dynamics.
     pub calls_linear: bool,
-    /// Number of derivatives of the passive forces, if these are long enough for a function of their own.
+    /// Number of derivatives of the passive forces; `None` if these forces are too short for a function of
+    /// their own.
     pub passive: Option<usize>,
     /// Number of bodies with standard inertial parameters.
     pub bodies: usize,

@@ -44,7 +44,7 @@ const TABLES: [&[Row]; 13] = [
 /// Number of tables whose functions are generated before the outputs.
 const BEFORE_OUTPUTS: usize = 5;
 
-/// Returns all rows.
+/// Returns all rows of the catalogue.
 pub fn rows() -> impl Iterator<Item = &'static Row> {
     TABLES.into_iter().flatten()
 }

@@ -12,10 +12,10 @@ pub const REACTION: &str = "__reaction_";
 /// Prefix of the hidden function of an output that contains contact forces.
 pub const TOUCHED: &str = "__touched_";
 
-/// Suffix of the Jacobian of an output.
+/// Suffix of the name of an output's Jacobian.
 pub const JACOBIAN: &str = "_jacobian";
 
-/// Suffix of the derivatives of an output.
+/// Suffix of the name of an output's derivatives.
 pub const DERIVATIVES: &str = "_derivatives";
 
 /// Suffix of the parameter derivatives of an output.

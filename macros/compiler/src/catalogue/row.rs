@@ -94,12 +94,12 @@ pub enum Id {
     Part,
 }
 
-/// Origin of the body of a function.
+/// Origin of a function's body.
 #[derive(Clone, Copy)]
 pub enum Made {
-    /// Derived from equations.
+    /// Body derived from equations, which the id selects.
     Derived(Id),
-    /// Handwritten: calls other functions and the runtime.
+    /// Handwritten body, which calls other functions and the runtime.
     Written,
 }
 
@@ -108,9 +108,10 @@ pub enum Made {
 pub struct Row {
     /// Name of the function.
     pub name: &'static str,
-    /// Origin of the body.
+    /// Origin of the function's body.
     pub made: Made,
-    /// Requirements. The first one that is not met is reported as the reason for the absence of the function.
+    /// Requirements of the function. The first requirement that is not met is reported as the reason for its
+    /// absence.
     pub needs: &'static [Need],
     /// Returns arguments, result and documentation for a mechanism with these facts.
     pub declare: fn(&Facts) -> Declaration,
@@ -134,7 +135,7 @@ pub struct Declaration {
     pub docs: Vec<&'static str>,
 }
 
-/// A function of a mechanism with its signature.
+/// Function of a mechanism with its signature.
 #[derive(Clone, Debug)]
 pub struct Declared {
     /// Identifier of the function.
@@ -160,10 +161,10 @@ impl Row {
         Row { name, made: Made::Derived(id), needs, declare, in_trait: None, batched: true }
     }
 
-    /// Creates a row of a handwritten function.
+    /// Creates the row of a handwritten function.
     pub const fn written(name: &'static str, needs: &'static [Need]) -> Row {
-        let declare = |_: &Facts| Declaration::default();
-        Row { name, made: Made::Written, needs, declare, in_trait: None, batched: false }
+        let empty_declaration = |_: &Facts| Declaration::default();
+        Row { name, made: Made::Written, needs, declare: empty_declaration, in_trait: None, batched: false }
     }
 
     /// Adds the function to the runtime's mechanism trait, with these arguments there.
@@ -176,7 +177,7 @@ impl Row {
         Row { batched: false, ..self }
     }
 
-    /// Adds a batched variant.
+    /// Returns the row with a variant for several states.
     pub const fn and_batched(self) -> Row {
         Row { batched: true, ..self }
     }

@@ -1,8 +1,8 @@
-//! Arguments and results of generated functions.
+//! Types of the arguments and results of generated functions.
 
 use crate::mechanism::{Quantity, Supplied};
 
-/// An argument of a generated function, identified by its meaning.
+/// Argument of a generated function, identified by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// Time `t`, s.
@@ -34,17 +34,17 @@ pub enum Argument {
 /// A function of configuration and velocity that other functions call first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Called {
-    /// The function for passive forces.
+    /// Generated function of the passive forces.
     PassiveForces,
     /// The function for the derivatives of passive forces.
     PassiveDerivatives,
 }
 
 impl Called {
-    /// All such functions.
+    /// All functions that other generated functions call.
     pub const ALL: [Called; 2] = [Called::PassiveForces, Called::PassiveDerivatives];
 
-    /// Returns the name of the function.
+    /// Returns the name of the called function.
     pub const fn function(self) -> &'static str {
         match self {
             Called::PassiveForces => "__passive_forces",
@@ -203,7 +203,7 @@ impl Shape {
 
     /// Returns the number of outputs of a program for this result.
     pub fn outputs(self, structure: &Structure) -> usize {
-        let parts = |n: usize| n * structure.inverse.width();
+        let border_entry_count = |n: usize| n * structure.inverse.width();
         match self {
             Shape::Scalar => 1,
             Shape::Vector(n) | Shape::Array(n) => n,
@@ -213,10 +213,10 @@ impl Shape {
             Shape::Hessian(n) => 4 * n * n,
             Shape::Jacobians(rows, n, m) => rows * (3 * n + m),
             Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
-            Shape::Inverse(n) => n * n + parts(n),
-            Shape::Forward(n) => 3 * n * n + parts(n) + n,
+            Shape::Inverse(n) => n * n + border_entry_count(n),
+            Shape::Forward(n) => 3 * n * n + border_entry_count(n) + n,
             Shape::Linear(n, m) => 4 * n * n + n * m,
-            Shape::Accelerated(n) => n + n * n + parts(n),
+            Shape::Accelerated(n) => n + n * n + border_entry_count(n),
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
             Shape::Symmetric(_) => structure.entries.len(),
@@ -279,38 +279,48 @@ impl Record {
 
     /// Returns the fields in the order of the outputs.
     pub fn fields(self) -> Vec<RecordField> {
-        let array = |name, rows| RecordField { name, rows, columns: None };
-        let list = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
+        let vector_record_field = |name, rows| RecordField { name, rows, columns: None };
+        let matrix_record_field = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
         match self {
             Record::Elimination(nv, nc) => vec![
-                array("accelerations", nv),
-                array("multipliers", nc),
-                array("pivots", nc),
-                array("before", nc),
+                vector_record_field("accelerations", nv),
+                vector_record_field("multipliers", nc),
+                vector_record_field("pivots", nc),
+                vector_record_field("before", nc),
             ],
             Record::Responses(nv, nc) => {
-                vec![array("free", nv), array("lacking", nc), list("gram", nc, nc), list("given", nv, nc)]
+                vec![
+                    vector_record_field("free", nv),
+                    vector_record_field("lacking", nc),
+                    matrix_record_field("gram", nc, nc),
+                    matrix_record_field("given", nv, nc),
+                ]
             }
             Record::MotionDerivatives(nv, nc) => vec![
-                list("forces_by_q", nv, nv),
-                list("forces_by_v", nv, nv),
-                list("bias_by_q", nc, nv),
-                list("bias_by_v", nc, nv),
-                list("rates_by_q", nc, nv),
-                list("turning", nv, nv),
+                matrix_record_field("forces_by_q", nv, nv),
+                matrix_record_field("forces_by_v", nv, nv),
+                matrix_record_field("bias_by_q", nc, nv),
+                matrix_record_field("bias_by_v", nc, nv),
+                matrix_record_field("rates_by_q", nc, nv),
+                matrix_record_field("turning", nv, nv),
             ],
             Record::InputDerivatives(nv, nu) => {
-                vec![array("forces", nv), list("by_q", nv, nv), list("by_v", nv, nv), list("by_u", nv, nu)]
+                vec![
+                    vector_record_field("forces", nv),
+                    matrix_record_field("by_q", nv, nv),
+                    matrix_record_field("by_v", nv, nv),
+                    matrix_record_field("by_u", nv, nu),
+                ]
             }
             Record::ContactDerivatives(nv, nr) => vec![
-                list("forces_by_q", nv, nv),
-                list("accelerations_by_q", nr, nv),
-                list("accelerations_by_v", nr, nv),
-                list("rates_by_q", nr, nv),
+                matrix_record_field("forces_by_q", nv, nv),
+                matrix_record_field("accelerations_by_q", nr, nv),
+                matrix_record_field("accelerations_by_v", nr, nv),
+                matrix_record_field("rates_by_q", nr, nv),
             ],
             Record::ConstraintCurvature(nv, nc) => {
-                let [qq, qv, vv, qa] = ["qq", "qv", "vv", "qa"].map(|name| list(name, nv, nv));
-                vec![qq, qv, vv, qa, list("q_lambda", nv, nc)]
+                let [qq, qv, vv, qa] = ["qq", "qv", "vv", "qa"].map(|name| matrix_record_field(name, nv, nv));
+                vec![qq, qv, vv, qa, matrix_record_field("q_lambda", nv, nc)]
             }
         }
     }
@@ -319,7 +329,7 @@ impl Record {
 /// Representation of the inverse mass matrix by the outputs of a program.
 #[derive(Clone, Debug, Default)]
 pub enum InverseForm {
-    /// The columns of the inverse.
+    /// Inverse whose columns are outputs.
     #[default]
     Explicit,
     /// Columns, followed by a row of factors for each velocity, in the order of the given trunk velocities.
@@ -346,10 +356,10 @@ impl InverseForm {
     }
 }
 
-/// Structure of the matrices of a function.
+/// Structure of the matrices that a function returns.
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
-    /// Representation of the inverse mass matrix.
+    /// Form in which the inverse mass matrix is returned.
     pub inverse: InverseForm,
     /// Row and column of the outputs that are entries of a matrix, none of them above the diagonal.
     pub entries: Vec<(usize, usize)>,

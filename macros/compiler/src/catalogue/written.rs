@@ -8,7 +8,7 @@ const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const ASKED_WITHOUT_SPEEDS: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoSpeeds];
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
-/// Rows of constrained dynamics, assembly and projection.
+/// Rows of the catalogue for constrained dynamics, assembly and projection.
 pub const CONSTRAINED: &[Row] = &[
     Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
     Row::written(

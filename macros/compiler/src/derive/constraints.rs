@@ -11,7 +11,7 @@ use crate::mechanism::{Model, Quantity};
 
 pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
 
-/// Returns the Jacobian column by column.
+/// Returns the constraint Jacobian column by column.
 pub(super) fn jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     by_columns(model, &constraints::jacobian(model))
 }
@@ -79,9 +79,9 @@ impl<'g> ContactDerivatives<'g> {
         model: &Model<'g>,
         contacts: &mut LimbContacts<'_, 'g>,
     ) -> Option<Vec<Expr<'g>>> {
-        let of_limb = |numbers: &Vec<usize>| self.forces(model, numbers.iter().copied());
+        let forces_of_limb = |numbers: &Vec<usize>| self.forces(model, numbers.iter().copied());
         let of_limbs: Vec<Vec<Matrix<'g>>> =
-            contacts.of_limbs().map(|limbs| limbs.iter().map(of_limb).collect()).collect();
+            contacts.of_limbs().map(|limbs| limbs.iter().map(forces_of_limb).collect()).collect();
         let forces = contacts.sum(&of_limbs)?;
         let mut outputs = by_columns(model, &forces);
         for rows in &self.by_motion {

@@ -35,7 +35,7 @@ pub(super) struct Derivation<'a, 'g> {
     facts: &'a Facts,
     /// Data for the options `regressor`, `hamilton` and `conserved`.
     extras: Option<&'a Extras<'a, 'g>>,
-    /// Data for the option `derivatives`.
+    /// Data of the option `derivatives`; `None` without the option.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
     dynamics: OnceCell<Dynamics<'g>>,
     sensitivities: OnceCell<Sensitivities<'g>>,
@@ -79,8 +79,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
         Derivation { facts, extras: Some(extras), derivatives, ..self }
     }
 
-    /// Derives the declared functions after those that are `done`, since some reuse the program of another
-    /// function.
+    /// Derives the declared functions. The list `done` holds the functions derived before, since some
+    /// programs are reused.
     pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
         for declared in declared {
             pipeline::begin(&declared.name);
@@ -120,7 +120,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.dynamics().contact_responses(&constraints::contact_rows(native))
     }
 
-    /// Returns the program of values, one for each contact velocity.
+    /// Returns the program of a contact function from its values, one for each contact velocity.
     fn of_contacts(&self, values: &[Expr<'g>]) -> Program {
         self.with_limb_contacts(self.specialisation.program(values), |contacts| contacts.values(values))
     }
@@ -185,77 +185,84 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
-        let plain = |program: Program| (program, Structure::default());
-        let derived = |outputs: &[Expr<'g>]| plain(self.specialisation.program(outputs));
+        let program_without_structure = |program: Program| (program, Structure::default());
+        let program_of_outputs =
+            |outputs: &[Expr<'g>]| program_without_structure(self.specialisation.program(outputs));
         let (model, joints) = (self.model, self.joints);
-        let function = |id: Id| done.iter().find(|f| f.id == id);
+        let find_function_by_id = |id: Id| done.iter().find(|f| f.id == id);
         if let Some(outputs) = self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
-            return derived(&outputs);
+            return program_of_outputs(&outputs);
         }
         match declared.id {
-            Id::Neutral => derived(&neutral(model)),
-            Id::Limits => derived(&model.limit_values()),
-            Id::Drawing => derived(&model.drawing_numbers()),
-            Id::Heights => derived(&model.heights),
-            Id::Figures => derived(&model.figures()),
-            Id::GeneralizedForces => derived(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => derived(&[power::dissipated(model)]),
-            Id::ControlPower => derived(&[power::control(model, joints)]),
-            Id::DisturbancePower => derived(&[power::disturbance(model)]),
-            Id::TotalMass => derived(&[energy::mass_and_moment(model, joints).0]),
-            Id::MassMatrix => plain(self.dynamics().mass_matrix()),
-            Id::InverseDynamics => plain(self.dynamics().inverse_dynamics()),
-            Id::BiasForces => plain(self.dynamics().bias_forces()),
-            Id::ForwardDynamics => plain(self.dynamics().forward_dynamics()),
-            Id::KineticEnergy => plain(self.dynamics().kinetic_energy()),
-            Id::PotentialEnergy => plain(self.dynamics().potential_energy()),
-            Id::GeneralizedMomentum => plain(self.dynamics().generalized_momentum()),
-            Id::MomentumRate => plain(self.dynamics().momentum_rate()),
-            Id::CenterOfMass => plain(self.dynamics().center_of_mass()),
-            Id::Momentum => plain(self.dynamics().momentum()),
-            Id::CentroidalMomentumMatrix => plain(self.dynamics().centroidal_momentum_matrix()),
-            Id::CentroidalMomentumBias => plain(self.dynamics().centroidal_momentum_bias()),
-            Id::Hamiltonian => derived(&self.canonical(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => derived(&self.canonical(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => derived(&self.canonical(|h| h.momentum_rate.clone())),
-            Id::Routhian => derived(&self.routh(|r| vec![r.routhian])),
-            Id::CyclicVelocities => derived(&self.routh(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => derived(&self.routh(|r| r.acceleration.clone())),
-            Id::Conserved => derived(&self.conserved()),
-            Id::ConstraintResiduals => derived(&constraints::residuals(model)),
-            Id::ConstraintRates => derived(&constraints::rates(model)),
-            Id::ConstraintJacobian => derived(&constraints::jacobian(model)),
-            Id::ConstraintBias => derived(&constraints::biases(model)),
-            Id::ContactGaps => derived(&constraints::contact_gaps(model)),
-            Id::ContactRates => plain(self.of_contacts(&model.contact_rates())),
-            Id::ContactJacobian => plain(self.contact_jacobian()),
-            Id::ContactBias => plain(self.of_contacts(&constraints::contact_biases(model))),
-            Id::ContactLaws => derived(&constraints::contact_laws(model)),
-            Id::ContactResponses => plain(self.contact_responses()),
-            Id::ContactDerivatives => plain(self.contact_derivatives()),
-            Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
-            Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
-            Id::SlippingResponse => plain(self.dynamics().slipping_response()),
+            Id::Neutral => program_of_outputs(&neutral(model)),
+            Id::Limits => program_of_outputs(&model.limit_values()),
+            Id::Drawing => program_of_outputs(&model.drawing_numbers()),
+            Id::Heights => program_of_outputs(&model.heights),
+            Id::Figures => program_of_outputs(&model.figures()),
+            Id::GeneralizedForces => program_of_outputs(&forces::generalized_forces(model, joints)),
+            Id::DissipatedPower => program_of_outputs(&[power::dissipated(model)]),
+            Id::ControlPower => program_of_outputs(&[power::control(model, joints)]),
+            Id::DisturbancePower => program_of_outputs(&[power::disturbance(model)]),
+            Id::TotalMass => program_of_outputs(&[energy::mass_and_moment(model, joints).0]),
+            Id::MassMatrix => program_without_structure(self.dynamics().mass_matrix()),
+            Id::InverseDynamics => program_without_structure(self.dynamics().inverse_dynamics()),
+            Id::BiasForces => program_without_structure(self.dynamics().bias_forces()),
+            Id::ForwardDynamics => program_without_structure(self.dynamics().forward_dynamics()),
+            Id::KineticEnergy => program_without_structure(self.dynamics().kinetic_energy()),
+            Id::PotentialEnergy => program_without_structure(self.dynamics().potential_energy()),
+            Id::GeneralizedMomentum => program_without_structure(self.dynamics().generalized_momentum()),
+            Id::MomentumRate => program_without_structure(self.dynamics().momentum_rate()),
+            Id::CenterOfMass => program_without_structure(self.dynamics().center_of_mass()),
+            Id::Momentum => program_without_structure(self.dynamics().momentum()),
+            Id::CentroidalMomentumMatrix => {
+                program_without_structure(self.dynamics().centroidal_momentum_matrix())
+            }
+            Id::CentroidalMomentumBias => {
+                program_without_structure(self.dynamics().centroidal_momentum_bias())
+            }
+            Id::Hamiltonian => program_of_outputs(&self.canonical(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => program_of_outputs(&self.canonical(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => program_of_outputs(&self.canonical(|h| h.momentum_rate.clone())),
+            Id::Routhian => program_of_outputs(&self.routh(|r| vec![r.routhian])),
+            Id::CyclicVelocities => program_of_outputs(&self.routh(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => program_of_outputs(&self.routh(|r| r.acceleration.clone())),
+            Id::Conserved => program_of_outputs(&self.conserved()),
+            Id::ConstraintResiduals => program_of_outputs(&constraints::residuals(model)),
+            Id::ConstraintRates => program_of_outputs(&constraints::rates(model)),
+            Id::ConstraintJacobian => program_of_outputs(&constraints::jacobian(model)),
+            Id::ConstraintBias => program_of_outputs(&constraints::biases(model)),
+            Id::ContactGaps => program_of_outputs(&constraints::contact_gaps(model)),
+            Id::ContactRates => program_without_structure(self.of_contacts(&model.contact_rates())),
+            Id::ContactJacobian => program_without_structure(self.contact_jacobian()),
+            Id::ContactBias => {
+                program_without_structure(self.of_contacts(&constraints::contact_biases(model)))
+            }
+            Id::ContactLaws => program_of_outputs(&constraints::contact_laws(model)),
+            Id::ContactResponses => program_without_structure(self.contact_responses()),
+            Id::ContactDerivatives => program_without_structure(self.contact_derivatives()),
+            Id::ConstrainedDynamics => program_without_structure(self.dynamics().constrained_dynamics()),
+            Id::ConstraintResponse => program_without_structure(self.dynamics().constraint_response()),
+            Id::SlippingResponse => program_without_structure(self.dynamics().slipping_response()),
             Id::Output
             | Id::OutputJacobian
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => derived(&outputs::values(model, declared)),
+            | Id::Touched => program_of_outputs(&outputs::values(model, declared)),
             Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivative(Derivatives::coriolis_matrix),
             Id::InverseDynamicsDerivatives => self.derivative(Derivatives::inverse_dynamics_derivatives),
             Id::GeneralizedMomentumDerivatives => self.derivative(Derivatives::momentum_derivatives),
             Id::MomentumRateDerivatives => self.derivative(Derivatives::momentum_rate_derivatives),
             Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
-                d.forward_dynamics_derivatives(function(Id::InverseDynamicsDerivatives))
+                d.forward_dynamics_derivatives(find_function_by_id(Id::InverseDynamicsDerivatives))
             }),
             Id::Linearize => self.derivative(Derivatives::linearize),
             Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
             Id::MotionDerivatives => self.derivative(Derivatives::motion_derivatives),
             Id::InputDerivatives => self.derivative(Derivatives::input_derivatives),
-            Id::InverseDynamicsDerivativesInto => as_of(function(Id::InverseDynamicsDerivatives)),
-            Id::ForwardDynamicsDerivativesInto => as_of(function(Id::ForwardDynamicsDerivatives)),
+            Id::InverseDynamicsDerivativesInto => as_of(find_function_by_id(Id::InverseDynamicsDerivatives)),
+            Id::ForwardDynamicsDerivativesInto => as_of(find_function_by_id(Id::ForwardDynamicsDerivatives)),
             Id::InverseDynamicsSecondDerivatives => {
                 self.derivative(Derivatives::inverse_dynamics_second_derivatives)
             }
@@ -263,18 +270,28 @@ impl<'a, 'g> Derivation<'a, 'g> {
                 self.derivative(Derivatives::generalized_forces_second_derivatives)
             }
             Id::ConstraintCurvature => self.derivative(Derivatives::constraint_curvature),
-            Id::JointTorqueRegressor => derived(&self.identified(|i| i.joint_torque_regressor(joints))),
-            Id::StandardParameters => derived(&self.identified(Identification::standard_parameters)),
-            Id::BaseRegressor => derived(&self.identified(Identification::base_regressor)),
-            Id::BaseParameters => derived(&self.identified(Identification::base_parameters)),
-            Id::InverseDynamicsByParameters => plain(self.sensitivities().inverse_dynamics()),
-            Id::ForwardDynamicsByParameters => plain(self.sensitivities().forward_dynamics()),
+            Id::JointTorqueRegressor => {
+                program_of_outputs(&self.identified(|i| i.joint_torque_regressor(joints)))
+            }
+            Id::StandardParameters => {
+                program_of_outputs(&self.identified(Identification::standard_parameters))
+            }
+            Id::BaseRegressor => program_of_outputs(&self.identified(Identification::base_regressor)),
+            Id::BaseParameters => program_of_outputs(&self.identified(Identification::base_parameters)),
+            Id::InverseDynamicsByParameters => {
+                program_without_structure(self.sensitivities().inverse_dynamics())
+            }
+            Id::ForwardDynamicsByParameters => {
+                program_without_structure(self.sensitivities().forward_dynamics())
+            }
             Id::GeneralizedForcesByParameters => {
-                derived(&parameters::generalized_forces(model, joints).concat())
+                program_of_outputs(&parameters::generalized_forces(model, joints).concat())
             }
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
-            Id::PassiveForces => derived(&self.passive(|passive| passive.forces.clone())),
-            Id::PassiveDerivatives => derived(&self.passive(|passive| passive.derivatives.clone())),
+            Id::PassiveForces => program_of_outputs(&self.passive(|passive| passive.forces.clone())),
+            Id::PassiveDerivatives => {
+                program_of_outputs(&self.passive(|passive| passive.derivatives.clone()))
+            }
             // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates
@@ -283,7 +300,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::RateChanges
             | Id::RateAccelerations
             | Id::Turning
-            | Id::Part => plain(Program::default()),
+            | Id::Part => program_without_structure(Program::default()),
         }
     }
 
@@ -296,7 +313,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 }
 
-/// Returns the program of another function.
+/// Returns a copy of the program of another function; an empty program if that function does not exist.
 fn as_of(other: Option<&Function>) -> (Program, Structure) {
     other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
 }

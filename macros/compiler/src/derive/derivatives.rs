@@ -1,4 +1,4 @@
-//! The functions of the option `derivatives`.
+//! Derivation of the functions of the option `derivatives`.
 
 use super::limb_lanes;
 use super::output::Function;
@@ -43,7 +43,7 @@ pub(super) fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>
 /// least.
 pub(super) struct Derivatives<'a, 'g> {
     parts: Parts<'a, 'g>,
-    /// Forces of the inputs.
+    /// Generalized forces of the inputs.
     tau: Vec<Expr<'g>>,
     /// True if the mechanism has constraints.
     constrained: bool,
@@ -118,8 +118,9 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     /// determine the entries that are always zero.
     pub(super) fn forward_dynamics_derivatives(&self, forces: Option<&Function>) -> (Program, Structure) {
         let parts = &self.parts;
-        let is_zero = |o: &Operand| *o == Operand::Const(0.0);
-        let zeros = forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero).collect());
+        let is_zero_constant = |o: &Operand| *o == Operand::Const(0.0);
+        let zeros =
+            forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero_constant).collect());
         let (inverse, known) = (parts.parted(), parts.known.indices());
         let program = match (self.calls(), &parts.trunk) {
             (true, _) => parts.specialisation.program(&parts.known.all()),
@@ -248,16 +249,16 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn forward_dynamics(&self) -> Program {
         let tau = mechanics::efforts(self.model);
-        let program = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
+        let program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace(&mut found.forces);
             self.specialisation.program(&[all_columns(&found), found.accelerations].concat())
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
-            program(&mass, DerivationMethod::Recursion(*most))
+            program_from_mass_matrix(&mass, DerivationMethod::Recursion(*most))
         });
-        program(&self.effective, self.method).or_in_lanes(wide)
+        program_from_mass_matrix(&self.effective, self.method).or_in_lanes(wide)
     }
 
     /// Returns the derivatives of forward dynamics with `M⁻¹` by the blocks of trunk and limbs.
@@ -266,21 +267,24 @@ impl<'a, 'g> Parts<'a, 'g> {
         let inverse = Inverse::new(&self.mass, trunk);
         let a = inverse.solve(&self.unbalanced());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
-        let outputs = |mut forces: ForceDerivatives<'g>,
-                       [inverse, factors]: [crba::Matrix<'g>; 2],
-                       a: Vec<Expr<'g>>| {
+        let derivative_outputs = |mut forces: ForceDerivatives<'g>,
+                                  [inverse, factors]: [crba::Matrix<'g>; 2],
+                                  a: Vec<Expr<'g>>| {
             self.known.replace(&mut forces);
             [force_columns(&forces), columns(&inverse), factors.concat(), a].concat()
         };
-        let program =
-            self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()], a));
+        let program = self.specialisation.program(&derivative_outputs(
+            forces,
+            [inverse.columns(), inverse.factors()],
+            a,
+        ));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = limb_lanes::accelerations(&lanes.limbs, &inverse);
             let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                lower(&outputs(forces, parts.clone(), lanes.limbs.scattered(&a)))
+                lower(&derivative_outputs(forces, parts.clone(), lanes.limbs.scattered(&a)))
             }))
         });
         program.or_in_lanes(in_lanes.into_iter().flatten())
@@ -288,39 +292,43 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Returns the program of `M⁻¹`, by blocks if there is a trunk; after the accelerations if `accelerated`.
     fn inverse(&self, accelerated: bool) -> Program {
-        let outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+        let inverse_outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
             [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
         };
         let Some(trunk) = &self.trunk else {
             let mass = if accelerated { &self.effective } else { &self.mass };
             let factor = Factor::new(mass, &self.joints);
             let a = accelerated.then(|| factor.solve(self.unbalanced()));
-            return self.specialisation.program(&outputs(a, [factor.inverse(), Vec::new()]));
+            return self.specialisation.program(&inverse_outputs(a, [factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::new(&self.mass, trunk);
         let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
-        let program = self.specialisation.program(&outputs(a, [inverse.columns(), inverse.factors()]));
+        let program =
+            self.specialisation.program(&inverse_outputs(a, [inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = accelerated
                 .then(|| lanes.limbs.scattered(&limb_lanes::accelerations(&lanes.limbs, &inverse)));
             let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
-            Some(lower(&outputs(a, parts)))
+            Some(lower(&inverse_outputs(a, parts)))
         }))
     }
 
-    /// Returns the program of the terms from which runtime loops compute `M⁻¹`. If `accelerated`, they follow
-    /// `τ − h`, from which the loops compute the accelerations.
+    /// Returns the program of the terms from which loops of the runtime compute `M⁻¹`. If `accelerated` is
+    /// true, `τ − h` follows these terms, from which the loops compute the accelerations.
     fn divided(&self, accelerated: bool) -> Program {
-        let outputs = |r: Option<Vec<Expr<'g>>>, [inverse, borders]: [crba::Matrix<'g>; 2]| {
-            [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
-        };
+        let bordered_inverse_outputs =
+            |r: Option<Vec<Expr<'g>>>, [inverse, borders]: [crba::Matrix<'g>; 2]| {
+                [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
+            };
         let r = accelerated.then(|| self.unbalanced());
-        let program = self.specialisation.program(&outputs(r, divided(&self.mass, &self.trunk_or_all())));
+        let program = self
+            .specialisation
+            .program(&bordered_inverse_outputs(r, divided(&self.mass, &self.trunk_or_all())));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
             let r = accelerated.then(|| lanes.limbs.scattered(&limb_lanes::unbalanced(&lanes.limbs)));
-            Some(lower(&outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
+            Some(lower(&bordered_inverse_outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
         }))
     }
 
@@ -341,7 +349,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.trunk.clone().unwrap_or_else(|| Trunk::whole(&self.joints, self.model.nv()))
     }
 
-    /// Returns `τ − h`.
+    /// Returns the forces that accelerate the mechanism, `τ − h`.
     fn unbalanced(&self) -> Vec<Expr<'g>> {
         let (model, v) = (self.model, mechanics::velocities(self.model));
         let bias = rnea::inverse_dynamics(model, &self.joints, &v, None);
@@ -399,16 +407,16 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     fn coriolis_matrix(&self) -> Program {
         let v = mechanics::velocities(self.model);
-        let program = |most: usize| {
+        let coriolis_program = |most: usize| {
             let matrix = analytic::coriolis_matrix(self.model, &self.joints, &v, most);
             self.specialisation.program(&columns(&matrix))
         };
-        let wide = self.wide.iter().map(|most| program(*most));
+        let wide = self.wide.iter().map(|most| coriolis_program(*most));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let most = [1].iter().chain(self.wide);
             most.map(|most| lower(&columns(&limb_lanes::coriolis_matrix(&lanes.limbs, *most))))
         });
-        program(1).or_in_lanes(wide.chain(in_lanes))
+        coriolis_program(1).or_in_lanes(wide.chain(in_lanes))
     }
 
     /// Returns the program of `M⁻¹` and the form of its outputs; after the accelerations if `accelerated`.

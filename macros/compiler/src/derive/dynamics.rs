@@ -21,8 +21,8 @@ mod variants;
 use frame_choice::{FrameChoice, smallest};
 use variants::Variants;
 
-/// Tolerance of the frame comparison: frames whose mass matrix and inverse dynamics exceed the minimum size
-/// by more than one part in this number are excluded.
+/// Inverse tolerance of the comparison of frames: frames whose mass matrix and inverse dynamics exceed the
+/// minimum size by more than one part in this number are excluded.
 const SIMILAR: usize = 8;
 
 /// The variants of a model from which the functions of dynamics are derived.
@@ -224,13 +224,13 @@ fn mass_matrices_in_lanes<'g>(
     specialisation: Specialisation,
     wide: &[usize],
 ) -> Vec<Program> {
-    let limbs = |most| {
+    let limb_mass_matrices = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
             variants.plain_limbs().map(|limbs| limb_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
         };
         in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
     };
-    let columns = |most| {
+    let column_mass_matrices = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.plain();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
@@ -239,8 +239,8 @@ fn mass_matrices_in_lanes<'g>(
     };
     [1].iter()
         .chain(wide)
-        .flat_map(|most| limbs(*most))
-        .chain(wide.iter().flat_map(|most| columns(*most)))
+        .flat_map(|most| limb_mass_matrices(*most))
+        .chain(wide.iter().flat_map(|most| column_mass_matrices(*most)))
         .collect()
 }
 

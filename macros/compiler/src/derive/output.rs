@@ -5,10 +5,10 @@ use crate::equations::Written;
 use crate::lower::Program;
 use crate::mechanism::{Chart, Piece, Quantity};
 
-/// A generated function.
+/// Generated function with its documentation, signature and program.
 #[derive(Clone)]
 pub struct Function {
-    /// Function of the catalogue.
+    /// Identifier of the function in the catalogue.
     pub id: Id,
     /// Name of the generated function.
     pub name: String,
@@ -78,7 +78,7 @@ impl Function {
     }
 }
 
-/// Everything that is derived from a model.
+/// Functions and data that are derived from a model, from which code is emitted.
 pub struct Output {
     /// Functions to be emitted, each with its documentation, shape and program.
     pub functions: Vec<Function>,
@@ -94,12 +94,12 @@ pub struct Output {
     pub linear_equations: Vec<Written>,
     /// Functions with precomputed values, if requested.
     pub prepared: Option<Prepared>,
-    /// Further associated constants.
+    /// Associated constants in addition to sizes and names.
     pub constants: Vec<Constant>,
 }
 
 impl Output {
-    /// Returns all functions, including those of the prepared mechanism.
+    /// Returns all functions, including the functions of the prepared mechanism.
     pub fn all_functions(&self) -> impl Iterator<Item = &Function> {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
     }
@@ -120,7 +120,7 @@ impl Output {
     }
 }
 
-/// The functions of the option `prepare`.
+/// Functions of the option `prepare`.
 pub struct Prepared {
     /// Program of the precomputed values, as functions of the parameters.
     pub numbers: Program,
@@ -141,11 +141,11 @@ pub struct LinkSteps {
     pub velocities: Vec<usize>,
     /// True if the motion subspace depends on the configuration.
     pub driven: bool,
-    /// Placement from the parent's placement.
+    /// Program of the link's placement from its parent's placement.
     pub placement: Program,
-    /// Twist from the parent's twist.
+    /// Program of the link's twist from its parent's twist.
     pub twist: Program,
-    /// Acceleration from the parent's twist and acceleration.
+    /// Program of the link's acceleration from its parent's twist and acceleration.
     pub acceleration: Program,
     /// Columns of a Jacobian from the link's placement and the frame's position.
     pub columns: Program,
@@ -167,7 +167,7 @@ pub struct FrameSteps {
     pub link: Option<usize>,
     /// True if the frame is the link's own frame.
     pub is_link: bool,
-    /// Placement from the link's placement.
+    /// Program of the frame's placement from its link's placement.
     pub placement: Program,
     /// Twist in ground axes from the link's placement and twist.
     pub twist: Program,
@@ -188,9 +188,9 @@ pub struct Constant {
     pub name: &'static str,
     /// Documentation of the constant.
     pub docs: &'static str,
-    /// Type of an item.
+    /// Type of the items of the constant.
     pub item: &'static str,
-    /// Source text of the items.
+    /// Source text of each item.
     pub list: Vec<String>,
 }
 
@@ -257,25 +257,26 @@ impl Constant {
         if all.is_empty() {
             return Vec::new();
         }
-        let texts = |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
+        let collect_text_parts =
+            |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
         vec![
             Constant::strings(
                 "EQUILIBRIA",
                 "Name of every declared equilibrium.",
-                &texts(|(name, _)| name.clone()),
+                &collect_text_parts(|(name, _)| name.clone()),
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS",
                 "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in \
                  the parameters of the mechanism: the state at rest, the equations and, for at most three \
                  velocities and degree seven, the characteristic equation with the conditions of stability.",
-                &texts(|(_, written)| written.plain.clone()),
+                &collect_text_parts(|(_, written)| written.plain.clone()),
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS_LATEX",
                 "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of \
                  `amsmath` each.",
-                &texts(|(_, written)| written.latex.clone()),
+                &collect_text_parts(|(_, written)| written.latex.clone()),
             ),
         ]
     }
@@ -286,7 +287,7 @@ impl Constant {
         let written = pieces.iter().map(|piece| {
             first += piece.numbers.len();
             let Piece { name, role, kind, frames: [a, b], .. } = piece;
-            let frame = |frame: &Option<usize>| match frame {
+            let frame_option_source = |frame: &Option<usize>| match frame {
                 Some(k) => format!("::core::option::Option::Some({k})"),
                 None => "::core::option::Option::None".to_string(),
             };
@@ -294,8 +295,8 @@ impl Constant {
             format!(
                 "::linkwork::drawing::Piece {{ name: {name:?}, role: ::linkwork::drawing::Role::{role:?}, \
                  kind: ::linkwork::drawing::Kind::{kind:?}, frames: [{}, {}], first: {at} }}",
-                frame(a),
-                frame(b)
+                frame_option_source(a),
+                frame_option_source(b)
             )
         });
         Constant {

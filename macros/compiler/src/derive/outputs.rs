@@ -1,4 +1,4 @@
-//! Outputs: their functions, their Jacobians, and reactions.
+//! Derivation of declared outputs: their functions, their Jacobians, and reactions.
 
 use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Declared, Facts, Id, JACOBIAN, REACTION, TOUCHED};
 use crate::expr::Expr;
@@ -10,12 +10,13 @@ use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
 /// Returns the functions of all outputs, in order. Mechanisms without dynamics have no reactions.
 pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
-    let functions = |output: &OutputValue<'_>| {
+    let functions_of_output = |output: &OutputValue<'_>| {
         let size = output.values.len();
-        let names = |f: fn(&Quantity) -> bool| {
+        let depends_on_quantity = |f: fn(&Quantity) -> bool| {
             symbols_in(&output.values).into_iter().map(Quantity::from_symbol).any(|q| f(&q))
         };
-        let touched = output.diagram.is_none() && names(|q| matches!(q, Quantity::ContactForce(_)));
+        let touched =
+            output.diagram.is_none() && depends_on_quantity(|q| matches!(q, Quantity::ContactForce(_)));
         let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
         match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
@@ -24,20 +25,20 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
             (false, _) => catalogue::output(&output.name, size, uses(output), facts),
         }
     };
-    model.outputs.iter().flat_map(functions).collect()
+    model.outputs.iter().flat_map(functions_of_output).collect()
 }
 
 fn uses(output: &OutputValue<'_>) -> Uses {
     let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
-    let has = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+    let depends_on_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
     Uses {
-        velocities: has(|q| matches!(q, Quantity::Velocity(_))),
-        accelerations: has(|q| matches!(q, Quantity::Acceleration(_))),
-        inputs: has(|q| matches!(q, Quantity::Input(_))),
+        velocities: depends_on_quantity(|q| matches!(q, Quantity::Velocity(_))),
+        accelerations: depends_on_quantity(|q| matches!(q, Quantity::Acceleration(_))),
+        inputs: depends_on_quantity(|q| matches!(q, Quantity::Input(_))),
     }
 }
 
-/// Returns the results of one of these functions.
+/// Returns the values of a declared output function.
 pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
@@ -69,17 +70,17 @@ fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         (symbolic::by_acceleration(model, values), model.nv()),
         (symbolic::by_input(model, values), model.nu()),
     ];
-    let columns = |(rows, width): &(Vec<Vec<Expr<'g>>>, usize)| -> Vec<Expr<'g>> {
+    let columns_of_block = |(rows, width): &(Vec<Vec<Expr<'g>>>, usize)| -> Vec<Expr<'g>> {
         (0..*width).flat_map(|k| rows.iter().map(move |row| row[k])).collect()
     };
-    blocks.iter().flat_map(columns).collect()
+    blocks.iter().flat_map(columns_of_block).collect()
 }
 
 fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
     let column =
         |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.differentiate(*e)).collect() };
-    (0..model.parameters.len()).flat_map(|k| column(derivative(k))).collect()
+    (0..model.parameters.len()).flat_map(|k| column(parameter_derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of

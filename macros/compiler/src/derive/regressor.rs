@@ -18,9 +18,9 @@ pub(super) struct Identification<'a, 'g> {
     base: Base<'g>,
 }
 
-/// The base parameters.
+/// Base parameters of a model: the combinations of inertial parameters that affect its motion.
 struct Base<'g> {
-    /// Link, and index of one of its ten parameters about the link's own frame.
+    /// Link of each base parameter, and index among the ten parameters about the link's own frame.
     entries: Vec<(usize, usize)>,
     /// Combination of the bodies' parameters that replaces this parameter.
     values: Vec<Expr<'g>>,
@@ -30,8 +30,9 @@ struct Base<'g> {
 
 impl<'a, 'g> Identification<'a, 'g> {
     pub(super) fn new(model: &'a Model<'g>, joints: &[Joint<'g>]) -> Identification<'a, 'g> {
-        let first = |link: usize| model.frames.iter().find(|f| f.massive && f.link == Some(LinkId(link)));
-        let bodies: Vec<&NamedFrame<'g>> = (0..model.links.len()).filter_map(first).collect();
+        let first_massive_frame =
+            |link: usize| model.frames.iter().find(|f| f.massive && f.link == Some(LinkId(link)));
+        let bodies: Vec<&NamedFrame<'g>> = (0..model.links.len()).filter_map(first_massive_frame).collect();
         let base = base(model, joints, &bodies);
         Identification { model, bodies, base }
     }
@@ -43,13 +44,14 @@ impl<'a, 'g> Identification<'a, 'g> {
 
     /// Returns the names of the bodies and of the base parameters.
     pub(super) fn names(&self) -> Vec<Constant> {
-        let link = |k: usize| {
+        let name_of_link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
             let first_velocity = || kinematics::joints(self.model)[k].dofs.first().map(|d| d.index);
-            let joint = || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
-            body.map_or_else(joint, |body| body.name.clone())
+            let name_of_first_velocity =
+                || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
+            body.map_or_else(name_of_first_velocity, |body| body.name.clone())
         };
-        let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", link(*k), NAMES[*p]));
+        let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", name_of_link(*k), NAMES[*p]));
         let bodies: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
         Constant::regressor(&bodies, &base.collect::<Vec<String>>())
     }

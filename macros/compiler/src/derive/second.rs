@@ -1,4 +1,4 @@
-//! The functions of the option `second_derivatives`.
+//! Derivation of the functions of the option `second_derivatives`.
 
 use super::derivatives::{DIFFERENTIATE, columns};
 use super::specialisation::Specialisation;

@@ -36,11 +36,11 @@ impl<'g> Sensitivities<'g> {
         if passes.parallel {
             variants.extend(passes::in_common_axes(&variants));
         }
-        let inverse = |variant: &Variant<'_>| {
+        let inverse_dynamics_program = |variant: &Variant<'_>| {
             specialisation.program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
         };
         let all = variants.into_iter().map(|variant| {
-            let program = inverse(&variant);
+            let program = inverse_dynamics_program(&variant);
             (variant, program)
         });
         let best = all.min_by_key(|(_, program)| program.counts.total());

@@ -70,8 +70,8 @@ fn unit(graph: &Graph) -> Inertia<'_> {
 /// Returns a free link without mass, or without a moment of inertia about some axis, if more inertia of this
 /// link would leave fewer singular velocities. The remaining singular velocities are returned as well.
 fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) -> Option<(usize, Vec<usize>)> {
-    let free = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
-    (0..model.links.len()).filter(free).find_map(|bare| {
+    let is_free_link = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
+    (0..model.links.len()).filter(is_free_link).find_map(|bare| {
         let mut with_mass = model.clone();
         with_mass.links[bare].inertia = unit(model.graph);
         let mass = crba::mass_matrix(&with_mass, joints);
@@ -81,7 +81,7 @@ fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) ->
     })
 }
 
-/// Reports a mechanism without any inertia.
+/// Reports that a mechanism has no inertia at all.
 fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     let place = &model.velocities[velocity].1;
     let (what, mend) = match place.file {

@@ -5,8 +5,8 @@ use crate::expr::{Expr, Symbol};
 use crate::lower::{Program, lower_without, size};
 use crate::mechanism::Quantity;
 
-/// Tolerance of the comparison of sizes before lowering: factoring sums may change the operation count by
-/// this number of operations, plus one part in the second number.
+/// Tolerance of the comparison of sizes before lowering: factoring sums may change the operation count by the
+/// first number of operations, plus one part in the second number.
 const SPREAD: (usize, usize) = (3, 100);
 
 /// Outputs of one of several variants of a function, with their size.
@@ -17,7 +17,7 @@ pub struct Candidate<'g> {
     pub outputs: Vec<Expr<'g>>,
 }
 
-/// Specialisation of a function's program.
+/// Specialisation of a function's program to parameters that are known early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Specialisation {
     /// Without known parameters: the program computes all values.
@@ -27,7 +27,7 @@ pub enum Specialisation {
 }
 
 impl Specialisation {
-    /// Returns the program of the outputs.
+    /// Returns the program of these outputs under the specialisation.
     pub fn program(self, outputs: &[Expr<'_>]) -> Program {
         lower_without(outputs, &|s| self.knows(s))
     }
@@ -52,13 +52,13 @@ impl Specialisation {
         programs.into_iter().next().unwrap_or_default()
     }
 
-    /// Returns the programs of those of several equivalent candidates that may be the cheapest in lanes, with
-    /// their indices.
+    /// Returns the programs, with their indices, of the equivalent candidates that may be the cheapest in
+    /// SIMD lanes.
     pub fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
         promising(lists).iter().map(|(k, list)| (*k, self.program(list))).collect()
     }
 
-    /// Returns the outputs with their size.
+    /// Returns outputs together with their number of operations.
     pub fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
         Candidate { size: size(&outputs, &|s| self.knows(s)), outputs }
     }
@@ -70,8 +70,8 @@ impl Specialisation {
     }
 }
 
-/// Returns those of several equivalent candidates that may take the fewest operations, with their indices. Of
-/// identical candidates, only the first is returned.
+/// Returns the equivalent candidates that may take the fewest operations, with their indices. Of identical
+/// candidates, only the first is returned.
 fn promising<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
     let mut all: Vec<(usize, Candidate<'g>)> = lists.enumerate().collect();
     let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);

@@ -46,7 +46,7 @@ impl<'g> Derivation<'_, 'g> {
     /// other functions.
     pub(super) fn in_speeds(&self, speeds: &InSpeeds<'g>, declared: &Declared) -> Option<Vec<Expr<'g>>> {
         let (native, joints) = (&speeds.native, self.joints);
-        let scalars = |e: Vec<Expr<'g>>| Some(speeds.written(&e));
+        let scalars_in_speeds = |e: Vec<Expr<'g>>| Some(speeds.written(&e));
         match declared.id {
             Id::RatesOfSpeeds => Some(speeds.rates.clone()),
             Id::SpeedsOfRates => Some(speeds.speeds_of(&mechanics::velocities(native))),
@@ -55,9 +55,9 @@ impl<'g> Derivation<'_, 'g> {
             Id::RateChanges => Some(columns(&speeds.rate_changes())),
             Id::RateAccelerations => Some(speeds.accelerations.clone()),
             Id::GeneralizedForces => Some(self.input_forces(speeds)),
-            Id::DissipatedPower => scalars(vec![power::dissipated(native)]),
-            Id::ControlPower => scalars(vec![power::control(native, joints)]),
-            Id::DisturbancePower => scalars(vec![power::disturbance(native)]),
+            Id::DissipatedPower => scalars_in_speeds(vec![power::dissipated(native)]),
+            Id::ControlPower => scalars_in_speeds(vec![power::control(native, joints)]),
+            Id::DisturbancePower => scalars_in_speeds(vec![power::disturbance(native)]),
             Id::TotalMass => Some(vec![energy::mass_and_moment(native, joints).0]),
             Id::Hamiltonian | Id::CanonicalVelocity | Id::CanonicalMomentumRate => {
                 self.canonical_in_speeds(speeds, declared.id)
@@ -65,7 +65,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::Reaction => {
                 let name = declared.name.strip_prefix(crate::catalogue::REACTION)?;
                 let output = native.outputs.iter().find(|output| output.name == name)?;
-                scalars(reactions::resolved(native, &output.values, output.diagram.is_some()))
+                scalars_in_speeds(reactions::resolved(native, &output.values, output.diagram.is_some()))
             }
             Id::JointTorqueRegressor => self.regressor_in_speeds(speeds, true),
             Id::BaseRegressor => self.regressor_in_speeds(speeds, false),
@@ -198,7 +198,7 @@ impl<'g> Derivation<'_, 'g> {
     /// second derivatives with respect to joint displacements are multiplied by `Z` at `q`.
     fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
         let native = &speeds.native;
-        let projected = |found: Hessian<'g>| Hessian {
+        let project_hessian = |found: Hessian<'g>| Hessian {
             qq: speeds.metric(&found.qq),
             qv: speeds.project(&found.qv),
             qa: speeds.project(&found.qa),
@@ -210,19 +210,19 @@ impl<'g> Derivation<'_, 'g> {
                 // displacements.
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
-                let mut outputs = second::state(&projected(found.state)).concat();
+                let mut outputs = second::state(&project_hessian(found.state)).concat();
                 outputs.extend(columns(&speeds.project(&found.q_lambda)));
                 outputs
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
                     hessian::of_inputs(native, &self.input_forces(speeds));
-                let [qq, qv, vv, _] = second::state(&projected(state));
+                let [qq, qv, vv, _] = second::state(&project_hessian(state));
                 [qq, qv, vv, columns(&speeds.project(&qu)), columns(&vu), columns(&uu)].concat()
             }
             _ => {
                 let found = hessian::of_power(native, &self.inverse(speeds), &hessian::factors(native));
-                second::state(&projected(found)).concat()
+                second::state(&project_hessian(found)).concat()
             }
         }
     }
@@ -230,26 +230,29 @@ impl<'g> Derivation<'_, 'g> {
     /// Returns the derivatives with respect to all parameters, a list for each parameter.
     fn by_parameters(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
-        let column = |k| {
+        let derivative_column = |k| {
             let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
             e.iter().map(|e| by.differentiate(*e)).collect()
         };
-        (0..count).map(column).collect()
+        (0..count).map(derivative_column).collect()
     }
 
     /// Returns `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
     fn accelerations_by_parameters(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (n, a) = (self.model.nv(), self.free_accelerations(speeds));
         let inverse = self.inverse_of(speeds, true);
-        let solved = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            let row = |i: usize| {
+        let accelerations_from_forces = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            let acceleration_of_row = |i: usize| {
                 let terms = (0..n).map(|j| inverse[j * n + i] * forces[j]);
                 terms.fold(self.model.graph.zero(), |sum, term| sum - term)
             };
-            (0..n).map(row).collect()
+            (0..n).map(acceleration_of_row).collect()
         };
         let changes = self.by_parameters(&self.inverse(speeds));
-        changes.into_iter().flat_map(|change| solved(&self.at_accelerations(change, &a))).collect()
+        changes
+            .into_iter()
+            .flat_map(|change| accelerations_from_forces(&self.at_accelerations(change, &a)))
+            .collect()
     }
 
     fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {

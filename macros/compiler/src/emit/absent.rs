@@ -11,7 +11,7 @@ use std::fmt::Write;
 /// Returns everything that a mechanism with these functions and outputs lacks.
 pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
     let in_lanes = |name: &str| format!("{name}_lanes");
-    let of_need = |(need, rows): (Need, Vec<&Row>)| {
+    let absent_for_need = |(need, rows): (Need, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
         if need == Need::Asks(Word::Derivatives) && !facts.requests.derivatives {
             names.extend(OF_TRAITS.map(ToString::to_string));
@@ -26,7 +26,7 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
         let constants = catalogue::absent_constants(need, facts);
         Some(Absent { reason: need.reason()?, functions: names, constants })
     };
-    let mut all: Vec<Absent> = catalogue::absent(facts).into_iter().filter_map(of_need).collect();
+    let mut all: Vec<Absent> = catalogue::absent(facts).into_iter().filter_map(absent_for_need).collect();
     let of_outputs =
         |suffix: &str| -> Vec<String> { outputs.iter().map(|name| format!("{name}{suffix}")).collect() };
     for (suffix, reason, asked) in [

@@ -7,11 +7,11 @@ use std::fmt::Write;
 /// Number of lanes of the vectors in which angles of a program with lanes are evaluated.
 pub const WIDTH: usize = 4;
 
-/// Number of vectors that a call evaluates together. The vectors share one test for small angles and the
-/// constants, and all of them fit in registers.
+/// Number of vectors of angles that one call evaluates together. The vectors share the constants and one test
+/// for small angles, and all of them fit in registers.
 const TOGETHER: usize = 4;
 
-/// Calls for sines and cosines under construction: one call for all scalars, or calls for several vectors
+/// Calls of sines and cosines under construction: one call for all scalars, or calls for several vectors
 /// each.
 #[derive(Default)]
 pub struct Calls {
@@ -27,7 +27,7 @@ pub struct Calls {
     in_vectors: bool,
     /// True if a call of scalars is padded to the width of vector registers.
     padded: bool,
-    /// Number of bindings so far.
+    /// Number of names bound so far.
     bound: usize,
 }
 
@@ -86,12 +86,13 @@ impl Calls {
             self.push_loose(zero.to_string(), self.bound - 1);
         }
         for group in self.arguments.chunks(TOGETHER) {
-            let list = |letter| {
+            let list_vector_names = |letter| {
                 let names: Vec<String> = group.iter().map(|(_, n)| format!("{letter}{}", n[0])).collect();
                 names.join(", ")
             };
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
-            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+            let (sines, cosines, angles) =
+                (list_vector_names('s'), list_vector_names('c'), angles.join(", "));
             let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
             for (_, numbers) in group.iter().filter(|(_, numbers)| matches!(numbers.as_slice(), [_, _, ..])) {
                 for letter in ['s', 'c'] {
@@ -113,9 +114,11 @@ impl Calls {
         }
         let together = if self.padded { self.arguments.len() } else { TOGETHER };
         for group in self.arguments.chunks(together) {
-            let list = |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
+            let list_bundled_names =
+                |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
-            let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
+            let (sines, cosines, angles) =
+                (list_bundled_names('s'), list_bundled_names('c'), angles.join(", "));
             let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
         }
     }
@@ -124,25 +127,27 @@ impl Calls {
     /// memory if the angles are adjacent.
     fn pad(&mut self) {
         let count = self.arguments.len();
-        let repeated = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
+        let repeated_argument = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
         match count % WIDTH {
             0 => {}
             // Repeats the angle before the last three.
-            3 if count > WIDTH => self.arguments.insert(count - 3, repeated(&self.arguments, count - 4)),
-            3 => self.arguments.push(repeated(&self.arguments, count - 1)),
+            3 if count > WIDTH => {
+                self.arguments.insert(count - 3, repeated_argument(&self.arguments, count - 4))
+            }
+            3 => self.arguments.push(repeated_argument(&self.arguments, count - 1)),
             rest => (rest..WIDTH).for_each(|k| {
                 let k = count - rest + k % rest;
-                self.arguments.push(repeated(&self.arguments, k));
+                self.arguments.push(repeated_argument(&self.arguments, k));
             }),
         }
         let count = self.arguments.len();
         if count > WIDTH && !count.is_multiple_of(2 * WIDTH) {
-            (count - WIDTH..count).for_each(|k| self.arguments.push(repeated(&self.arguments, k)));
+            (count - WIDTH..count).for_each(|k| self.arguments.push(repeated_argument(&self.arguments, k)));
         }
     }
 }
 
-/// Returns one name, a vector of several names, or `_` without names.
+/// Returns one name, an array of several names, or `_` for no name.
 fn bundle(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {

@@ -61,8 +61,8 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     w.statements[..head].iter().for_each(|statement| write_let(out, statement));
     write_inputs(out, &late, s, &w);
     let rest = w.statements.split_off(head);
-    let is_zero = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
-    let results = Outputs { pieces: &outputs, is_zero: &is_zero };
+    let is_zero_output = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
+    let results = Outputs { pieces: &outputs, is_zero: &is_zero_output };
     if !matrix_arguments(f).is_empty() {
         let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
@@ -133,7 +133,7 @@ impl Writer<'_> {
     fn write_angles(&mut self, angles: &Angles) {
         // Sums of angles are combined to vectors from named values: in an array they would be stored to
         // memory individually.
-        let is_sum = |angle: &Angle| {
+        let is_angle_sum = |angle: &Angle| {
             let (mut inputs, mut todo) = (0, vec![angle.angle]);
             while let Some(o) = todo.pop().filter(|_| inputs < 2) {
                 match o {
@@ -145,7 +145,8 @@ impl Writer<'_> {
             inputs > 1
         };
         let of_state = !self.scalar.is_in_lanes();
-        let in_vectors = !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_sum));
+        let in_vectors =
+            !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_angle_sum));
         let mut calls = Calls::new(in_vectors, of_state);
         let mut needs = Vec::new();
         for angle in angles.widest_first(self.program, |o| self.width(o)) {

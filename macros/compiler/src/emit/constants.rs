@@ -1,4 +1,4 @@
-//! Associated constants of a mechanism.
+//! Code of the associated constants of a mechanism.
 
 use super::interface::Interface;
 use crate::derive::Constant;

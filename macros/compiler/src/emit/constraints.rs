@@ -7,7 +7,7 @@ use crate::derive::Function;
 use crate::mechanism::{Freedom, Model};
 use std::fmt::Write;
 
-/// The scalar constraints of a mechanism.
+/// Scalar constraints of a mechanism, for the emitter.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints {
     /// Names of the constraints; holonomic constraints come first.
@@ -57,7 +57,7 @@ impl Constraints {
 
     /// Returns the constraints of a model.
     pub fn from_model(model: &Model<'_>) -> Constraints {
-        let those = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
+        let indices_of_constraints = |is: fn(&crate::mechanism::Constraint<'_>) -> bool| {
             let all = model.constraints.iter().enumerate();
             all.filter(|(_, c)| is(c)).map(|(k, _)| k).collect()
         };
@@ -67,8 +67,8 @@ impl Constraints {
             redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
-            slipping: those(|c| !c.friction.is_empty()),
-            determining: those(|c| c.determines),
+            slipping: indices_of_constraints(|c| !c.friction.is_empty()),
+            determining: indices_of_constraints(|c| c.determines),
             overdetermined: model.is_overdetermined(),
             independent: model.dependent.is_some(),
             angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
@@ -77,7 +77,7 @@ impl Constraints {
     }
 }
 
-/// Source text of types and arguments.
+/// Source text of the types and arguments of constrained functions.
 struct Words {
     /// Type of a configuration.
     q: String,
@@ -156,13 +156,13 @@ pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         (0..s.nv).map(|k| c.turns.get(k) == Some(&true)).collect::<Vec<_>>(),
         s.nv,
     );
-    let call = |function: &str, more: &str| {
+    let format_assembly_call = |function: &str, more: &str| {
         format!("{loops} ::linkwork::__private::{function}(&loops, q, held{more})")
     };
     let bodies = [
-        call("assemble", ", ::core::option::Option::None"),
-        call("assemble", ", ::core::option::Option::Some(mode)"),
-        call("assembly_mode", ""),
+        format_assembly_call("assemble", ", ::core::option::Option::None"),
+        format_assembly_call("assemble", ", ::core::option::Option::Some(mode)"),
+        format_assembly_call("assembly_mode", ""),
     ];
     write_assembly_functions(out, c, s, &bodies);
 }
@@ -206,10 +206,14 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let (nv, nc) = (s.nv, c.names.len());
     let scalar = s.scalar.name();
-    let call = |function: &str, more: &str| {
+    let format_constrained_call = |function: &str, more: &str| {
         format!("::linkwork::Constrained::{function}(self, {any}, q, held{more})")
     };
-    let bodies = [call("assemble", ""), call("assemble_in_mode", ", mode"), call("assembly_mode", "")];
+    let bodies = [
+        format_constrained_call("assemble", ""),
+        format_constrained_call("assemble_in_mode", ", mode"),
+        format_constrained_call("assembly_mode", ""),
+    ];
     write_assembly_functions(out, c, s, &bodies);
     if c.slipping.is_empty() {
         write_inverse_dynamics(out, c, s);
@@ -296,7 +300,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
 }
 
-/// Writes `constrained_inverse_dynamics`.
+/// Writes the function `constrained_inverse_dynamics`.
 fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
     let _ = writeln!(
@@ -583,7 +587,7 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     }
 }
 
-/// Writes the function of the trait `ConstrainedDerivatives`.
+/// Writes `equation_derivatives`, the function of the trait `ConstrainedDerivatives` without a default.
 pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());

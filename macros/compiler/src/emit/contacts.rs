@@ -1,4 +1,4 @@
-//! Generated code of mechanisms with unilateral contacts.
+//! Code of mechanisms with unilateral contacts.
 
 use super::interface::Interface;
 use super::signature::Signature;
@@ -6,7 +6,7 @@ use crate::catalogue::{ContactSizes, Need, Shape};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// A unilateral contact.
+/// Unilateral contact, for the emitter.
 #[derive(Clone, Debug)]
 pub struct UnilateralContact {
     /// Name of the contact.
@@ -21,16 +21,17 @@ pub struct UnilateralContact {
     /// True if the coefficient of restitution is a ratio of impulses (Poisson), false if it is a ratio of
     /// velocities (Newton).
     of_impulses: bool,
-    /// Coefficients of friction, restitution and static friction; `None` if they depend on parameters.
+    /// Coefficients of friction, restitution and static friction; `None` if a coefficient depends on
+    /// parameters.
     laws: [Option<f64>; 3],
     /// True if the static coefficient of friction differs from the kinetic one.
     has_stiction: bool,
 }
 
 impl UnilateralContact {
-    /// Returns the contacts of a model.
+    /// Returns the unilateral contacts of a model.
     pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
-        let touching = |c: &crate::mechanism::Contact<'_>| UnilateralContact {
+        let contact_from_model = |c: &crate::mechanism::Contact<'_>| UnilateralContact {
             name: c.name.clone(),
             rates: c.rates.len(),
             pressed_by: c.pressed_by,
@@ -39,7 +40,7 @@ impl UnilateralContact {
             laws: [c.friction, c.restitution, c.stiction].map(|law| law.value()),
             has_stiction: c.stiction != c.friction,
         };
-        model.contacts.iter().map(touching).collect()
+        model.contacts.iter().map(contact_from_model).collect()
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
@@ -145,7 +146,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     );
 }
 
-/// Writes the function of the trait `ContactDerivatives`.
+/// Writes `contact_derivatives`, the function of the trait `ContactDerivatives`.
 pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let rows = i.facts.contacts.rates;
     let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);

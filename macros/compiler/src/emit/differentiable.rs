@@ -78,7 +78,7 @@ pub fn write_methods(
     }
     let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
     let pass = if s.time { "t, " } else { "" };
-    let columns = |list: &str| {
+    let format_matrix_from_columns = |list: &str| {
         format!(
             "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage(found.{list}))"
         )
@@ -94,9 +94,9 @@ pub fn write_methods(
             ({}, {}, {})
         }}",
         s.parameters(&s.timed(&[Argument::Q, Argument::V, Argument::U])),
-        columns("by_q"),
-        columns("by_v"),
-        columns("by_u"),
+        format_matrix_from_columns("by_q"),
+        format_matrix_from_columns("by_v"),
+        format_matrix_from_columns("by_u"),
     );
 }
 
@@ -105,12 +105,12 @@ pub fn write_methods(
 /// the derivatives do not depend on the state.
 fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
     let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
-    let is = |o: &Operand, x: f64| *o == Operand::Const(x);
+    let is_constant = |o: &Operand, x: f64| *o == Operand::Const(x);
     let columns = (0..s.nu).map(|k| {
         let column = by_inputs.get(k * s.nv..(k + 1) * s.nv)?;
-        let place = column.iter().position(|o| is(o, 1.0))?;
+        let place = column.iter().position(|o| is_constant(o, 1.0))?;
         let rest = column.iter().enumerate().filter(|(row, _)| *row != place);
-        rest.into_iter().all(|(_, o)| is(o, 0.0)).then_some(place)
+        rest.into_iter().all(|(_, o)| is_constant(o, 0.0)).then_some(place)
     });
     columns.collect()
 }
@@ -195,7 +195,7 @@ fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signatur
     out.push_str("}\n");
 }
 
-/// Writes the function of the trait `ConstrainedSecondDerivatives`.
+/// Writes `equation_second_derivatives`, the function of the trait `ConstrainedSecondDerivatives`.
 pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
     let (q, v, multipliers) = (s.vector(s.nq), s.vector(nv), s.vector(nc));
@@ -220,8 +220,8 @@ fn rotational_range(charts: &[Chart]) -> (usize, usize) {
         Chart::Ball(_, v) => Some((v.0, v.0 + 3)),
         Chart::Free(_, v) => Some((v.0, v.0 + 6)),
     });
-    let both = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
-    velocities.reduce(both).unwrap_or((0, 0))
+    let union_of_ranges = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
+    velocities.reduce(union_of_ranges).unwrap_or((0, 0))
 }
 
 /// Writes the statements that compute the diagonal blocks of ball and free joints and put them into the
@@ -233,11 +233,11 @@ fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
             Chart::Ball(_, v) => ("ball", v, 3),
             Chart::Free(_, v) => ("free", v, 6),
         };
-        let entries = |of: &&str| {
+        let format_block_entries = |of: &&str| {
             let list: Vec<String> = v.and_next(n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
             format!("[{}]", list.join(", "))
         };
-        let arguments: Vec<String> = of.iter().map(entries).collect();
+        let arguments: Vec<String> = of.iter().map(format_block_entries).collect();
         let _ = writeln!(
             out,
             "let blocks = ::linkwork::__private::{kind}_{name}_derivatives({});

@@ -19,19 +19,19 @@ const LARGEST: usize = 5000;
 pub struct Bodies {
     /// True if functions may select their arithmetic at run time.
     wanted: bool,
-    /// Bodies so far.
+    /// Bodies that have been added so far.
     list: Vec<Body>,
 }
 
 /// Body of a function, generic over the arithmetic.
 struct Body {
-    /// Types of the arguments, as a tuple.
+    /// Types of the arguments, as the text of a tuple.
     types: String,
-    /// Names of the arguments, as a tuple.
+    /// Names of the arguments, as the text of a tuple.
     names: String,
     /// Type of the result.
     result: String,
-    /// True for a function of several states.
+    /// True for a function of several states in SIMD lanes.
     simd: bool,
     /// Statements of the body.
     text: String,
@@ -60,8 +60,9 @@ impl Bodies {
         }
         let types: Vec<String> = f.arguments.iter().map(|a| s.argument(*a)).collect();
         let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
-        let tuple = |list: String| if list.is_empty() { "()".to_string() } else { format!("({list},)") };
-        let (types, names) = (tuple(types.join(", ")), tuple(names.join(", ")));
+        let format_tuple =
+            |list: String| if list.is_empty() { "()".to_string() } else { format!("({list},)") };
+        let (types, names) = (format_tuple(types.join(", ")), format_tuple(names.join(", ")));
         write_head(out, f, s);
         let _ = writeln!(
             out,

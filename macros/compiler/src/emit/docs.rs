@@ -12,13 +12,13 @@ use crate::mechanism::{Freedom, Quantity};
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// A part of the documentation, with the place where it is shown.
+/// Part of the documentation, with the medium that shows it.
 pub enum Part {
-    /// On rustdoc pages and in editors.
+    /// Text shown on rustdoc pages and in editors.
     Everywhere(String),
-    /// On rustdoc pages only: HTML.
+    /// HTML shown on rustdoc pages only.
     Pages(String),
-    /// In editors only, which show plain text.
+    /// Plain text shown in editors only.
     Editors(String),
 }
 
@@ -216,11 +216,11 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
         text.push_str("Corresponding coordinates of the limbs:\n\n");
     }
     for gather in &most.gathers {
-        let name = |s: &Symbol| match Quantity::from_symbol(*s) {
+        let coordinate_name = |s: &Symbol| match Quantity::from_symbol(*s) {
             Quantity::Configuration(k) => i.configuration.get(k).map(|name| format!("`{name}`")),
             _ => None,
         };
-        let mut names: Vec<String> = gather.iter().filter_map(name).collect();
+        let mut names: Vec<String> = gather.iter().filter_map(coordinate_name).collect();
         names.dedup();
         if !names.is_empty() {
             let _ = writeln!(text, "- {}", names.join(", "));
@@ -230,8 +230,8 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
 
 /// Adds the table of the units of parameters, coordinates, inputs, tables and outputs.
 fn units(text: &mut String, i: &Interface<'_>) {
-    let plain = |name: String| name.trim_start_matches("r#").to_string();
-    let parameters: Vec<String> = i.shell.accesses().into_iter().map(plain).collect();
+    let strip_raw_prefix = |name: String| name.trim_start_matches("r#").to_string();
+    let parameters: Vec<String> = i.shell.accesses().into_iter().map(strip_raw_prefix).collect();
     let lists: [(&str, &[String], &[String]); 4] = [
         ("", &parameters, &i.units.parameters),
         ("q", &i.configuration, &i.units.configuration),
@@ -262,7 +262,7 @@ fn units(text: &mut String, i: &Interface<'_>) {
     }
     for (name, units) in i.shell.table_names().into_iter().zip(&i.units.tables) {
         if let Some((value, variables)) = units.split_last() {
-            row("table", &plain(name), &format!("{value} over {}", variables.join(", ")));
+            row("table", &strip_raw_prefix(name), &format!("{value} over {}", variables.join(", ")));
         }
     }
     for (name, unit) in i.outputs.iter().zip(&i.units.outputs) {
@@ -287,7 +287,7 @@ pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
 /// Maximum number of lines of a declaration that is not folded.
 const UNFOLDED: usize = 40;
 
-/// Adds the user's declaration as source text.
+/// Adds the user's declaration as source text to the documentation.
 fn declaration(text: &mut String, i: &Interface<'_>) {
     let Some(code) = &i.shell.declaration else { return };
     // Doc comments may contain code.

@@ -16,7 +16,7 @@ use syn::Ident;
 pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
     let runtime = runtime(i.shell);
     let scalar = scalar(i);
-    let field = |field: &FileField| {
+    let field_tokens = |field: &FileField| {
         let (name, about) = (Ident::new(&field.ident, Span::call_site()), &field.about);
         let kind = match field.kind {
             FileFieldKind::Inertial => quote!(#runtime::Inertial<#scalar>),
@@ -25,7 +25,7 @@ pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
         };
         quote!(#[doc = #about] pub #name: #kind)
     };
-    i.shell.file_fields.iter().map(field).collect()
+    i.shell.file_fields.iter().map(field_tokens).collect()
 }
 
 /// Returns the scalar type of the fields.

@@ -61,14 +61,14 @@ pub fn write_frames(
 /// Methods of the private trait of the steps.
 #[derive(Default)]
 struct StepMethods {
-    /// Declarations, for the trait.
+    /// Declarations of the methods, for the trait.
     declarations: String,
-    /// Definitions, for its implementation.
+    /// Definitions of the methods, for the implementation of the trait.
     methods: String,
 }
 
 impl StepMethods {
-    /// Adds a method. `attribute` follows `inline` in its attribute, such as `(always)`.
+    /// Adds a method to both lists. `attribute` follows `inline` in its attribute, such as `(always)`.
     fn add(&mut self, attribute: &str, signature: &str, body: &str) {
         let _ = writeln!(self.declarations, "{signature};");
         let _ = writeln!(self.methods, "#[inline{attribute}]\n{signature} {{\n{body}}}");
@@ -178,16 +178,16 @@ fn write_frame_impl(
         true => ("let v = &self.rates_of_speeds(q, v);\n", "let a = &self.__rate_accelerations(q, v, a);\n"),
         false => ("", ""),
     };
-    let method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
+    let write_frame_method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
         let all: Vec<Argument> = std::iter::once(Argument::T).chain(arguments.iter().copied()).collect();
         let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(&all));
     };
     let t = time(s);
-    method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
+    write_frame_method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
     write_path_placement(out, frame.link, s);
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
-    method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
+    write_frame_method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
     out.push_str(rates);
     write_path_placement(out, frame.link, s);
     let last = frame.link.map_or(String::new(), |l| {
@@ -195,7 +195,12 @@ fn write_frame_impl(
     });
     let _ = writeln!(out, "self.__frame{k}_twist({last})\n}}");
 
-    method(out, "acceleration", &[Argument::Q, Argument::V, Argument::A], &format!("[{scalar}; 6]"));
+    write_frame_method(
+        out,
+        "acceleration",
+        &[Argument::Q, Argument::V, Argument::A],
+        &format!("[{scalar}; 6]"),
+    );
     out.push_str(accelerations);
     out.push_str(rates);
     write_path_placement(out, frame.link, s);
@@ -325,8 +330,8 @@ fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bo
         write(column, &call, out);
         return;
     }
-    let names = |c: usize| (0..6).map(|row| format!("j{c}_{row}")).collect::<Vec<_>>().join(", ");
-    let all: Vec<String> = (0..link.velocities.len()).map(names).collect();
+    let names_of_column = |c: usize| (0..6).map(|row| format!("j{c}_{row}")).collect::<Vec<_>>().join(", ");
+    let all: Vec<String> = (0..link.velocities.len()).map(names_of_column).collect();
     let _ = writeln!(out, "let [{}] = {call};", all.join(", "));
     for (column, entries) in link.velocities.iter().zip(&all) {
         write(*column, &format!("[{entries}]"), out);

@@ -6,7 +6,7 @@ use super::signature::{Signature, matrix_arguments};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// Writes a function's attributes and signature up to the opening brace of its body.
+/// Writes a function's attributes and its signature up to the opening brace.
 pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");

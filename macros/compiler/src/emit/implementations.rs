@@ -28,14 +28,14 @@ pub fn write_impls(
     if i.facts.kinematic {
         return;
     }
-    let begin = |out: &mut String, of: &str| {
+    let begin_impl_block = |out: &mut String, of: &str| {
         let _ = writeln!(
             out,
             "{ALLOW}impl{generics} ::linkwork::{of}<{}, {}, {}> for {name}{arguments} {bounds} {{",
             s.nq, s.nv, s.nu
         );
     };
-    begin(out, "Mechanism");
+    begin_impl_block(out, "Mechanism");
     write_trait(out, i, s);
     out.push_str("}\n");
     let _ = writeln!(
@@ -53,18 +53,18 @@ pub fn write_impls(
         let _ = writeln!(out, "impl{generics} ::linkwork::Scleronomic for {name}{arguments} {bounds} {{}}");
     }
     if i.facts.requests.derivatives {
-        begin(out, "Derivatives");
+        begin_impl_block(out, "Derivatives");
         differentiable::write_trait(out, i, s);
         constraints::write_visit(out, &i.constraints, s);
         out.push_str("}\n");
     }
     if differentiable::has_second(i) {
-        begin(out, "SecondDerivatives");
+        begin_impl_block(out, "SecondDerivatives");
         differentiable::write_second_trait(out, i, s);
         out.push_str("}\n");
     }
     if i.facts.requests.batch {
-        begin(out, "Batch");
+        begin_impl_block(out, "Batch");
         lanes::write_trait(out, i, s);
         out.push_str("}\n");
     }

@@ -1,4 +1,4 @@
-//! Rust expressions for instructions and their operands.
+//! Conversion of instructions and their operands to Rust expressions.
 
 use super::pieces::{Level, Piece, Statement};
 use super::scalar::ScalarSpelling;
@@ -22,7 +22,7 @@ pub enum Build {
 
 /// State of the writer of one function body.
 pub struct Writer<'a> {
-    /// Builds for which the body is written.
+    /// Build (debug, release or both) for which the body is written.
     pub build: Build,
     /// Program of the body.
     pub program: &'a Program,
@@ -32,13 +32,13 @@ pub struct Writer<'a> {
     pub scalar: &'a ScalarSpelling,
     /// Arguments of the function, and results of the functions that it calls.
     pub arguments: Vec<Argument>,
-    /// Statements written so far.
+    /// Statements that have been written so far.
     pub statements: Vec<Statement>,
     /// Text of each value that is not bound to a name.
     pub pieces: Vec<Option<Piece>>,
     /// Number of statements up to and including sines and cosines.
     pub head: usize,
-    /// Arguments on which the angles depend.
+    /// Arguments on which the angles of the sines and cosines depend.
     pub early: Vec<Argument>,
     /// Operations of `Ops`, with their numbers of lanes, that are bound to names before all statements;
     /// `None` if operations are called directly.
@@ -78,21 +78,21 @@ impl Writer<'_> {
 
     /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
     pub fn operand(&mut self, o: Operand) -> Piece {
-        let plain = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
+        let piece_without_needs = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
         match o {
-            Operand::Const(c) => plain(self.constant(c)),
-            Operand::Symbol(s) => plain(self.symbol(s)),
+            Operand::Const(c) => piece_without_needs(self.constant(c)),
+            Operand::Symbol(s) => piece_without_needs(self.symbol(s)),
             Operand::Tuple(k) => {
                 let tuple: Vec<String> =
                     self.program.tuples[k].iter().map(|c| self.scalar.constant(*c)).collect();
-                plain(format!("Ops::lanes([{}])", tuple.join(", ")))
+                piece_without_needs(format!("Ops::lanes([{}])", tuple.join(", ")))
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
                 let is_input =
                     |a: &Argument| gather.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
                 // Gathers of arguments are bound to names; gathers of parameters are not.
-                plain(match self.arguments.iter().any(is_input) {
+                piece_without_needs(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
                     false => self.gathered(gather),
                 })
@@ -205,7 +205,7 @@ impl Writer<'_> {
         Piece { text, needs: [product.needs, c.needs].concat(), level: Level::Sum }
     }
 
-    /// Returns `c - a * b`.
+    /// Returns the expression `c - a * b`.
     fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
         let c = self.operand(c);
         let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
@@ -274,7 +274,7 @@ impl Writer<'_> {
         self.call_by(&format!("Ops::{function}"), arguments, lanes)
     }
 
-    /// Returns the value of a table, or one of its derivatives.
+    /// Returns the expression of a table's value, or of one of its derivatives.
     fn lookup(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
         let (field, orders) = (self.scalar.table(lookup.table()).to_string(), lookup.orders());
         let list = self.call_by("", x.get(..lookup.variables()).unwrap_or_default(), lanes);

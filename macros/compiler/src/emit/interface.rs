@@ -26,11 +26,11 @@ pub struct Interface<'a> {
     pub frames: Vec<String>,
     /// One line for each joint with the bodies that it connects.
     pub structure: Vec<String>,
-    /// The constraints.
+    /// Constraints of the mechanism.
     pub constraints: Constraints,
     /// Unilateral contacts.
     pub contacts: Vec<UnilateralContact>,
-    /// The limits of coordinates.
+    /// Limits of the coordinates.
     pub limits: Vec<CoordinateLimits>,
     /// Conditions on values that depend on parameters.
     pub figures: Vec<ParameterCondition>,
@@ -44,7 +44,7 @@ pub struct Interface<'a> {
     pub units: Units,
     /// Imported files: if one changes, the crate is compiled again.
     pub files: Vec<String>,
-    /// Facts on which signatures depend.
+    /// Facts of the mechanism on which signatures depend.
     pub facts: Facts,
     /// True if large functions select their arithmetic at run time.
     pub detect: bool,
@@ -67,17 +67,17 @@ pub struct Absent {
     pub constants: Vec<&'static str>,
 }
 
-/// Attributes of generated implementations.
+/// Attributes of the generated implementations.
 pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, \
                          clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
-/// Generics of the struct's implementations as text.
+/// Generics of the struct's implementations, as text.
 pub struct Head {
-    /// `<T: …>`
+    /// Generic parameters with their bounds: `<T: …>`.
     pub generics: String,
-    /// `<T>`
+    /// Generic arguments: `<T>`.
     pub arguments: String,
-    /// `where …`
+    /// Bounds of the generic parameters: `where …`.
     pub bounds: String,
 }
 
@@ -85,14 +85,14 @@ impl Head {
     /// Returns the generics of the struct, with the bound of a generic scalar added.
     pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
         let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
-        let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
-        let mut bounds = spell(&where_clause);
+        let spell_tokens = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
+        let mut bounds = spell_tokens(&where_clause);
         if s.scalar.is_generic() {
             let start = if bounds.is_empty() { "where" } else { bounds.trim_end().trim_end_matches(',') };
             let comma = if bounds.is_empty() { "" } else { "," };
             bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.one());
         }
-        Head { generics: spell(&impl_generics), arguments: spell(&ty_generics), bounds }
+        Head { generics: spell_tokens(&impl_generics), arguments: spell_tokens(&ty_generics), bounds }
     }
 }
 

@@ -27,14 +27,14 @@ use std::fmt::Write;
 /// individually.
 #[derive(Debug, Default)]
 pub struct Emitted {
-    /// The struct, with documentation and file dependencies.
+    /// Tokens of the struct, with documentation and file dependencies.
     pub tokens: TokenStream,
     /// Implementations of the struct's functions and of the runtime's traits.
     pub text: String,
 }
 
 impl Emitted {
-    /// Returns struct and implementations as tokens.
+    /// Returns the struct and the implementations as tokens.
     pub fn into_tokens(self) -> Result<TokenStream, proc_macro2::LexError> {
         let mut tokens = self.tokens;
         tokens.extend(self.text.parse::<TokenStream>()?);

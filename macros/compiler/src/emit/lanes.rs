@@ -1,5 +1,5 @@
-//! Functions of several states at once, which the option `batch` requests. They have the same bodies, with
-//! lanes in place of scalars.
+//! Code of functions of several states at once, which the option `batch` requests. Their bodies equal those
+//! of single states, with SIMD lanes in place of scalars.
 
 use super::dispatch::Bodies;
 use super::function::write_function;
@@ -55,20 +55,21 @@ pub fn write_methods(
 /// lanes would need more stack than a thread has. Returns `None` for hidden functions that are called only
 /// from such bodies.
 pub fn one_by_one(f: &Function) -> Option<String> {
-    let argument = |a: &Argument| match a {
+    let lane_argument = |a: &Argument| match a {
         Argument::T => Some("t.0[k]".to_string()),
         Argument::Into(name, _) => Some(format!("&mut one_{name}")),
         Argument::Given(..) => None,
         a => Some(format!("&lane({}, k)", a.name())),
     };
-    let arguments: Option<Vec<String>> = f.arguments.iter().map(argument).collect();
+    let arguments: Option<Vec<String>> = f.arguments.iter().map(lane_argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
     let given = matrix_arguments(f);
     if !given.is_empty() {
-        let each = |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
+        let concatenate_for_arguments =
+            |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
         let (first, last) = (
-            each(&|name| format!("let mut one_{name} = lane({name}, k);\n")),
-            each(&|name| format!("set_lane({name}, k, &one_{name});\n")),
+            concatenate_for_arguments(&|name| format!("let mut one_{name} = lane({name}, k);\n")),
+            concatenate_for_arguments(&|name| format!("set_lane({name}, k, &one_{name});\n")),
         );
         if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
             return Some(format!(
@@ -83,9 +84,9 @@ pub fn one_by_one(f: &Function) -> Option<String> {
             )
         });
     }
-    let parts = |count: usize| {
-        let one = |part| format!("lane_by_lane(|k| all[k].{part})");
-        let parts: Vec<String> = (0..count).map(one).collect();
+    let format_tuple_of_parts = |count: usize| {
+        let format_lane_part = |part| format!("lane_by_lane(|k| all[k].{part})");
+        let parts: Vec<String> = (0..count).map(format_lane_part).collect();
         format!("let all: [_; LANES] = ::core::array::from_fn(|k| {call});\n({})", parts.join(", "))
     };
     let result = match f.shape {
@@ -93,17 +94,17 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         Shape::Vector(_) | Shape::Square(_) | Shape::Matrix(..) | Shape::Inverse(_) => {
             format!("lane_by_lane(|k| {call})")
         }
-        Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => parts(2),
-        Shape::Forward(_) | Shape::CalledForward(_) => parts(3),
-        Shape::Hessian(_) => parts(4),
+        Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => format_tuple_of_parts(2),
+        Shape::Forward(_) | Shape::CalledForward(_) => format_tuple_of_parts(3),
+        Shape::Hessian(_) => format_tuple_of_parts(4),
         Shape::Jacobians(..) => {
-            let all = parts(0);
+            let all = format_tuple_of_parts(0);
             let all = all.trim_end_matches("()");
-            let field = |name: &str| format!("{name}: lane_by_lane(|k| all[k].{name})");
-            let fields = ["by_q", "by_v", "by_a", "by_u"].map(field).join(", ");
+            let format_lane_field = |name: &str| format!("{name}: lane_by_lane(|k| all[k].{name})");
+            let fields = ["by_q", "by_v", "by_a", "by_u"].map(format_lane_field).join(", ");
             format!("{all}::linkwork::OutputJacobians {{ {fields} }}")
         }
-        Shape::InputHessian(..) => parts(6),
+        Shape::InputHessian(..) => format_tuple_of_parts(6),
         Shape::Accelerated(_) | Shape::Array(_) | Shape::Record(_) | Shape::Symmetric(_) => return None,
     };
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))

@@ -1,4 +1,4 @@
-//! Limits of the coordinates.
+//! Code of the limits of the coordinates.
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
@@ -8,9 +8,9 @@ use std::fmt::Write;
 /// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
 #[derive(Clone, Debug)]
 pub struct CoordinateLimits {
-    /// Index of the coordinate in `q`.
+    /// Index in `q` of the limited coordinate.
     q: usize,
-    /// Index of the velocity in `v`.
+    /// Index in `v` of the coordinate's velocity.
     v: usize,
     /// Name of the coordinate.
     name: String,
@@ -42,7 +42,7 @@ impl CoordinateLimits {
     }
 }
 
-/// Functions of the trait, with the infinity that they return for a missing limit.
+/// Functions of the trait `Limits`, with the infinity that each returns for a missing limit.
 const FUNCTIONS: [(&str, &str); 4] = [
     ("lower_limits", "NEG_INFINITY"),
     ("upper_limits", "INFINITY"),
@@ -58,14 +58,14 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool,
         if limited.iter().all(|limit| limit.index(which).is_none()) {
             continue;
         }
-        let entry = |v: usize| {
+        let format_limit_entry = |v: usize| {
             let limit = limited.iter().find(|limit| limit.v == v);
             match limit.and_then(|limit| limit.index(which)) {
                 Some(k) => format!("limits[{k}]"),
                 None => "none".to_string(),
             }
         };
-        let entries: Vec<String> = (0..s.nv).map(entry).collect();
+        let entries: Vec<String> = (0..s.nv).map(format_limit_entry).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}(&self) -> {v} {{

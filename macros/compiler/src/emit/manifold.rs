@@ -1,4 +1,4 @@
-//! Functions on the configuration manifold.
+//! Code of the functions on the configuration manifold.
 
 use super::signature::Signature;
 use crate::mechanism::Chart;
@@ -61,7 +61,7 @@ pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>
     carry.write(out, "__", charts, s);
 }
 
-/// A function on the configuration manifold.
+/// Function on the configuration manifold, for the emitter.
 struct ManifoldFunction {
     /// Name of the function.
     name: &'static str,
@@ -94,12 +94,12 @@ impl ManifoldFunction {
     }
 
     fn write_body(&self, out: &mut String, charts: &[Chart]) {
-        let range = |first: usize, n: usize, name: &str| {
+        let format_name_range = |first: usize, n: usize, name: &str| {
             let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
             format!("[{}]", list.join(", "))
         };
         for (name, n) in &self.arguments {
-            let _ = writeln!(out, "let [{}] = {name}.data.0;", range(0, *n, name));
+            let _ = writeln!(out, "let [{}] = {name}.data.0;", format_name_range(0, *n, name));
         }
         let [(first, _), (second, _)] = self.arguments;
         for chart in charts {
@@ -125,16 +125,16 @@ impl ManifoldFunction {
             let _ = writeln!(
                 out,
                 "let {} = ::linkwork::__private::{kind}_{}({}, {});",
-                range(r.0, r.1, "r"),
+                format_name_range(r.0, r.1, "r"),
                 self.name,
-                range(a.0, a.1, first),
-                range(b.0, b.1, second)
+                format_name_range(a.0, a.1, first),
+                format_name_range(b.0, b.1, second)
             );
         }
         let _ = writeln!(
             out,
             "::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([{}]))",
-            range(0, self.result, "r")
+            format_name_range(0, self.result, "r")
         );
     }
 }

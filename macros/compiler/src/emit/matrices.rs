@@ -7,7 +7,7 @@ use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
 
 const RUNTIME: &str = "::linkwork::__private";
-/// Start of the constructor of a matrix from its columns.
+/// Beginning of the expression that constructs a matrix from its columns.
 const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
 
 /// Empty list of columns to multiply by the inverse.
@@ -50,35 +50,41 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
 
 /// Returns the expression of the result, composed of the outputs.
 pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let square = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
+    let format_square_matrix = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
     match f.shape {
-        Shape::Pair(n) => format!("({}, {})\n", square(0, n), square(1, n)),
+        Shape::Pair(n) => format!("({}, {})\n", format_square_matrix(0, n), format_square_matrix(1, n)),
         Shape::Jacobians(rows, n, m) => {
-            let jacobian = |k: usize| outputs.matrix(k * rows * n, rows, n);
+            let format_jacobian = |k: usize| outputs.matrix(k * rows * n, rows, n);
             let by_u = outputs.matrix(3 * rows * n, rows, m);
             format!(
                 "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
-                jacobian(0),
-                jacobian(1),
-                jacobian(2)
+                format_jacobian(0),
+                format_jacobian(1),
+                format_jacobian(2)
             )
         }
         Shape::Hessian(n) => {
-            format!("({}, {}, {}, {})\n", square(0, n), square(1, n), square(2, n), square(3, n))
+            format!(
+                "({}, {}, {}, {})\n",
+                format_square_matrix(0, n),
+                format_square_matrix(1, n),
+                format_square_matrix(2, n),
+                format_square_matrix(3, n)
+            )
         }
         Shape::InputHessian(n, m) => {
-            let mixed = |k: usize| outputs.matrix(3 * n * n + k * n * m, n, m);
-            let state = [0, 1, 2].map(|k| square(k, n)).join(", ");
+            let format_mixed_matrix = |k: usize| outputs.matrix(3 * n * n + k * n * m, n, m);
+            let state = [0, 1, 2].map(|k| format_square_matrix(k, n)).join(", ");
             let inputs = outputs.matrix(3 * n * n + 2 * n * m, m, m);
-            format!("({state}, {}, {}, {inputs})\n", mixed(0), mixed(1))
+            format!("({state}, {}, {}, {inputs})\n", format_mixed_matrix(0), format_mixed_matrix(1))
         }
         // The matrices are composed in the returned tuple, so that each of them is moved at most once.
         Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
         Shape::Forward(n) => format!(
             "let mut all = ({}, {}, {});\n{}{}all\n",
-            square(0, n),
-            square(1, n),
-            square(2, n),
+            format_square_matrix(0, n),
+            format_square_matrix(1, n),
+            format_square_matrix(2, n),
             completed(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
@@ -87,9 +93,9 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
         Shape::Linear(n, m) => {
             format!(
                 "let inverse = {};\nlet (mut by_q, mut by_v) = ({}, {});\n{}{}",
-                square(2, n),
-                square(0, n),
-                square(1, n),
+                format_square_matrix(2, n),
+                format_square_matrix(0, n),
+                format_square_matrix(1, n),
                 solved(["by_q", "by_v"], "inverse", n, s, &f.structure),
                 assembled(n, m, 3 * n * n, s, outputs)
             )
@@ -142,16 +148,16 @@ fn completed(
     }
 }
 
-/// Half-open range.
+/// Half-open range of rows or columns.
 type Span = (usize, usize);
 
 /// Outputs that follow a matrix: a row of additional values for each velocity.
 struct TrailingRows<'a> {
-    /// Index of the first output.
+    /// Index of the first output that belongs to the factored form.
     first: usize,
     /// Number of rows.
     rows: usize,
-    /// Number of values per row.
+    /// Number of outputs per row.
     width: usize,
     outputs: &'a Outputs<'a>,
 }
@@ -165,8 +171,8 @@ impl TrailingRows<'_> {
     /// Returns the range of the values of a row outside which all are constant zeros; `None` if all are.
     fn used(&self, row: usize) -> Option<Span> {
         let first = self.range(row).start;
-        let is_used = |t: &usize| !self.outputs.is_zero(first + t);
-        Some(((0..self.width).find(is_used)?, (0..self.width).rfind(is_used)? + 1))
+        let is_nonzero_entry = |t: &usize| !self.outputs.is_zero(first + t);
+        Some(((0..self.width).find(is_nonzero_entry)?, (0..self.width).rfind(is_nonzero_entry)? + 1))
     }
 
     /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
@@ -197,7 +203,7 @@ impl TrailingRows<'_> {
     ) -> String {
         let length = self.width.next_multiple_of(4);
         let padding = vec![number("0.0", s); length - self.width];
-        let border = |k: usize| {
+        let format_border_row = |k: usize| {
             let entries = self.outputs.pieces.get(self.range(k)).unwrap_or(&[]).iter().map(|p| &p.text);
             let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
             format!("[{}]", all.join(", "))
@@ -209,11 +215,11 @@ impl TrailingRows<'_> {
             limb.iter().for_each(|k| used[*k] = all);
         }
         let runs = factor_runs(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
-        let neighbours = |limb: &Vec<usize>| {
+        let format_runs_of_limb = |limb: &Vec<usize>| {
             let runs = factor_runs(limb.iter().map(|k| (*k, Span::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
         };
-        let limbs: Vec<String> = limbs.iter().map(neighbours).collect();
+        let limbs: Vec<String> = limbs.iter().map(format_runs_of_limb).collect();
         format!(
             "{RUNTIME}::invert::<Ops, {}, {}, {}, {}, {}, {length}, _>(
                 &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
@@ -223,7 +229,7 @@ impl TrailingRows<'_> {
             parts(|_| length.to_string()),
             self.rows,
             self.width,
-            (0..self.rows).map(border).collect::<Vec<_>>().join(", "),
+            (0..self.rows).map(format_border_row).collect::<Vec<_>>().join(", "),
             limbs.join(", "),
         )
     }
@@ -259,9 +265,10 @@ fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String 
 /// Returns the statement that replaces derivatives of forces by derivatives of accelerations, `−M⁻¹ ∂τ/∂x`.
 fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
     let is_known = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
-    let is_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
-    let factor = |k: usize| format!("(&mut {}, {})", forces[k], groups(n, n, k * n * n, &is_zero));
-    products(inverse, n, n, &[factor(0), factor(1)], s)
+    let is_known_or_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
+    let format_factor_groups =
+        |k: usize| format!("(&mut {}, {})", forces[k], groups(n, n, k * n * n, &is_known_or_zero));
+    products(inverse, n, n, &[format_factor_groups(0), format_factor_groups(1)], s)
 }
 
 /// Returns the statement that replaces the factors, each with the given number of columns, by minus their
@@ -283,17 +290,17 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
 /// processors with registers of four numbers. `rows` returns for each the number of rows that are computed
 /// together.
 fn parts(rows: impl Fn(bool) -> String) -> String {
-    let tile = |wide: bool| {
+    let format_tile_type = |wide: bool| {
         let n = rows(wide);
         format!(
             "{RUNTIME}::Tile<{{ {n} }}, {{ {RUNTIME}::registers_of_eight({n}, {wide}) }}, \
              {{ {RUNTIME}::registers_of_four({n}, {wide}) }}>"
         )
     };
-    format!("({}, {})", tile(true), tile(false))
+    format!("({}, {})", format_tile_type(true), format_tile_type(false))
 }
 
-/// Neighbouring columns of a matrix.
+/// Run of neighbouring columns of a matrix.
 struct Run {
     /// Half-open range of the columns.
     columns: (usize, usize),
@@ -310,10 +317,10 @@ fn runs(
     first: usize,
     is_zero: &dyn Fn(usize) -> bool,
 ) -> (Vec<(usize, usize)>, Vec<Run>) {
-    let is_zero = |j: usize, i: usize| is_zero(first + j * n + i);
+    let is_zero_entry = |j: usize, i: usize| is_zero(first + j * n + i);
     let mut runs: Vec<Run> = Vec::new();
     for j in 0..columns {
-        let rows: Vec<usize> = (0..n).filter(|i| !is_zero(j, *i)).collect();
+        let rows: Vec<usize> = (0..n).filter(|i| !is_zero_entry(j, *i)).collect();
         if rows.is_empty() {
             continue;
         }
@@ -321,20 +328,20 @@ fn runs(
         if let Some(run) = runs.last_mut().filter(|run| run.columns.1 == j) {
             let all: Vec<usize> =
                 (0..n).filter(|i| rows.binary_search(i).is_ok() || run.rows.contains(i)).collect();
-            let filled = |j: usize| all.iter().filter(|i| is_zero(j, **i)).count();
-            if (run.columns.0..=j).all(|j| filled(j) <= FILLED_ZEROS) {
+            let count_zeros_in_column = |j: usize| all.iter().filter(|i| is_zero_entry(j, **i)).count();
+            if (run.columns.0..=j).all(|j| count_zeros_in_column(j) <= FILLED_ZEROS) {
                 *run = Run { columns: (run.columns.0, j + 1), rows: all };
                 continue;
             }
         }
         runs.push(Run { columns, rows });
     }
-    let filled = |run: &Run| {
+    let zeros_filled_by_run = |run: &Run| {
         let (from, to) = run.columns;
         let entries = (from..to).flat_map(|j| run.rows.iter().map(move |i| (j, *i)));
-        entries.filter(|(j, i)| is_zero(*j, *i)).collect::<Vec<_>>()
+        entries.filter(|(j, i)| is_zero_entry(*j, *i)).collect::<Vec<_>>()
     };
-    (runs.iter().flat_map(filled).collect(), runs)
+    (runs.iter().flat_map(zeros_filled_by_run).collect(), runs)
 }
 
 /// Returns the result of [`runs`] as source text.

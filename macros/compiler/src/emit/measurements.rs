@@ -10,9 +10,9 @@ use std::fmt::Write;
 /// Outputs of a mechanism that are functions of state, accelerations and inputs, with the type for which the
 /// traits are implemented.
 struct Measurements<'a> {
-    /// Name of the type.
+    /// Name of the mechanism's type.
     name: &'a str,
-    /// Functions of the outputs.
+    /// Generated functions of the outputs.
     outputs: Vec<&'a Function>,
     /// Total number of entries of all outputs.
     count: usize,
@@ -36,10 +36,10 @@ pub fn write_impls(
     s: &Signature<'_>,
 ) {
     // Rates of states and matrices are not part of the vector of outputs.
-    let is_rate = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
+    let is_rate_of_state = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
     let outputs: Vec<&Function> = functions
         .iter()
-        .filter(|f| f.id == Id::Output && !is_rate(f) && !matches!(f.shape, Shape::Matrix(..)))
+        .filter(|f| f.id == Id::Output && !is_rate_of_state(f) && !matches!(f.shape, Shape::Matrix(..)))
         .collect();
     let count: usize = outputs.iter().map(|f| rows(f)).sum();
     if count == 0 {
@@ -91,12 +91,12 @@ impl Measurements<'_> {
         let (count, vector) = (self.count, self.s.vector(self.count));
         let names: Vec<String> =
             self.outputs.iter().flat_map(|f| entries(f)).map(|name| format!("{name:?}")).collect();
-        let unit = |f: &Function| {
+        let unit_of_output = |f: &Function| {
             let place = self.i.outputs.iter().position(|name| *name == f.name);
             place.and_then(|k| self.i.units.outputs.get(k)).map_or("", |unit| unit)
         };
         let units: Vec<&str> =
-            self.outputs.iter().flat_map(|f| std::iter::repeat_n(unit(f), rows(f))).collect();
+            self.outputs.iter().flat_map(|f| std::iter::repeat_n(unit_of_output(f), rows(f))).collect();
         self.begin(out, "Outputs", &self.sizes());
         let _ = writeln!(
             out,
@@ -116,7 +116,7 @@ impl Measurements<'_> {
         });
     }
 
-    /// Writes the trait of the derivatives.
+    /// Writes the implementation of the trait `OutputDerivatives`.
     fn write_derivatives(&self, out: &mut String) {
         self.begin(out, "OutputDerivatives", &self.sizes());
         let of = self.s.shape(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
@@ -151,7 +151,7 @@ impl Measurements<'_> {
     }
 }
 
-/// Returns a call of an output, or of its derivatives.
+/// Returns the expression that calls an output, or its derivatives with this suffix.
 fn call(f: &Function, suffix: &str) -> String {
     let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))

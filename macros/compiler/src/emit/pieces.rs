@@ -3,7 +3,7 @@
 use crate::catalogue::Record;
 use std::fmt::Write;
 
-/// A binding, or statements that bind nothing.
+/// Binding of a `let`, or statements that bind nothing.
 pub struct Statement {
     /// Values that the left side binds.
     pub names: Vec<usize>,
@@ -15,24 +15,24 @@ pub struct Statement {
     pub needs: Vec<usize>,
 }
 
-/// Precedence of an expression's outermost operation.
+/// Precedence of the outermost operation of an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// A sum or a difference.
+    /// Sum or difference.
     #[default]
     Sum,
-    /// A product, a quotient or a negative.
+    /// Product, quotient or negative.
     Product,
-    /// An expression that needs no parentheses.
+    /// Expression that needs no parentheses.
     Whole,
 }
 
 /// Text of a value that is not bound.
 #[derive(Clone, Default)]
 pub struct Piece {
-    /// The expression.
+    /// Text of the expression.
     pub text: String,
-    /// Values that it names.
+    /// Values whose names occur in the expression.
     pub needs: Vec<usize>,
     /// Precedence, which determines whether parentheses are needed.
     pub level: Level,
@@ -40,9 +40,9 @@ pub struct Piece {
 
 /// Outputs of a program as source text.
 pub struct Outputs<'a> {
-    /// The expressions.
+    /// Expressions of the outputs.
     pub pieces: &'a [Piece],
-    /// Whether an output is a constant zero.
+    /// Closure that returns whether an output is a constant zero.
     pub is_zero: &'a dyn Fn(usize) -> bool,
 }
 

@@ -17,7 +17,8 @@ use crate::mechanism::Chart;
 use quote::ToTokens;
 use std::fmt::Write;
 
-/// Program and charts from which the functions are written; empty for a mechanism that failed to compile.
+/// Program and charts from which the functions of a prepared mechanism are written; empty for a mechanism
+/// that failed to compile.
 #[derive(Default)]
 pub struct Content<'a> {
     /// Program of the stored values.
@@ -97,7 +98,7 @@ fn write_struct(
     functions: &[Function],
 ) {
     let (ident, generics) = (&i.shell.ident, &i.shell.generics);
-    let spell = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
+    let spell_tokens = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
     let docs = format!(
         "[`{ident}`] with precomputed values of everything that depends only on its parameters, created by \
          [`prepare`]({ident}::prepare). It has the same functions, except those of frames.\n{}",
@@ -107,18 +108,18 @@ fn write_struct(
         .shell
         .tables
         .iter()
-        .map(|field| format!(", {}: {}", spell(&field.ident), spell(&field.ty)))
+        .map(|field| format!(", {}: {}", spell_tokens(&field.ident), spell_tokens(&field.ty)))
         .collect();
     let parameters = match generics.params.is_empty() {
         true => String::new(),
-        false => format!("<{}>", spell(&generics.params)),
+        false => format!("<{}>", spell_tokens(&generics.params)),
     };
     let _ = writeln!(
         out,
         "#[doc = {docs:?}]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{} struct {name}{parameters} {} \
          {{ numbers: [{}; {count}]{tables} }}",
-        spell(&i.shell.visibility),
-        spell(&generics.where_clause),
+        spell_tokens(&i.shell.visibility),
+        spell_tokens(&generics.where_clause),
         s.scalar.name()
     );
 }

@@ -145,7 +145,7 @@ fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.name(), diagram.actions.len())
 }
 
-/// Returns the expression of a free-body diagram from the expression `numbers` of its values.
+/// Returns the expression that constructs a free-body diagram from the expression `numbers` of its values.
 fn made(diagram: &Diagram, numbers: &str) -> String {
     let origin =
         |(name, origin): &(String, Origin)| format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})");

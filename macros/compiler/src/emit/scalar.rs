@@ -1,4 +1,4 @@
-//! Spelling of scalars in generated code.
+//! Spelling of scalars in generated code, by their type.
 
 use crate::syntax::ScalarType;
 
@@ -25,7 +25,7 @@ impl ScalarSpelling {
         ScalarSpelling { lanes, ..self.clone() }
     }
 
-    /// Returns the type of one lane.
+    /// Returns the type of the scalar in one lane.
     pub fn one(&self) -> &str {
         match &self.scalar {
             ScalarType::F64 => "f64",
@@ -34,7 +34,7 @@ impl ScalarSpelling {
         }
     }
 
-    /// Returns the scalar type.
+    /// Returns the name of the scalar type.
     pub fn name(&self) -> &str {
         self.lanes.as_deref().unwrap_or_else(|| self.one())
     }
@@ -44,7 +44,7 @@ impl ScalarSpelling {
         matches!(self.scalar, ScalarType::Generic(_))
     }
 
-    /// Returns true for functions of several states.
+    /// Returns whether the functions have several states in SIMD lanes.
     pub fn is_in_lanes(&self) -> bool {
         self.lanes.is_some()
     }

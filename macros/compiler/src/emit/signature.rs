@@ -25,16 +25,16 @@ pub fn filled(f: &Function) -> Option<usize> {
     }
 }
 
-/// Dimensions and names that signatures need.
+/// Dimensions and names that occur in the signatures of a mechanism.
 #[derive(Clone, Copy)]
 pub struct Signature<'a> {
     /// Spelling of scalars.
     pub scalar: &'a ScalarSpelling,
-    /// `NQ`.
+    /// Number of coordinates, `NQ`.
     pub nq: usize,
-    /// `NV`.
+    /// Number of velocities, `NV`.
     pub nv: usize,
-    /// `NU`.
+    /// Number of inputs, `NU`.
     pub nu: usize,
     /// True if functions take time as their first argument.
     pub time: bool,
@@ -127,21 +127,21 @@ impl Signature<'_> {
 
 /// Returns the type of a result of several matrices.
 fn several(shape: Shape, s: &Signature<'_>) -> String {
-    let square = |n| s.shape(Shape::Square(n));
+    let square_matrix_type = |n| s.shape(Shape::Square(n));
     match shape {
-        Shape::Pair(n) => format!("({0}, {0})", square(n)),
+        Shape::Pair(n) => format!("({0}, {0})", square_matrix_type(n)),
         Shape::Jacobians(rows, n, m) => {
             format!("::linkwork::OutputJacobians<{}, {rows}, {n}, {m}>", s.scalar.name())
         }
-        Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square(n)),
+        Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square_matrix_type(n)),
         Shape::InputHessian(n, m) => {
             let mixed = s.shape(Shape::Matrix(n, m));
-            format!("({0}, {0}, {0}, {mixed}, {mixed}, {1})", square(n), square(m))
+            format!("({0}, {0}, {0}, {mixed}, {mixed}, {1})", square_matrix_type(n), square_matrix_type(m))
         }
-        Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square(n)),
+        Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square_matrix_type(n)),
         Shape::Accelerated(n) => s.vector(n),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
-            format!("({}, {})", square(2 * n), s.shape(Shape::Matrix(2 * n, m)))
+            format!("({}, {})", square_matrix_type(2 * n), s.shape(Shape::Matrix(2 * n, m)))
         }
         _ => String::new(),
     }

@@ -60,7 +60,7 @@ pub fn write_trait(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// Writes these functions for the trait `Batch`.
+/// Writes the functions on the configuration space for the trait `Batch`.
 pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(
@@ -73,12 +73,12 @@ pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
     );
 }
 
-/// Returns a type in the form for calls of its functions.
+/// Returns a type in the form in which its functions are called (`SVector::<f64, 2>`).
 fn turbofish(v: &str) -> String {
     v.replacen("SVector<", "SVector::<", 1)
 }
 
-/// Returns the expression of NaN.
+/// Returns the expression of a NaN.
 fn nan(s: &Signature<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.name())
 }

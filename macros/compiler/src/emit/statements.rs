@@ -1,10 +1,10 @@
-//! Statements of a function body, in order.
+//! Code of the statements of a function body, in order.
 
 use super::pieces::{Piece, Statement};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Maximum number of bindings of a block.
+/// Maximum number of bindings in one block of a function body.
 pub const BLOCK: usize = 200;
 
 /// Writes the statements, and those of a long body in blocks: rustc's debug information needs stack for every
@@ -29,9 +29,14 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
     // Values that outlive a block are declared before it: as the value of the block they would be bound twice
     // and passed in a tuple.
     for (b, block) in blocks.iter().enumerate() {
-        let leaves = |s: &&Statement| s.names.iter().any(|k| last_need.get(k).is_some_and(|last| *last > b));
-        let names: Vec<String> =
-            block.iter().filter(leaves).flat_map(|s| &s.names).map(|k| format!("t{k}")).collect();
+        let is_used_after_block =
+            |s: &&Statement| s.names.iter().any(|k| last_need.get(k).is_some_and(|last| *last > b));
+        let names: Vec<String> = block
+            .iter()
+            .filter(is_used_after_block)
+            .flat_map(|s| &s.names)
+            .map(|k| format!("t{k}"))
+            .collect();
         match names.as_slice() {
             [] => {}
             [one] => _ = writeln!(out, "let {one};"),
@@ -39,7 +44,7 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
         }
         out.push_str("{\n");
         for statement in *block {
-            match leaves(&statement) {
+            match is_used_after_block(&statement) {
                 true => _ = writeln!(out, "{} = {};", statement.pattern, statement.text),
                 false => write_let(out, statement),
             }

@@ -12,13 +12,14 @@ pub fn rate(state: &str) -> String {
     format!("{state}{RATE_OF_STATE}")
 }
 
-/// Writes the implementations if the mechanism has such states and dynamics.
+/// Writes the implementations of the traits of first-order states, if the mechanism has such states and
+/// dynamics.
 pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &Signature<'_>) {
     let rates: Option<Vec<&Function>> =
         i.states.iter().map(|(name, _)| functions.iter().find(|f| f.name == rate(name))).collect();
     let Some(rates) = rates.filter(|rates| !rates.is_empty() && !i.facts.kinematic) else { return };
     let (head, name, n) = (Head::new(i, s), i.shell.ident.to_string(), rates.len());
-    let begin = |out: &mut String, of: &str| {
+    let begin_impl_block = |out: &mut String, of: &str| {
         let Head { generics, arguments, bounds } = &head;
         let sizes = [s.nq, s.nv, s.nu, n, s.nv + n].map(|n| n.to_string()).join(", ");
         let _ = writeln!(
@@ -26,7 +27,7 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
             "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{"
         );
     };
-    begin(out, "FirstOrder");
+    begin_impl_block(out, "FirstOrder");
     write_values(out, &rates, i, s);
     // Accelerations under constraints have no derivatives by parameters.
     let differentiable = i.facts.requests.derivatives && i.facts.constraints.is_none();
@@ -35,22 +36,22 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
     }
     out.push_str("}\n");
     if differentiable {
-        begin(out, "FirstOrderDerivatives");
+        begin_impl_block(out, "FirstOrderDerivatives");
         write_derivatives(out, &rates, i, s);
         out.push_str("}\n");
     }
 }
 
-/// Returns a call of an output, or of its derivatives.
+/// Returns the expression that calls a rate, or its derivatives with this suffix.
 fn call(f: &Function, suffix: &str) -> String {
     let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
-/// Arguments of the functions of the rates.
+/// Arguments of the functions that return the rates of the states.
 const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U];
 
-/// Writes names, units and values of the states, and their rates.
+/// Writes names, units, values and rates of the states of first order.
 fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let n = rates.len();
     let (vector, parameters) = (s.vector(n), s.parameters(&TAKEN));
@@ -69,8 +70,8 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
     });
     let fields: Vec<String> = fields.collect();
     let values: Vec<String> = rates.iter().map(|f| call(f, "")).collect();
-    let unit = |k: usize| i.units.parameters.get(k).map_or("", |unit| unit);
-    let units: Vec<&str> = i.states.iter().map(|(_, k)| unit(*k)).collect();
+    let unit_of_parameter = |k: usize| i.units.parameters.get(k).map_or("", |unit| unit);
+    let units: Vec<&str> = i.states.iter().map(|(_, k)| unit_of_parameter(*k)).collect();
     let _ = writeln!(
         out,
         "const STATES: [&'static str; {n}] = [{}];

@@ -9,7 +9,7 @@ use crate::lower::{Op, Operand, Program};
 use crate::machine::{NEAR_STATEMENTS, TRANSPOSED_STATEMENTS};
 use std::fmt;
 
-/// An entry of a matrix argument.
+/// Entry of a matrix argument, to which an output is stored.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
     /// Name of the matrix.
@@ -53,20 +53,21 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
-            let both = |&(row, column): &(usize, usize)| {
+            let symmetric_entries = |&(row, column): &(usize, usize)| {
                 let mut places =
                     vec![Entry { matrix, column, row }, Entry { matrix, column: row, row: column }];
                 places.dedup();
                 places
             };
-            return f.structure.entries.iter().map(both).collect();
+            return f.structure.entries.iter().map(symmetric_entries).collect();
         }
         Shape::Accelerated(n) => (n, false, n),
         Shape::Pair(n) | Shape::Forward(n) => (0, true, n),
         _ => return Vec::new(),
     };
-    let square = |matrix: &'static str| (0..n * n).map(move |k| Entry { matrix, column: k / n, row: k % n });
-    let all = given.into_iter().flat_map(square).enumerate();
+    let entries_of_square_matrix =
+        |matrix: &'static str| (0..n * n).map(move |k| Entry { matrix, column: k / n, row: k % n });
+    let all = given.into_iter().flat_map(entries_of_square_matrix).enumerate();
     let overwritten = match &f.structure.inverse {
         InverseForm::BlockArrow { trunk, .. } => trunk.as_slice(),
         _ => &[],
@@ -79,7 +80,7 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     (0..before).map(|_| Vec::new()).chain(kept).collect()
 }
 
-/// Inserts the store of every result directly after the last statement on which it depends.
+/// Inserts the store of every result directly after the last statement on which the result depends.
 fn as_known(
     program: &Program,
     statements: Vec<Statement>,
@@ -93,10 +94,11 @@ fn as_known(
     }
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
-    let binding = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
-    let all_known = |needs: &[usize]| needs.iter().filter_map(|need| binding(*need)).max().unwrap_or(0);
+    let binding_statement = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
+    let all_known =
+        |needs: &[usize]| needs.iter().filter_map(|need| binding_statement(*need)).max().unwrap_or(0);
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
-    for [one, next] in neighbours(lanes(program, places, &binding)) {
+    for [one, next] in neighbours(lanes(program, places, &binding_statement)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
@@ -126,15 +128,15 @@ fn as_known(
 
 /// A lane of a vector that is stored in a matrix.
 struct Lane {
-    /// Entry in which the lane is stored.
+    /// Matrix entry in which the lane is stored.
     place: Entry,
-    /// Index of the output.
+    /// Index of the output that is stored.
     output: usize,
-    /// Value number of the vector.
+    /// Number of the vector value that contains the lane.
     vector: usize,
-    /// Index of the lane.
+    /// Index of the lane in the vector.
     lane: usize,
-    /// Number of statements up to the one that computes the vector.
+    /// Number of statements up to and including the one that computes the vector.
     known: usize,
 }
 
@@ -160,8 +162,9 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     let mut rest = lanes.into_iter().peekable();
     while let Some(one) = rest.next() {
         let below = Entry { row: one.place.row + 1, ..one.place };
-        let is_next = |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
-        if let Some(next) = rest.next_if(is_next) {
+        let is_lane_below =
+            |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
+        if let Some(next) = rest.next_if(is_lane_below) {
             pairs.push([one, next]);
         }
     }
@@ -176,17 +179,22 @@ fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
     while let [[one, next], ..] = rest {
         let Entry { matrix, column, row } = one.place;
         let (a, b, width) = (one.vector, next.vector, widths[one.vector]);
-        let goes_on = |step: usize, down: usize, right: usize| {
+        let is_continuation_of_run = |step: usize, down: usize, right: usize| {
             move |(k, [x, y]): &(usize, &[Lane; 2])| {
                 let place = Entry { matrix, column: column + k * right, row: row + k * down };
                 let lanes = (one.lane + k * step, next.lane + k * step);
                 x.place == place && (x.vector, y.vector) == (a, b) && (x.lane, y.lane) == lanes
             }
         };
-        let run = |step, down, right| rest.iter().enumerate().take_while(goes_on(step, down, right)).count();
-        let (text, taken) = if a == b && (one.lane, next.lane) == (0, 1) && 2 * run(2, 2, 0) == width {
+        let length_of_run = |step, down, right| {
+            rest.iter().enumerate().take_while(is_continuation_of_run(step, down, right)).count()
+        };
+        let (text, taken) = if a == b
+            && (one.lane, next.lane) == (0, 1)
+            && 2 * length_of_run(2, 2, 0) == width
+        {
             (format!("Ops::store_rows::<{row}, _, _, _>(&mut {matrix}.data.0[{column}], t{a});"), width / 2)
-        } else if (one.lane, next.lane) == (0, 0) && widths[b] == width && run(1, 0, 1) == width {
+        } else if (one.lane, next.lane) == (0, 0) && widths[b] == width && length_of_run(1, 0, 1) == width {
             (
                 format!(
                     "Ops::store_columns::<{row}, {column}, _, _, _, _>(&mut {matrix}.data.0, t{a}, t{b});"

@@ -1,4 +1,4 @@
-//! The generated function that checks parameters.
+//! Code of the generated function that validates parameters.
 
 use super::interface::Interface;
 use crate::mechanism::{Model, Requirement};
@@ -9,7 +9,7 @@ use std::fmt::Write;
 pub struct ParameterCondition {
     /// Name of the condition in the runtime.
     rule: &'static str,
-    /// Description of the values.
+    /// Description of the values that must satisfy the condition.
     name: String,
     /// Names of the parameters on which the values depend.
     parameters: Vec<String>,
@@ -18,13 +18,13 @@ pub struct ParameterCondition {
 impl ParameterCondition {
     /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
     pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
-        let name = |k: &usize| model.parameters.get(*k).cloned();
-        let figure = |requirement: &Requirement<'_>| ParameterCondition {
+        let parameter_name = |k: &usize| model.parameters.get(*k).cloned();
+        let parameter_condition = |requirement: &Requirement<'_>| ParameterCondition {
             rule: requirement.rule.name(),
             name: requirement.figure.clone(),
-            parameters: requirement.parameters.iter().filter_map(name).collect(),
+            parameters: requirement.parameters.iter().filter_map(parameter_name).collect(),
         };
-        model.requirements.iter().map(figure).collect()
+        model.requirements.iter().map(parameter_condition).collect()
     }
 }
 

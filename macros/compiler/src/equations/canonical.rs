@@ -11,7 +11,7 @@ use crate::mechanics::crba::Matrix;
 use crate::mechanics::{energy, forces, momentum};
 use crate::mechanism::{Model, Quantity};
 
-/// The canonical equations as polynomials of one ring. The momenta are program inputs.
+/// Hamilton's canonical equations as polynomials of one ring. The momenta are program inputs.
 pub struct Canonical {
     /// Ring of all polynomials.
     pub ring: Ring,
@@ -26,7 +26,7 @@ pub struct Canonical {
     pub determinants: Vec<Polynomial>,
 }
 
-/// Returns the symbol of a determinant.
+/// Returns the symbol of determinant `k`.
 pub fn determinant(k: usize) -> Quantity {
     Quantity::Prepared(k)
 }
@@ -35,7 +35,8 @@ pub fn determinant(k: usize) -> Quantity {
 /// expressed by cofactors.
 const COUPLED: usize = 3;
 
-/// Derives the canonical equations of a mechanism without constraints. `None` if they would be too long.
+/// Derives the canonical equations of a mechanism without constraints. Returns `None` if they would be too
+/// long.
 pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Canonical> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
@@ -104,8 +105,11 @@ pub(super) fn velocities_of<'g>(
         let cofactors: Matrix<'g> = (0..n).map(|i| (0..n).map(|j| cofactor(&own, i, j)).collect()).collect();
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
-        let moves = |s: &Symbol| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_));
-        if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.normal_form(divisor)?.terms.len() > 1)
+        let is_configuration_symbol =
+            |s: &Symbol| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_));
+        if n > 1
+            || (symbols_in(&[divisor]).iter().any(is_configuration_symbol)
+                && normal.normal_form(divisor)?.terms.len() > 1)
         {
             determinants.push(divisor);
             divisor = determinant(determinants.len() - 1).expr(divisor.graph());
@@ -122,11 +126,11 @@ pub(super) fn velocities_of<'g>(
 fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
     // With cyclic indices no sign is needed.
-    let entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
+    let cofactor_entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
     match n {
         1 => m[0][0].num(1.0),
-        2 if i == j => entry(1, 1),
-        2 => -entry(1, 1),
-        _ => entry(1, 1) * entry(2, 2) - entry(1, 2) * entry(2, 1),
+        2 if i == j => cofactor_entry(1, 1),
+        2 => -cofactor_entry(1, 1),
+        _ => cofactor_entry(1, 1) * cofactor_entry(2, 2) - cofactor_entry(1, 2) * cofactor_entry(2, 1),
     }
 }

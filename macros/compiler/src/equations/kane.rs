@@ -62,7 +62,7 @@ pub struct Kane {
 
 /// Reason for the absence of equations in independent velocities.
 pub enum KaneFailure {
-    /// No choice of dependent velocities was found.
+    /// The search found no choice of dependent velocities.
     Choice,
     /// The equations would be too long.
     Length,
@@ -110,7 +110,7 @@ pub fn kane<'g>(
     })
 }
 
-/// Converts lists of expressions to simplified polynomials of one ring. `None` if they are too long.
+/// Converts lists of expressions to simplified polynomials of one ring. Returns `None` if they are too long.
 fn polynomials<'g, const N: usize>(
     model: &Model<'g>,
     lists: &[Vec<Expr<'g>>; N],
@@ -214,12 +214,12 @@ impl<'g> Solved<'g> {
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
         let own: Matrix<'g> = rows.iter().map(|row| dependent.iter().map(|k| row[*k]).collect()).collect();
         let inverse = inverse(model, &own)?;
-        let times = |column: &dyn Fn(usize) -> Expr<'g>| -> Vec<Expr<'g>> {
-            let entry = |row: &Vec<Expr<'g>>| {
+        let multiply_inverse_by_column = |column: &dyn Fn(usize) -> Expr<'g>| -> Vec<Expr<'g>> {
+            let dot_row_with_column = |row: &Vec<Expr<'g>>| {
                 let terms = row.iter().enumerate().filter(|(_, e)| !e.is_zero());
                 terms.fold(g.zero(), |sum, (i, e)| sum - *e * column(i))
             };
-            inverse.iter().map(|row| shortened(model, entry(row))).collect()
+            inverse.iter().map(|row| shortened(model, dot_row_with_column(row))).collect()
         };
         let at_zero_velocity = |e: Expr<'g>| {
             replace_all(&[e], &|s| {
@@ -228,43 +228,44 @@ impl<'g> Solved<'g> {
         };
         // Motion that is driven in time also moves dependent velocities.
         let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| at_zero_velocity(c.rate)).collect();
-        let mut values = times(&|i| drift[i]);
+        let mut values = multiply_inverse_by_column(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
         for k in &independent {
-            let column = times(&|i| rows[i][*k]);
+            let column = multiply_inverse_by_column(&|i| rows[i][*k]);
             for ((row, value), e) in partial.iter_mut().zip(&mut values).zip(column) {
                 row.push(e);
                 *value += e * Quantity::Velocity(*k).expr(g);
             }
         }
         let mut found = Solved { independent, dependent, values, changes: Vec::new(), partial };
-        let rate = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
+        let rate_of_dependent_speed = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
             let start = time_derivative(model.space(), *value);
             let terms = found.independent.iter().zip(row);
             terms.fold(start, |sum, (k, e)| sum + *e * Quantity::Acceleration(*k).expr(g))
         };
-        let changes: Vec<Expr<'g>> = found.values.iter().zip(&found.partial).map(rate).collect();
+        let changes: Vec<Expr<'g>> =
+            found.values.iter().zip(&found.partial).map(rate_of_dependent_speed).collect();
         found.changes = found.written(&changes);
         Some(found)
     }
 
     /// Expresses all velocities and accelerations in the independent ones.
     fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let place = |k: usize| self.dependent.iter().position(|d| *d == k);
+        let index_of_dependent_speed = |k: usize| self.dependent.iter().position(|d| *d == k);
         replace_all(e, &|s| match Quantity::from_symbol(s) {
-            Quantity::Velocity(k) => Some(self.values[place(k)?]),
-            Quantity::Acceleration(k) => Some(*self.changes.get(place(k)?)?),
+            Quantity::Velocity(k) => Some(self.values[index_of_dependent_speed(k)?]),
+            Quantity::Acceleration(k) => Some(*self.changes.get(index_of_dependent_speed(k)?)?),
             _ => None,
         })
     }
 
     /// Projects forces onto the independent velocities: `Zᵀ f`.
     fn projected(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let one = |(n, k): (usize, &usize)| {
+        let projected_force = |(n, k): (usize, &usize)| {
             let carried = self.dependent.iter().zip(&self.partial);
             carried.fold(forces[*k], |sum, (d, row)| sum + row[n] * forces[*d])
         };
-        self.independent.iter().enumerate().map(one).collect()
+        self.independent.iter().enumerate().map(projected_force).collect()
     }
 }
 
@@ -272,27 +273,29 @@ impl<'g> Solved<'g> {
 pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     let rates = rates(model);
     let names = names_with(model, &[]);
-    let name = |symbol: Symbol| name(model, &rates, symbol);
-    let marked = |symbol| primed(name(symbol));
-    let dotted = |symbol| {
-        let (name, dots) = name(symbol);
+    let name_of_symbol = |symbol: Symbol| name(model, &rates, symbol);
+    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let name_with_dots = |symbol| {
+        let (name, dots) = name_of_symbol(symbol);
         (names.get(&name), dots)
     };
     let rate_text = |k: usize| primed(rate_name(model, k));
-    let lines = Lines::new(kane, Plain { name: &marked }, &rate_text);
-    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
-    let mut plain: String = lines.velocities.iter().map(line).collect();
+    let lines = Lines::new(kane, Plain { name: &primed_name }, &rate_text);
+    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
     plain += "\n";
-    plain.extend(lines.motion.iter().map(line));
-    plain = plain + "\n" + &filled(&legend(model, kane, &marked)) + "\n";
+    plain.extend(lines.motion.iter().map(wrapped_line));
+    plain = plain + "\n" + &filled(&legend(model, kane, &primed_name)) + "\n";
     let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
-    let latex = |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let latex = Lines::new(kane, Latex { name: &dotted }, &latex);
-    let mathml = |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let mathml = Lines::new(kane, MathMl { name: &dotted }, &mathml);
+    let latex_rate_symbol =
+        |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let latex = Lines::new(kane, Latex { name: &name_with_dots }, &latex_rate_symbol);
+    let mathml_rate_symbol =
+        |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let mathml = Lines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
     Written {
         plain,
         latex: aligned(&[latex.velocities, latex.motion].concat()),

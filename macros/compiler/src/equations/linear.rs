@@ -124,15 +124,19 @@ fn coefficients<'g>(
         .map(|k| if k < nv { jacobian.iter().map(|row| row[k]).collect() } else { zeros.clone() })
         .collect();
     let inputs = symbolic::by_input(model, &rows);
-    let at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate(row)).collect() };
+    let evaluate_at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate(row)).collect() };
     Coefficients {
-        orders: [at_rest(by_deviation), at_rest(by_rate), at_rest(by_acceleration)],
-        inputs: at_rest(inputs),
-        multipliers: at_rest(multipliers),
+        orders: [
+            evaluate_at_rest(by_deviation),
+            evaluate_at_rest(by_rate),
+            evaluate_at_rest(by_acceleration),
+        ],
+        inputs: evaluate_at_rest(inputs),
+        multipliers: evaluate_at_rest(multipliers),
     }
 }
 
-/// Converts all rows to simplified polynomials. `None` if they are too long.
+/// Converts all rows of the linear equations to simplified polynomials. Returns `None` if they are too long.
 fn written_out<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
@@ -183,7 +187,7 @@ fn add_products<'g>(
 }
 
 impl Linear {
-    /// Whether a coefficient varies in time.
+    /// Returns whether a coefficient varies in time.
     fn changes(&self) -> bool {
         let time = self.ring.mask(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
         let time = self.with_time(time);
@@ -196,16 +200,18 @@ impl Linear {
     fn with_time(&self, time: Monomial) -> Monomial {
         let mut found = time;
         for (k, atom) in self.ring.atoms.iter().enumerate() {
-            let has = |p: &Polynomial| p.terms.iter().any(|t| t.monomial.meets(found));
+            let contains_found_atoms = |p: &Polynomial| p.terms.iter().any(|t| t.monomial.meets(found));
             let contains = match atom {
                 Atom::Symbol(_) => false,
                 Atom::Wave(wave) => {
                     let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
                     angles.into_iter().any(|(angle, _)| angle.monomial.meets(found))
                 }
-                Atom::Inverse(p) | Atom::Call(_, p) => has(p),
-                Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => has(p) || has(q),
-                Atom::Table(.., arguments) => arguments.iter().any(has),
+                Atom::Inverse(p) | Atom::Call(_, p) => contains_found_atoms(p),
+                Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => {
+                    contains_found_atoms(p) || contains_found_atoms(q)
+                }
+                Atom::Table(.., arguments) => arguments.iter().any(contains_found_atoms),
             };
             if contains {
                 found = found.or(Monomial::all_of(k));

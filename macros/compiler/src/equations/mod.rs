@@ -41,13 +41,12 @@ pub struct Limits {
     long: usize,
 }
 
-/// Maximum number of printed terms, including those in arguments of functions and in divisors, relative to
-/// the maximum number of terms alone. An argument that contains nested functions is printed at each of its
-/// occurrences.
+/// Limit of the terms that are printed, including those in arguments of functions and in divisors, as a
+/// multiple of `Limits::terms`. An argument with nested functions counts each time it is printed.
 const NESTED_TERMS: usize = 20;
 
 impl Limits {
-    /// Limits of a readable text.
+    /// Limits of equations that are readable in documentation.
     pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
     /// Limits for equations that the user requests.
     pub const ASKED: Limits = Limits { operations: [2000, 5000], terms: 3000, long: 8000 };
@@ -85,8 +84,9 @@ pub fn derive<'g>(
     speeds: Option<&InSpeeds<'g>>,
     limits: &Limits,
 ) -> Option<Equations> {
-    let metric = |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.metric(mass));
-    let entries: Vec<Expr<'g>> = metric(mass).concat();
+    let mass_matrix_in_speeds =
+        |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.metric(mass));
+    let entries: Vec<Expr<'g>> = mass_matrix_in_speeds(mass).concat();
     if entries.is_empty() || Tape::new(&entries).steps() > limits.operations[0] {
         return None;
     }
@@ -113,7 +113,7 @@ pub fn derive<'g>(
     let entries = normals(&mut normal, &entries)?;
     let mut motion = normals(&mut normal, &bias)?;
     let (v, a) = (normals(&mut normal, &velocities(model))?, normals(&mut normal, &accelerations(model))?);
-    let effective: Vec<Expr<'g>> = metric(&added_mass::effective(model, mass)).concat();
+    let effective: Vec<Expr<'g>> = mass_matrix_in_speeds(&added_mass::effective(model, mass)).concat();
     let effective = if model.acceleration_forces.is_empty() {
         entries.clone()
     } else {
@@ -237,9 +237,9 @@ struct Simplifier {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
-    /// Remaining number of terms.
+    /// Number of terms that may still be added.
     left: usize,
-    /// Remaining number of printed terms.
+    /// Number of printed terms that may still be added.
     written_left: usize,
 }
 
@@ -261,11 +261,11 @@ impl Simplifier {
     }
 }
 
-/// Simplifies all equations. `None` if they are too long.
+/// Simplifies all equations of motion. Returns `None` if they are too long.
 fn shortened(mut short: Simplifier, found: Equations) -> Option<Equations> {
     let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
-    let all = || motion.iter().chain(&forces).chain([&lagrangian]);
-    if all().map(|p| p.terms.len()).sum::<usize>() > short.long {
+    let all_polynomials = || motion.iter().chain(&forces).chain([&lagrangian]);
+    if all_polynomials().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
     }
     let lagrangian = short.shorten(&lagrangian)?;

@@ -40,7 +40,7 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     if depth == 0 {
         return "…".to_string();
     }
-    let operand = |id, level| term(e.graph().expr(id), name, level, depth - 1);
+    let format_operand = |id, level| term(e.graph().expr(id), name, level, depth - 1);
     let (text, own) = match e.node() {
         Node::Const(c) => (format!("{c}"), if c < 0.0 { 1 } else { 4 }),
         Node::Symbol(s) => (name(s), 4),
@@ -49,23 +49,25 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
             let names: Vec<String> = e.graph().gather(k).into_iter().map(name).collect();
             (format!("[{}]", names.join(", ")), 4)
         }
-        Node::Sum(_, a) => (format!("sum({})", operand(a, 0)), 4),
-        Node::Lane(k, a) => (format!("{}[{k}]", operand(a, 4)), 4),
-        Node::Join(_, a, b) => (format!("[{}; {}]", operand(a, 0), operand(b, 0)), 4),
-        Node::Neg(a) => (format!("-{}", operand(a, 2)), 1),
-        Node::Add(a, b) => (format!("{} + {}", operand(a, 1), operand(b, 1)), 1),
-        Node::Sub(a, b) => (format!("{} - {}", operand(a, 1), operand(b, 2)), 1),
-        Node::Mul(a, b) => (format!("{} * {}", operand(a, 2), operand(b, 2)), 2),
-        Node::Div(a, b) => (format!("{} / {}", operand(a, 2), operand(b, 3)), 2),
-        Node::Call(f, a) => (format!("{}({})", f.name(), operand(a, 0)), 4),
-        Node::Atan2(a, b) => (format!("atan2({}, {})", operand(a, 0), operand(b, 0)), 4),
+        Node::Sum(_, a) => (format!("sum({})", format_operand(a, 0)), 4),
+        Node::Lane(k, a) => (format!("{}[{k}]", format_operand(a, 4)), 4),
+        Node::Join(_, a, b) => (format!("[{}; {}]", format_operand(a, 0), format_operand(b, 0)), 4),
+        Node::Neg(a) => (format!("-{}", format_operand(a, 2)), 1),
+        Node::Add(a, b) => (format!("{} + {}", format_operand(a, 1), format_operand(b, 1)), 1),
+        Node::Sub(a, b) => (format!("{} - {}", format_operand(a, 1), format_operand(b, 2)), 1),
+        Node::Mul(a, b) => (format!("{} * {}", format_operand(a, 2), format_operand(b, 2)), 2),
+        Node::Div(a, b) => (format!("{} / {}", format_operand(a, 2), format_operand(b, 3)), 2),
+        Node::Call(f, a) => (format!("{}({})", f.name(), format_operand(a, 0)), 4),
+        Node::Atan2(a, b) => (format!("atan2({}, {})", format_operand(a, 0), format_operand(b, 0)), 4),
         Node::Table(lookup, a, b, c) => {
             let arguments: Vec<String> =
-                [a, b, c].into_iter().take(lookup.variables()).map(|a| operand(a, 0)).collect();
+                [a, b, c].into_iter().take(lookup.variables()).map(|a| format_operand(a, 0)).collect();
             (format!("{}({})", e.graph().table_name(lookup), arguments.join(", ")), 4)
         }
-        Node::Pow(a, b) => (format!("pow({}, {})", operand(a, 0), operand(b, 0)), 4),
-        Node::Extreme(f, a, b) => (format!("{}({}, {})", f.name(), operand(a, 0), operand(b, 0)), 4),
+        Node::Pow(a, b) => (format!("pow({}, {})", format_operand(a, 0), format_operand(b, 0)), 4),
+        Node::Extreme(f, a, b) => {
+            (format!("{}({}, {})", f.name(), format_operand(a, 0), format_operand(b, 0)), 4)
+        }
     };
     if own < level { format!("({text})") } else { text }
 }
@@ -126,7 +128,7 @@ impl<'a, S: Style> Writer<'a, S> {
         self.product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
-    /// Returns a sum as a factor.
+    /// Returns a sum, raised to a power, as a factor of a product.
     fn bracketed(&self, sum: String, power: u8) -> Factor {
         if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
     }
@@ -164,15 +166,17 @@ impl<'a, S: Style> Writer<'a, S> {
     }
 
     fn atom(&self, atom: &Atom, power: u8) -> String {
-        let call = |name, arguments: &[Argument]| self.style.call(name, power, arguments);
+        let format_call = |name, arguments: &[Argument]| self.style.call(name, power, arguments);
         match atom {
             Atom::Symbol(s) => self.style.symbol(*s, power),
-            Atom::Wave(w) => call(if w.cosine { "cos" } else { "sin" }, &[self.angle(w)]),
-            Atom::Call(f, p) => call(f.name(), &[self.argument(p)]),
-            Atom::Atan2(y, x) => call("atan2", &[self.argument(y), self.argument(x)]),
-            Atom::Power(a, b) => call("pow", &[self.argument(a), self.argument(b)]),
-            Atom::Extreme(f, a, b) => call(f.name(), &[self.argument(a), self.argument(b)]),
-            Atom::Table(name, _, x) => call(name, &x.iter().map(|x| self.argument(x)).collect::<Vec<_>>()),
+            Atom::Wave(w) => format_call(if w.cosine { "cos" } else { "sin" }, &[self.angle(w)]),
+            Atom::Call(f, p) => format_call(f.name(), &[self.argument(p)]),
+            Atom::Atan2(y, x) => format_call("atan2", &[self.argument(y), self.argument(x)]),
+            Atom::Power(a, b) => format_call("pow", &[self.argument(a), self.argument(b)]),
+            Atom::Extreme(f, a, b) => format_call(f.name(), &[self.argument(a), self.argument(b)]),
+            Atom::Table(name, _, x) => {
+                format_call(name, &x.iter().map(|x| self.argument(x)).collect::<Vec<_>>())
+            }
             Atom::Inverse(p) => {
                 let divisor = Factor::Sum(self.polynomial(p));
                 self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)
@@ -223,7 +227,7 @@ pub fn wrapped(text: &str, width: usize, indent: &str) -> String {
     }
 }
 
-/// Sides of equations up to this number of characters get no line of their own.
+/// Maximum number of characters of an equation's side that gets no line of its own.
 const SHORT: usize = 24;
 
 /// Returns the position of the line break: the last sign of minimum nesting depth within `room` characters,

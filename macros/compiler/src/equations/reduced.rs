@@ -18,7 +18,7 @@ use crate::mechanics::routh::{Solved, part, solved, with_cyclic_velocities, with
 use crate::mechanics::{accelerations, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
-/// Maximum number of columns of the text.
+/// Maximum number of columns of the printed text.
 const WIDTH: usize = 100;
 
 /// Routh's equations as polynomials of one ring. The momenta are program inputs.
@@ -63,22 +63,27 @@ pub fn reduced<'g>(
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
     let a = accelerations(model);
-    let dot = |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
-    let selected = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
-    let a = selected(&others, &a);
+    let dot_product =
+        |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
+    let select_entries =
+        |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
+    let a = select_entries(&others, &a);
     // Accelerations of the cyclic coordinates without inputs, and due to inputs.
     let across = part(mass, &cyclic, &others);
-    let carried = across.iter().zip(selected(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
+    let carried =
+        across.iter().zip(select_entries(&cyclic, &bias)).map(|(row, bias)| -(dot_product(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
     let (carried, _) = velocities_of(&own, &carried, &mut normal)?;
-    let (driven, _) = velocities_of(&own, &selected(&cyclic, &inputs), &mut normal)?;
+    let (driven, _) = velocities_of(&own, &select_entries(&cyclic, &inputs), &mut normal)?;
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in &others {
-        let row = selected(&cyclic, &mass[*k]);
-        motion.push(dot(&selected(&others, &mass[*k]), &a) + dot(&row, &carried) + bias[*k]);
-        forces.push(inputs[*k] - dot(&row, &driven));
+        let row = select_entries(&cyclic, &mass[*k]);
+        motion.push(
+            dot_product(&select_entries(&others, &mass[*k]), &a) + dot_product(&row, &carried) + bias[*k],
+        );
+        forces.push(inputs[*k] - dot_product(&row, &driven));
     }
-    let momentum_rate = selected(&cyclic, &inputs);
+    let momentum_rate = select_entries(&cyclic, &inputs);
     let lists = [vec![routhian], motion, forces, velocity, momentum_rate, divisors];
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for list in &lists {
@@ -112,7 +117,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
-    let name = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let name_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(c) => (momenta[c].clone(), 0),
         Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
             (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
@@ -120,15 +125,15 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         Quantity::Prepared(k) => (inertias[k].clone(), 0),
         _ => name(model, &rates, symbol),
     };
-    let marked = |symbol| primed(name(symbol));
-    let dotted = |symbol| {
-        let (name, dots) = name(symbol);
+    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let name_with_dots = |symbol| {
+        let (name, dots) = name_of_symbol(symbol);
         (all.get(&name), dots)
     };
-    let lines = lines(reduced, Plain { name: &marked });
-    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
-    let mut plain = line(&format!("R = {}", lines[0])) + "\n";
-    plain.extend(lines[1..].iter().map(line));
+    let lines = lines(reduced, Plain { name: &primed_name });
+    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain = wrapped_line(&format!("R = {}", lines[0])) + "\n";
+    plain.extend(lines[1..].iter().map(wrapped_line));
     let still = reduced.momentum_rate.iter().all(|p| p.terms.is_empty());
     let (is, of) = if momenta.len() == 1 {
         ("is the momentum", "coordinate")
@@ -144,10 +149,10 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     );
     about += &about_inertias(&inertias);
     plain = plain + "\n" + &filled(&about) + "\n";
-    let mut lines = self::lines(reduced, Latex { name: &dotted });
+    let mut lines = self::lines(reduced, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
     let latex = aligned(&lines);
-    lines = self::lines(reduced, MathMl { name: &dotted });
+    lines = self::lines(reduced, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>R</mi> = {}", lines[0]);
     Written { plain, latex, mathml: page(&lines) }
 }
@@ -159,10 +164,11 @@ fn lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
     let mut lines = vec![writer.energy(&reduced.routhian)];
     let sides = reduced.motion.iter().zip(&reduced.forces);
     lines.extend(sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b))));
-    let cyclic = || reduced.cyclic.iter().copied();
-    let velocities = cyclic().map(Quantity::Velocity).zip(&reduced.velocity);
+    let cyclic_coordinates = || reduced.cyclic.iter().copied();
+    let velocities = cyclic_coordinates().map(Quantity::Velocity).zip(&reduced.velocity);
     let moved = reduced.momentum_rate.iter().filter(|p| !p.terms.is_empty()).count() > 0;
-    let momenta = cyclic().map(Quantity::Acceleration).zip(&reduced.momentum_rate).filter(|_| moved);
+    let momenta =
+        cyclic_coordinates().map(Quantity::Acceleration).zip(&reduced.momentum_rate).filter(|_| moved);
     let determinants = (0..).map(determinant).zip(&reduced.determinants);
     for (left, right) in velocities.chain(momenta).chain(determinants) {
         lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.polynomial(right)));

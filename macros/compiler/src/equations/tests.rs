@@ -73,14 +73,14 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 /// Returns the values of the symbols of a mechanism by their printed names.
 fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::rates(model);
-    let all = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
-    let quantities = all(model.parameters.len(), Quantity::Parameter)
-        .chain(all(model.nq(), Quantity::Configuration))
-        .chain(all(model.nv(), Quantity::Velocity))
-        .chain(all(model.nv(), Quantity::Acceleration))
-        .chain(all(model.nu(), Quantity::Input))
-        .chain(all(model.constraints.len(), |k| Quantity::Given(Supplied::Multiplier, k)))
-        .chain(all(model.nv(), Quantity::Force))
+    let quantities_up_to = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
+    let quantities = quantities_up_to(model.parameters.len(), Quantity::Parameter)
+        .chain(quantities_up_to(model.nq(), Quantity::Configuration))
+        .chain(quantities_up_to(model.nv(), Quantity::Velocity))
+        .chain(quantities_up_to(model.nv(), Quantity::Acceleration))
+        .chain(quantities_up_to(model.nu(), Quantity::Input))
+        .chain(quantities_up_to(model.constraints.len(), |k| Quantity::Given(Supplied::Multiplier, k)))
+        .chain(quantities_up_to(model.nv(), Quantity::Force))
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities
         .map(|q| {
@@ -143,8 +143,9 @@ fn check(model: &Model<'_>) {
     let rows: Vec<Expr<'_>> = rows.collect();
     for seed in 1..20 {
         let symbol = state(model, seed);
-        let value = |p: &Polynomial| e.ring.evaluate(p, &symbol);
-        let all: Vec<f64> = e.motion.iter().chain(&e.forces).chain([&e.lagrangian]).map(value).collect();
+        let value_of_polynomial = |p: &Polynomial| e.ring.evaluate(p, &symbol);
+        let all: Vec<f64> =
+            e.motion.iter().chain(&e.forces).chain([&e.lagrangian]).map(value_of_polynomial).collect();
         assert_near(&all, &program.run(&symbol), &model.name);
         assert_near(&all[..model.nv()], &eval(&rows, &symbol), "Lagrange");
     }
@@ -209,7 +210,7 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
     assert!(text.starts_with(expected), "{text}");
 }
 
-/// The length of the equations decides whether they are printed, not the number of velocities.
+/// Checks that the length of the equations decides whether they are printed, not the number of velocities.
 #[test]
 fn length_decides() {
     let text = equations_of("-g * z", &masses(5));
@@ -227,7 +228,7 @@ fn length_decides() {
     }
 }
 
-/// The legend explains each multiplier by its constraint.
+/// Checks that the legend explains each multiplier by the name of its constraint.
 #[test]
 fn multipliers_are_named() {
     let text = equations_of("-g * z", SPHERE);
@@ -247,11 +248,11 @@ fn a_condition_that_always_holds_is_dropped() {
         !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
         "{text}"
     );
-    let arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
-    assert_eq!(crate::check(arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
+    let linkage_arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
+    assert_eq!(crate::check(linkage_arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
     // A contact that can never close is reported, however small its row is.
     let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
-    let messages = crate::check(arguments(), hovering.parse().unwrap(), Path::new(""));
+    let messages = crate::check(linkage_arguments(), hovering.parse().unwrap(), Path::new(""));
     assert!(
         messages.len() == 1 && messages[0].contains("`contact.normal` cannot be satisfied"),
         "{messages:?}"
@@ -326,7 +327,8 @@ axial (cos(nutation) precession'' + spin'' - sin(nutation) precession' nutation'
     assert!(text.contains(expected), "{text}");
 }
 
-/// Quaternion components and angular velocities, which are not their rates.
+/// Checks the printed equations of a top: quaternion components, and angular velocities, which are not the
+/// rates of these components.
 #[test]
 fn top_as_text() {
     let expected = "\
@@ -358,11 +360,12 @@ fn check_canonical(model: &Model<'_>) -> String {
         let symbol = state(model, seed);
         let p = eval(&momenta, &symbol);
         // Determinants contain no other determinants, but the ring evaluates all of its atoms.
-        let one = |s: Symbol| match Quantity::from_symbol(s) {
+        let value_with_unit_momenta = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(_) | Quantity::Prepared(_) => 1.0,
             _ => symbol(s),
         };
-        let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
+        let determinants: Vec<f64> =
+            c.determinants.iter().map(|d| c.ring.evaluate(d, &value_with_unit_momenta)).collect();
         let symbol_value = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
@@ -401,13 +404,13 @@ fn hamiltons_form_is_that_of_the_functions() {
 
 #[test]
 fn forms_that_there_are_not_are_refused() {
-    let said = |words: &str, item: &str| {
+    let messages_for_form = |words: &str, item: &str| {
         let arguments = format!("gravity = -g * z, equations = {words}").parse().unwrap();
         crate::check(arguments, item.parse().unwrap(), Path::new(""))
     };
-    assert_eq!(said("lagrange", SPHERE), [""; 0]);
-    assert_eq!(said("structure", SPHERE), [""; 0]);
-    assert_eq!(said("hamilton", FREE), [""; 0]);
+    assert_eq!(messages_for_form("lagrange", SPHERE), [""; 0]);
+    assert_eq!(messages_for_form("structure", SPHERE), [""; 0]);
+    assert_eq!(messages_for_form("hamilton", FREE), [""; 0]);
     let rows = [
         ("hamilton", SPHERE.to_string(), "printed only for mechanisms without constraints"),
         ("routh", SPHERE.to_string(), "require a mechanism without constraints"),
@@ -416,7 +419,7 @@ fn forms_that_there_are_not_are_refused() {
         ("newton", SPHERE.to_string(), "unknown value `newton` for `equations`"),
     ];
     for (words, item, expected) in rows {
-        let messages = said(words, &item);
+        let messages = messages_for_form(words, &item);
         assert!(messages.len() == 1 && messages[0].contains(expected), "{words}: {messages:?}");
         assert!(messages[0].contains("help"), "{messages:?}");
     }

@@ -21,7 +21,7 @@ pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
     Written { plain: plain(model, equations, &rates), latex, mathml }
 }
 
-/// The printed Lagrangian, and both sides of the equation of every velocity.
+/// Printed Lagrangian, and both sides of the equation of every velocity.
 struct Lines {
     /// Joint velocities in terms of declared generalized speeds, with their indices.
     rates: Vec<(usize, String)>,
@@ -53,18 +53,18 @@ impl Lines {
 
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
 fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
-    let name = |symbol| primed(name(model, rates, symbol));
-    let lines = Lines::new(equations, Plain { name: &name });
-    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let primed_name = |symbol| primed(name(model, rates, symbol));
+    let lines = Lines::new(equations, Plain { name: &primed_name });
+    let wrapped_line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
-    let mut out = line(&format!("{energy} = {}", lines.lagrangian));
+    let mut out = wrapped_line(&format!("{energy} = {}", lines.lagrangian));
     out.push('\n');
     for (k, rate) in &lines.rates {
-        out += &line(&format!("{} = {rate}", primed(rate_name(model, *k))));
+        out += &wrapped_line(&format!("{} = {rate}", primed(rate_name(model, *k))));
     }
     out.push_str(if lines.rates.is_empty() { "" } else { "\n" });
     for (motion, force) in lines.motion {
-        out += &line(&format!("{motion} = {force}"));
+        out += &wrapped_line(&format!("{motion} = {force}"));
     }
     out.push('\n');
     legend(model, equations.without_forces, rates)
@@ -75,35 +75,35 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
 /// Formats the canonical equations as plain text, LaTeX and MathML.
 pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let rates = rates(model);
-    let momentum = |k: usize| format!("p_{}", model.velocities[k].0);
-    let momenta: Vec<String> = (0..model.nv()).map(momentum).collect();
+    let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
+    let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
     let determinants = determinants(model, canonical.determinants.len());
     let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
-    let name = |symbol| match Quantity::from_symbol(symbol) {
+    let name_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
         _ => name(model, &rates, symbol),
     };
-    let marked = |symbol| primed(name(symbol));
-    let dotted = |symbol| {
-        let (name, dots) = name(symbol);
+    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let name_with_dots = |symbol| {
+        let (name, dots) = name_of_symbol(symbol);
         (all.get(&name), dots)
     };
-    let lines = canonical_lines(canonical, Plain { name: &marked });
-    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
-    let mut plain = line(&format!("H = {}", lines[0])) + "\n";
-    plain.extend(lines[1..].iter().map(line));
+    let lines = canonical_lines(canonical, Plain { name: &primed_name });
+    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain = wrapped_line(&format!("H = {}", lines[0])) + "\n";
+    plain.extend(lines[1..].iter().map(wrapped_line));
     let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, \
                      and a prime marks a rate."
         .to_string();
     about += &about_inertias(&determinants);
     plain = plain + "\n" + &filled(&about) + "\n";
-    let mut lines = canonical_lines(canonical, Latex { name: &dotted });
+    let mut lines = canonical_lines(canonical, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
     let latex = aligned(&lines);
-    lines = canonical_lines(canonical, MathMl { name: &dotted });
+    lines = canonical_lines(canonical, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>H</mi> = {}", lines[0]);
     Written { plain, latex, mathml: page(&lines) }
 }
@@ -122,7 +122,7 @@ fn free_letter(model: &Model<'_>, letter: char) -> String {
     found
 }
 
-/// Returns unused names for determinants.
+/// Returns names for determinants that no quantity of the model has.
 pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
     let letter = free_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
@@ -172,7 +172,7 @@ pub(super) fn filled(text: &str) -> String {
 /// Returns the Lagrangian and an equation for every velocity, as LaTeX and as HTML.
 fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
     let names = names(model);
-    let name = |symbol| {
+    let name_with_dots = |symbol| {
         let (name, dots) = name(model, rates, symbol);
         (names.get(&name), dots)
     };
@@ -184,10 +184,10 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::new(equations, Latex { name: &name }).equations(energy, &|k| {
+    let latex = Lines::new(equations, Latex { name: &name_with_dots }).equations(energy, &|k| {
         Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
-    let mathml = Lines::new(equations, MathMl { name: &name }).equations(of_mathml, &|k| {
+    let mathml = Lines::new(equations, MathMl { name: &name_with_dots }).equations(of_mathml, &|k| {
         MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
     (aligned(&latex), page(&mathml))
@@ -219,7 +219,8 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
     rates
 }
 
-/// Returns the name of a joint velocity and zero, or the name of the coordinate whose rate it is and one.
+/// Returns the name under which joint velocity `k` is printed, with the number of dots: its own name and
+/// zero, or the name of the coordinate whose rate it is and one.
 pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
     let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
     let is_rate = model.charts.iter().any(|chart| match chart {

@@ -18,7 +18,7 @@ pub fn in_comment_lines(text: &str, first: &str, others: &str) -> String {
     c::wrapped(text, first, others)
 }
 
-/// Replaces the links of a documentation text by their words.
+/// Replaces the links in a documentation text by their words.
 pub fn without_links(text: &str) -> String {
     c::without_links(text)
 }

@@ -43,17 +43,17 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
     found
 }
 
-/// Derivatives of expressions of one graph along one direction, with a cache of computed results.
+/// Directional derivatives of the expressions of one graph, with a cache of computed results.
 pub struct Derivative<'g> {
     graph: &'g Graph,
     /// Rates of change of the symbols. All other symbols are constant.
     rates: Vec<(Symbol, Expr<'g>)>,
-    /// Index of the derivative of each node.
+    /// Index of the derivative of each node that was differentiated.
     known: Memo<'g>,
 }
 
 impl<'g> Derivative<'g> {
-    /// Creates the differentiation with respect to `symbol`.
+    /// Creates the derivative with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
         Derivative::with_rates(vec![(symbol, graph.one())], graph)
     }
@@ -72,16 +72,18 @@ impl<'g> Derivative<'g> {
             let (mut e, mut derivative) = (e, derivative);
             loop {
                 self.known.set(e.id(), derivative.id());
-                let expr = |id: Id| self.graph.expr(id);
-                let constant = |id: Id| expr(id).value();
+                let expression_of_id = |id: Id| self.graph.expr(id);
+                let constant_value = |id: Id| expression_of_id(id).value();
                 (e, derivative) = match e.node() {
-                    Node::Neg(a) => (expr(a), -derivative),
-                    Node::Add(a, b) if constant(a).is_some() => (expr(b), derivative),
-                    Node::Add(a, b) | Node::Sub(a, b) if constant(b).is_some() => (expr(a), derivative),
-                    Node::Sub(a, b) if constant(a).is_some() => (expr(b), -derivative),
-                    Node::Mul(a, b) => match (constant(a), constant(b)) {
-                        (Some(c), _) if c != 0.0 => (expr(b), derivative * (1.0 / c)),
-                        (_, Some(c)) if c != 0.0 => (expr(a), derivative * (1.0 / c)),
+                    Node::Neg(a) => (expression_of_id(a), -derivative),
+                    Node::Add(a, b) if constant_value(a).is_some() => (expression_of_id(b), derivative),
+                    Node::Add(a, b) | Node::Sub(a, b) if constant_value(b).is_some() => {
+                        (expression_of_id(a), derivative)
+                    }
+                    Node::Sub(a, b) if constant_value(a).is_some() => (expression_of_id(b), -derivative),
+                    Node::Mul(a, b) => match (constant_value(a), constant_value(b)) {
+                        (Some(c), _) if c != 0.0 => (expression_of_id(b), derivative * (1.0 / c)),
+                        (_, Some(c)) if c != 0.0 => (expression_of_id(a), derivative * (1.0 / c)),
                         _ => break,
                     },
                     _ => break,
@@ -131,56 +133,73 @@ impl<'g> Derivative<'g> {
     }
 
     fn rule(&self, id: Id) -> Expr<'g> {
-        let expr = |id: Id| self.graph.expr(id);
-        let d = |id: Id| self.derived(id);
+        let expression_of_id = |id: Id| self.graph.expr(id);
+        let derivative_of_id = |id: Id| self.derived(id);
         match self.graph.node(id) {
             // Derivatives are taken before the inputs of lanes are gathered.
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),
-            Node::Sum(n, a) => d(a).lane_sum(n.into()),
-            Node::Lane(k, a) => d(a).lane(k.into()),
-            Node::Join(n, a, b) => d(a).joined(n.into(), d(b)),
+            Node::Sum(n, a) => derivative_of_id(a).lane_sum(n.into()),
+            Node::Lane(k, a) => derivative_of_id(a).lane(k.into()),
+            Node::Join(n, a, b) => derivative_of_id(a).joined(n.into(), derivative_of_id(b)),
             Node::Symbol(s) => self
                 .rates
                 .iter()
                 .find(|(symbol, _)| *symbol == s)
                 .map_or(self.graph.zero(), |(_, rate)| *rate),
-            Node::Neg(a) => -d(a),
-            Node::Add(a, b) => d(a) + d(b),
-            Node::Sub(a, b) => d(a) - d(b),
-            Node::Mul(a, b) => d(a) * expr(b) + expr(a) * d(b),
-            Node::Div(a, b) => (d(a) - expr(id) * d(b)) / expr(b),
-            Node::Call(f, a) if d(a).is_zero() => expr(a).call(f).zero(),
-            Node::Call(f, a) => self.outer(f, expr(a), expr(id)) * d(a),
-            Node::Atan2(y, x) => (expr(x) * d(y) - expr(y) * d(x)) / (expr(x).square() + expr(y).square()),
-            Node::Extreme(_, a, b) if d(a) == d(b) => d(a),
+            Node::Neg(a) => -derivative_of_id(a),
+            Node::Add(a, b) => derivative_of_id(a) + derivative_of_id(b),
+            Node::Sub(a, b) => derivative_of_id(a) - derivative_of_id(b),
+            Node::Mul(a, b) => {
+                derivative_of_id(a) * expression_of_id(b) + expression_of_id(a) * derivative_of_id(b)
+            }
+            Node::Div(a, b) => {
+                (derivative_of_id(a) - expression_of_id(id) * derivative_of_id(b)) / expression_of_id(b)
+            }
+            Node::Call(f, a) if derivative_of_id(a).is_zero() => expression_of_id(a).call(f).zero(),
+            Node::Call(f, a) => {
+                self.outer(f, expression_of_id(a), expression_of_id(id)) * derivative_of_id(a)
+            }
+            Node::Atan2(y, x) => {
+                (expression_of_id(x) * derivative_of_id(y) - expression_of_id(y) * derivative_of_id(x))
+                    / (expression_of_id(x).square() + expression_of_id(y).square())
+            }
+            Node::Extreme(_, a, b) if derivative_of_id(a) == derivative_of_id(b) => derivative_of_id(a),
             Node::Extreme(f, a, b) => {
-                let sign = (expr(a) - expr(b)).call(Function::Signum);
-                let change = (d(a) - d(b)) * sign;
-                let sum = d(a) + d(b);
+                let sign = (expression_of_id(a) - expression_of_id(b)).call(Function::Signum);
+                let change = (derivative_of_id(a) - derivative_of_id(b)) * sign;
+                let sum = derivative_of_id(a) + derivative_of_id(b);
                 (if f == Extreme::Max { sum + change } else { sum - change }) * 0.5
             }
             Node::Table(lookup, a, b, c) => {
                 let x = [a, b, c];
                 (0..lookup.variables()).fold(self.graph.zero(), |sum, k| match lookup.slope(k) {
-                    Some(slope) if !d(x[k]).is_zero() => {
-                        sum + self.graph.lookup(slope, x.map(expr)) * d(x[k])
+                    Some(slope) if !derivative_of_id(x[k]).is_zero() => {
+                        sum + self.graph.lookup(slope, x.map(expression_of_id)) * derivative_of_id(x[k])
                     }
                     _ => sum,
                 })
             }
             Node::Pow(a, b) => {
                 // This form is finite at a base of zero, where the power laws of force elements begin.
-                let slope = |b: Expr<'g>| b * expr(a).pow(b - self.graph.one());
-                let base = if d(a).is_zero() { self.graph.zero() } else { slope(expr(b)) * d(a) };
-                match d(b).is_zero() {
+                let derivative_of_power = |b: Expr<'g>| b * expression_of_id(a).pow(b - self.graph.one());
+                let base = if derivative_of_id(a).is_zero() {
+                    self.graph.zero()
+                } else {
+                    derivative_of_power(expression_of_id(b)) * derivative_of_id(a)
+                };
+                match derivative_of_id(b).is_zero() {
                     true => base,
-                    false => base + expr(id) * d(b) * expr(a).call(Function::Ln),
+                    false => {
+                        base + expression_of_id(id)
+                            * derivative_of_id(b)
+                            * expression_of_id(a).call(Function::Ln)
+                    }
                 }
             }
         }
     }
 
-    /// Returns `f'(x)`, given `y = f(x)`.
+    /// Returns the derivative `f'(x)` of an elementary function, given `y = f(x)`.
     fn outer(&self, f: Function, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
         let one = self.graph.one();
         match f {
@@ -221,10 +240,13 @@ mod tests {
         let e = shared * shared / (y.square() + z.call(Function::Exp)) + x.atan2(shared)
             - (z - x * shared).sqrt() * y.pow(x);
         let found = gradient(e, &symbols);
-        let value = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
+        let value_at_sample_point = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
         for (symbol, found) in symbols.into_iter().zip(found) {
-            let expected = value(Derivative::with_respect_to(symbol, &g).differentiate(e));
-            assert!((value(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{symbol:?}");
+            let expected = value_at_sample_point(Derivative::with_respect_to(symbol, &g).differentiate(e));
+            assert!(
+                (value_at_sample_point(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()),
+                "{symbol:?}"
+            );
         }
     }
 }

@@ -19,7 +19,7 @@ pub struct Tape<'g> {
     graph: Option<&'g Graph>,
     /// The nodes, with the positions of their operands in this list.
     steps: Vec<(Node, [u32; 3])>,
-    /// Positions of the expressions in `steps`.
+    /// Indices in `steps` of the evaluated expressions.
     roots: Vec<u32>,
     /// True if a node has several lanes.
     in_lanes: bool,
@@ -52,7 +52,7 @@ impl<'g> Tape<'g> {
         self.steps.len()
     }
 
-    /// Evaluates the expressions.
+    /// Evaluates the expressions of the tape at these values of the symbols.
     pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         self.run_with(symbol)
     }
@@ -73,13 +73,13 @@ impl<'g> Tape<'g> {
     /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
     fn run<V: Value, const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         let none = V::from_number(f64::NAN);
-        let padded = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
+        let pad_with_none = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
             let value_at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
-                Node::Tuple(k) => padded(graph.tuple(k).into_iter().map(V::from_number).collect()),
-                Node::Gather(k) => padded(graph.gather(k).into_iter().map(symbol).collect()),
+                Node::Tuple(k) => pad_with_none(graph.tuple(k).into_iter().map(V::from_number).collect()),
+                Node::Gather(k) => pad_with_none(graph.gather(k).into_iter().map(symbol).collect()),
                 Node::Sum(n, _) => [V::sum(&value_at(*a)[..usize::from(n)]); N],
                 Node::Lane(k, _) => [value_at(*a)[usize::from(k)]; N],
                 Node::Join(n, _, _) => joined(n.into(), value_at(*a), value_at(*b)),
@@ -95,9 +95,9 @@ impl<'g> Tape<'g> {
     }
 }
 
-/// Number type of an evaluation.
+/// Number type in which a tape is evaluated.
 trait Value: Copy {
-    /// Converts a constant.
+    /// Converts a constant to this type.
     fn from_number(number: f64) -> Self;
     fn sum(lanes: &[Self]) -> Self;
     /// Applies the operation of a node to the values of its operands.
@@ -124,7 +124,7 @@ impl Value for f64 {
 /// squares, errors do not grow in rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded {
-    /// The computed value.
+    /// Computed value of the node.
     pub value: f64,
     /// Standard deviation of the rounding error, in the unit of the value.
     pub error: f64,

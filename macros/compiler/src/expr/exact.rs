@@ -7,7 +7,7 @@ use super::replace::replace_calls;
 use super::{Expr, Node, Symbol};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Relative tolerance for multiples of π/12.
+/// Relative tolerance with which an angle is recognised as a multiple of π/12.
 const ROUNDING: f64 = 1e-14;
 
 /// Substitutes `by(s)` for symbols `s` of expressions, and replaces sines, cosines and tangents of known
@@ -33,31 +33,35 @@ fn circle(x: Expr<'_>) -> [Expr<'_>; 2] {
     known_sine_cosine(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
 }
 
-/// Returns sine and cosine of an expression if they are known without the functions themselves.
+/// Returns sine and cosine of an expression if their values are known without evaluating the functions.
 fn known_sine_cosine(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     let depth = depth.checked_sub(1)?;
-    let expr = |id| x.graph().expr(id);
+    let expression_of_id = |id| x.graph().expr(id);
     let one = x.num(1.0);
     match x.node() {
         Node::Const(value) => of_number(value).map(|point| point.map(|c| x.num(c))),
-        Node::Neg(a) => known_sine_cosine(expr(a), depth).map(|[sin, cos]| [-sin, cos]),
-        Node::Add(a, b) => sum(expr(a), expr(b), one, depth),
-        Node::Sub(a, b) => sum(expr(a), expr(b), -one, depth),
-        Node::Call(Function::Asin, a) => Some([expr(a), (one - expr(a).square()).sqrt()]),
-        Node::Call(Function::Acos, a) => Some([(one - expr(a).square()).sqrt(), expr(a)]),
+        Node::Neg(a) => known_sine_cosine(expression_of_id(a), depth).map(|[sin, cos]| [-sin, cos]),
+        Node::Add(a, b) => sum(expression_of_id(a), expression_of_id(b), one, depth),
+        Node::Sub(a, b) => sum(expression_of_id(a), expression_of_id(b), -one, depth),
+        Node::Call(Function::Asin, a) => {
+            Some([expression_of_id(a), (one - expression_of_id(a).square()).sqrt()])
+        }
+        Node::Call(Function::Acos, a) => {
+            Some([(one - expression_of_id(a).square()).sqrt(), expression_of_id(a)])
+        }
         Node::Call(Function::Atan, a) => {
-            let length = (one + expr(a).square()).sqrt();
-            Some([expr(a) / length, one / length])
+            let length = (one + expression_of_id(a).square()).sqrt();
+            Some([expression_of_id(a) / length, one / length])
         }
         Node::Atan2(y, x) => {
-            let length = (expr(x).square() + expr(y).square()).sqrt();
-            Some([expr(y) / length, expr(x) / length])
+            let length = (expression_of_id(x).square() + expression_of_id(y).square()).sqrt();
+            Some([expression_of_id(y) / length, expression_of_id(x) / length])
         }
         _ => None,
     }
 }
 
-/// Returns sine and cosine of `a ± b`, with the given sign, if those of `a` or `b` are known.
+/// Returns sine and cosine of `a ± b`, with the given sign, if the sines and cosines of `a` or `b` are known.
 fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
     let (of_a, of_b) = (known_sine_cosine(a, depth), known_sine_cosine(b, depth));
     if of_a.is_none() && of_b.is_none() {
@@ -69,8 +73,8 @@ fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Ex
     Some([sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b])
 }
 
-/// Returns sine and cosine of multiples of π/6 and π/4, to the last digit; those of multiples of π/2 are
-/// exact.
+/// Returns sine and cosine of a number that is a multiple of π/6 or π/4, correct to the last digit; multiples
+/// of π/2 have exact values.
 fn of_number(value: f64) -> Option<[f64; 2]> {
     let twelfths = value / (PI / 12.0);
     let whole = twelfths.round();
@@ -80,13 +84,13 @@ fn of_number(value: f64) -> Option<[f64; 2]> {
     let root = 0.75_f64.sqrt();
     // Sines of 0°, 15°, … 90°. Those of 15° and 75° have no simple value.
     let first = [Some(0.0), None, Some(0.5), Some(FRAC_1_SQRT_2), Some(root), None, Some(1.0)];
-    let sin = |k: i64| {
+    let sine_of_multiple = |k: i64| {
         let k = k.rem_euclid(24);
         let (k, sign) = if k > 12 { (k - 12, -1.0) } else { (k, 1.0) };
         first[if k > 6 { 12 - k } else { k } as usize].map(|s| sign * s)
     };
     let k = whole as i64;
-    Some([sin(k)?, sin(k + 6)?])
+    Some([sine_of_multiple(k)?, sine_of_multiple(k + 6)?])
 }
 
 #[cfg(test)]
@@ -112,11 +116,12 @@ mod tests {
     fn inverse_functions_cancel() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
-        let folded = |e| replace_exactly(&[e], &|_| None)[0];
-        assert_eq!(folded(x.call(Function::Acos).cos()), x);
-        assert_eq!(folded((-x.call(Function::Asin)).sin()), -x);
-        assert_eq!(folded((y - y.num(PI)).sin()), -y.sin());
-        let value = |e| crate::expr::eval::eval_one(e, &|s| if s == Symbol(0) { 0.3 } else { 0.8 });
+        let fold_expression = |e| replace_exactly(&[e], &|_| None)[0];
+        assert_eq!(fold_expression(x.call(Function::Acos).cos()), x);
+        assert_eq!(fold_expression((-x.call(Function::Asin)).sin()), -x);
+        assert_eq!(fold_expression((y - y.num(PI)).sin()), -y.sin());
+        let value_at_sample_point =
+            |e| crate::expr::eval::eval_one(e, &|s| if s == Symbol(0) { 0.3 } else { 0.8 });
         for e in [
             (x.call(Function::Acos) + y).sin(),
             y.atan2(x).cos(),
@@ -124,7 +129,10 @@ mod tests {
             x.call(Function::Asin).call(Function::Tan),
             (x + y).cos(),
         ] {
-            assert!((value(e) - value(folded(e))).abs() < 1e-15, "{e:?}");
+            assert!(
+                (value_at_sample_point(e) - value_at_sample_point(fold_expression(e))).abs() < 1e-15,
+                "{e:?}"
+            );
         }
     }
 }

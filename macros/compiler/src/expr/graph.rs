@@ -22,7 +22,7 @@ struct Store {
     nodes: Vec<Node>,
     /// Hash table with open addressing. Its size is a power of two; free slots contain `EMPTY`.
     table: Vec<Id>,
-    /// Maximum number of nodes.
+    /// Maximum number of nodes of the graph.
     most: usize,
     /// True if a node was rejected because of `most`.
     is_full: bool,
@@ -76,14 +76,14 @@ impl Store {
     }
 }
 
-/// Owner of all expressions of a mechanism.
+/// Graph that owns all expressions of a mechanism.
 pub struct Graph {
     store: RefCell<Store>,
     /// Table with a number for every node, all zero between uses.
     table: RefCell<Vec<u32>>,
     /// Unused tables that contain only zeros, see [`Memo`](super::Memo).
     tables: RefCell<Vec<Vec<u32>>>,
-    /// Constants and symbols of the lanes.
+    /// Constants and symbols of expressions with SIMD lanes.
     pub(super) lanes: RefCell<Tables>,
     /// Names of the functions that are defined by tables.
     functions: RefCell<Vec<String>>,
@@ -125,7 +125,7 @@ impl Graph {
         }
     }
 
-    /// Returns the number of nodes.
+    /// Returns the number of nodes of the graph.
     pub fn len(&self) -> usize {
         self.store.borrow().nodes.len()
     }
@@ -136,7 +136,7 @@ impl Graph {
         self.store.borrow().is_full
     }
 
-    /// Returns false: zero and one always exist.
+    /// Returns false, since the constants zero and one always exist.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -163,7 +163,7 @@ impl Graph {
         self.tables.borrow_mut().pop().unwrap_or_default()
     }
 
-    /// Recycles a table that contains only zeros.
+    /// Keeps a table of zeros, so that it can be used again without an allocation.
     pub(super) fn keep_table(&self, table: Vec<u32>) {
         self.tables.borrow_mut().push(table);
     }
@@ -188,7 +188,7 @@ impl Graph {
         self.expr(ONE)
     }
 
-    /// Returns the expression of an input.
+    /// Returns the expression of a symbol, which is an input of programs.
     pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
         self.expr(self.intern(Node::Symbol(symbol)))
     }
@@ -230,7 +230,7 @@ impl Graph {
         }
     }
 
-    /// Returns true for a constant, shared by all lanes or one for each.
+    /// Returns whether a node is a constant, shared by all lanes or one for each lane.
     pub(super) fn is_constant(&self, id: Id) -> bool {
         matches!(self.node(id), Node::Const(_) | Node::Tuple(_))
     }
@@ -376,7 +376,7 @@ impl Graph {
         }
     }
 
-    /// Multiplies an expression that is not constant by a constant without sign.
+    /// Multiplies an expression that is not constant by a positive constant.
     fn scaled(&self, c: Id, b: Id) -> Id {
         if c == ONE {
             return b;

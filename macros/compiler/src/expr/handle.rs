@@ -18,7 +18,7 @@ impl PartialEq for Expr<'_> {
 }
 
 impl<'g> Expr<'g> {
-    /// Returns the index of the node.
+    /// Returns the index of the expression's node.
     pub fn id(self) -> Id {
         self.id
     }
@@ -28,7 +28,7 @@ impl<'g> Expr<'g> {
         self.graph
     }
 
-    /// Returns the node.
+    /// Returns the node of the expression.
     pub fn node(self) -> Node {
         self.graph.node(self.id)
     }
@@ -47,7 +47,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Returns true for the constant zero.
+    /// Returns whether the expression is the constant zero.
     pub fn is_zero(self) -> bool {
         self.id == ZERO
     }
@@ -62,7 +62,7 @@ impl<'g> Expr<'g> {
         self.graph.zero()
     }
 
-    /// Applies an elementary function.
+    /// Returns an elementary function of this expression.
     pub fn call(self, f: Function) -> Expr<'g> {
         self.graph.expr(self.graph.call(f, self.id))
     }
@@ -77,7 +77,7 @@ impl<'g> Expr<'g> {
         self.call(Function::Cos)
     }
 
-    /// Returns the square root.
+    /// Returns the square root of the expression.
     pub fn sqrt(self) -> Expr<'g> {
         self.call(Function::Sqrt)
     }
@@ -112,7 +112,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Returns the square.
+    /// Returns the square of the expression.
     pub fn square(self) -> Expr<'g> {
         self * self
     }

@@ -11,14 +11,14 @@ use std::collections::BTreeMap;
 /// Maximum number of lanes of an expression.
 pub const MAX_LANES: usize = 8;
 
-/// Interned constants and inputs of the lanes.
+/// Interned constants and inputs of expressions with SIMD lanes.
 #[derive(Default)]
 pub struct Tables {
     tuples: Vec<Vec<f64>>,
-    /// Index of each tuple, keyed by the bits of its constants.
+    /// Index of each tuple of constants, keyed by the bits of its numbers.
     known: BTreeMap<Vec<u64>, u32>,
     gathers: Vec<Vec<Symbol>>,
-    /// Number of lanes of each node, one for expressions without lanes. Filled on demand.
+    /// Number of lanes of each node, one for expressions without lanes; filled on demand.
     widths: Vec<u8>,
 }
 
@@ -132,7 +132,7 @@ impl Graph {
         Some(self.lane_constant(values))
     }
 
-    /// Returns true if the first nonzero constant of a tuple is negative. This holds for exactly one of a
+    /// Returns whether the first nonzero constant of a tuple is negative. This holds for exactly one of a
     /// tuple and its negative.
     pub(super) fn starts_negative(&self, k: u32) -> bool {
         let tables = self.lanes.borrow();
@@ -151,7 +151,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Returns true for a constant, shared by all lanes or one for each.
+    /// Returns whether the expression is a constant, shared by all lanes or one for each lane.
     pub fn is_constant(self) -> bool {
         self.graph().is_constant(self.id())
     }
@@ -175,14 +175,14 @@ impl<'g> Expr<'g> {
         g.expr(g.signed(negative, g.intern(Node::Sum(n as u8, id))))
     }
 
-    /// Returns the `n` lanes of this expression, followed by `n` lanes of another one. An expression without
-    /// lanes has the same value in each.
+    /// Returns the `n` lanes of this expression, followed by the `n` lanes of another one. An expression
+    /// without lanes has the same value in each lane.
     pub fn joined(self, n: usize, other: Expr<'g>) -> Expr<'g> {
         let g = self.graph();
         g.expr(g.join(n, self.id(), other.id()))
     }
 
-    /// Returns the value in lane `k`.
+    /// Returns the value of the expression in lane `k`.
     pub fn lane(self, k: usize) -> Expr<'g> {
         let g = self.graph();
         match self.node() {
@@ -208,16 +208,16 @@ mod tests {
     #[test]
     fn constants_of_lanes_fold() {
         let g = Graph::new();
-        let t = |values: [f64; 3]| g.lane_constants(&values);
+        let constant_lanes = |values: [f64; 3]| g.lane_constants(&values);
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
-        assert_eq!(t([2.0; 3]), g.num(2.0));
-        assert_eq!(t([1.0, 2.0, 3.0]) - t([1.0, 2.0, 3.0]), g.zero());
-        assert_eq!(t([1.0, 2.0, 4.0]) * t([4.0, 2.0, 1.0]), g.num(4.0));
-        assert_eq!((t([1.0, 2.0, 3.0]) * x) * g.num(2.0), t([2.0, 4.0, 6.0]) * x);
-        assert_eq!((t([1.0, 2.0, 3.0]) + x) - g.num(1.0), t([0.0, 1.0, 2.0]) + x);
-        assert_eq!(t([-1.0, 2.0, 3.0]) * x, -(t([1.0, -2.0, -3.0]) * x));
-        assert_eq!(x / t([1.0, 2.0, 4.0]), t([1.0, 0.5, 0.25]) * x);
-        assert_eq!(t([1.0, 2.0, 3.0]).lane_sum(3), g.num(6.0));
+        assert_eq!(constant_lanes([2.0; 3]), g.num(2.0));
+        assert_eq!(constant_lanes([1.0, 2.0, 3.0]) - constant_lanes([1.0, 2.0, 3.0]), g.zero());
+        assert_eq!(constant_lanes([1.0, 2.0, 4.0]) * constant_lanes([4.0, 2.0, 1.0]), g.num(4.0));
+        assert_eq!((constant_lanes([1.0, 2.0, 3.0]) * x) * g.num(2.0), constant_lanes([2.0, 4.0, 6.0]) * x);
+        assert_eq!((constant_lanes([1.0, 2.0, 3.0]) + x) - g.num(1.0), constant_lanes([0.0, 1.0, 2.0]) + x);
+        assert_eq!(constant_lanes([-1.0, 2.0, 3.0]) * x, -(constant_lanes([1.0, -2.0, -3.0]) * x));
+        assert_eq!(x / constant_lanes([1.0, 2.0, 4.0]), constant_lanes([1.0, 0.5, 0.25]) * x);
+        assert_eq!(constant_lanes([1.0, 2.0, 3.0]).lane_sum(3), g.num(6.0));
         assert_eq!(g.num(2.0).lane_sum(3), g.num(6.0));
         assert_eq!((-x).lane_sum(3), -x.lane_sum(3));
         assert_eq!(x.lane(1), g.symbol(Symbol(1)));
@@ -238,10 +238,10 @@ mod tests {
         assert_eq!(x.joined(2, y).lane(2), g.symbol(Symbol(2)));
         let all = both * g.lane_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
         let lanes: Vec<Expr<'_>> = (0..4).map(|k| all.lane(k)).chain([all.lane_sum(4)]).collect();
-        let value = |s: Symbol| f64::from(s.0) + 1.0;
+        let value_of_symbol = |s: Symbol| f64::from(s.0) + 1.0;
         let expected = [2.0, 9.0, 28.0, 65.0, 104.0];
-        assert_eq!(eval(&lanes, &value), expected);
-        assert_eq!(crate::lower::lower(&lanes).run(&value), expected);
+        assert_eq!(eval(&lanes, &value_of_symbol), expected);
+        assert_eq!(crate::lower::lower(&lanes).run(&value_of_symbol), expected);
     }
 
     #[test]

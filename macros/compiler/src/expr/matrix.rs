@@ -5,7 +5,7 @@ use super::node::Function;
 use super::{Expr, Graph};
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
-/// A vector of three expressions.
+/// Vector of three expressions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vec3<'g>(pub [Expr<'g>; 3]);
 
@@ -40,18 +40,18 @@ impl<'g> Vec3<'g> {
         Some([self.0[0].value()?, self.0[1].value()?, self.0[2].value()?])
     }
 
-    /// Returns the dot product.
+    /// Returns the dot product of two vectors.
     pub fn dot(self, b: Vec3<'g>) -> Expr<'g> {
         self.0[0] * b.0[0] + self.0[1] * b.0[1] + self.0[2] * b.0[2]
     }
 
-    /// Returns the cross product.
+    /// Returns the cross product of two vectors.
     pub fn cross(self, b: Vec3<'g>) -> Vec3<'g> {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, b.0);
         Vec3([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
     }
 
-    /// Returns the Euclidean norm.
+    /// Returns the Euclidean norm of the vector.
     pub fn norm(self) -> Expr<'g> {
         self.dot(self).sqrt()
     }
@@ -116,7 +116,7 @@ impl<'g> SubAssign for Vec3<'g> {
     }
 }
 
-/// A 3×3 matrix, stored by rows.
+/// Matrix of 3×3 expressions, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<'g>(pub [[Expr<'g>; 3]; 3]);
 
@@ -152,7 +152,7 @@ impl<'g> Mat3<'g> {
         Vec3([self.0[0][j], self.0[1][j], self.0[2][j]])
     }
 
-    /// Returns the transpose.
+    /// Returns the transpose of the matrix.
     pub fn transpose(self) -> Mat3<'g> {
         Mat3::from_fn(|i, j| self.0[j][i])
     }
@@ -195,7 +195,7 @@ impl<'g> Mul<Vec3<'g>> for Mat3<'g> {
     }
 }
 
-/// A symmetric 3×3 matrix.
+/// Symmetric 3×3 matrix of expressions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3<'g> {
     /// Diagonal entries xx, yy, zz.
@@ -221,7 +221,7 @@ impl<'g> Sym3<'g> {
         Sym3 { diagonal: [m[0][0], m[1][1], m[2][2]], off: [m[0][1], m[0][2], m[1][2]] }
     }
 
-    /// Applies a function to every entry.
+    /// Applies a function to every entry of the symmetric matrix.
     pub fn map(self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Sym3<'g> {
         Sym3 { diagonal: self.diagonal.map(&mut f), off: self.off.map(f) }
     }

@@ -8,14 +8,15 @@ use super::node::Id;
 /// the graph has an unused table.
 pub struct Memo<'g> {
     graph: &'g Graph,
-    /// For each node, its number plus one, or zero if it has none. May be shorter than the graph.
+    /// Table with one entry per node: its number plus one, or zero if the node has none. The table may be
+    /// shorter than the graph.
     table: Vec<u32>,
-    /// The nodes that have numbers.
+    /// Indices of the nodes that have numbers.
     written: Vec<Id>,
 }
 
 impl<'g> Memo<'g> {
-    /// Creates an empty map.
+    /// Creates an empty map for the nodes of a graph.
     pub fn new(graph: &'g Graph) -> Memo<'g> {
         Memo { graph, table: graph.take_table(), written: Vec::new() }
     }

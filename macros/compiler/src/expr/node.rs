@@ -68,7 +68,7 @@ impl Function {
         all.find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 
-    /// Evaluates the function at a number.
+    /// Evaluates the elementary function at a number.
     pub fn apply(self, x: f64) -> f64 {
         match self {
             Function::Sin => x.sin(),
@@ -91,20 +91,20 @@ impl Function {
         }
     }
 
-    /// Returns true if `f(-x) = -f(x)`.
+    /// Returns whether the function is odd: `f(-x) = -f(x)`.
     pub fn is_odd(self) -> bool {
         use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
         matches!(self, Sin | Tan | Asin | Atan | Sinh | Tanh)
     }
 
-    /// Returns true if `f(-x) = f(x)`.
+    /// Returns whether the function is even: `f(-x) = f(x)`.
     pub fn is_even(self) -> bool {
         matches!(self, Function::Cos | Function::Cosh | Function::Abs)
     }
 }
 
-/// A function defined by a table, or one of its derivatives. Table index, number of variables, and order of
-/// differentiation by each variable are packed in 16 bits.
+/// Function defined by a table, or one of its derivatives. The index of the table, the number of variables,
+/// and the order of differentiation by each variable are packed in 16 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Lookup(u16);
 
@@ -147,13 +147,13 @@ impl Lookup {
     /// cubic polynomials, like tables: truncated Taylor series of sines that differ between tables. All
     /// derivatives are consistent.
     pub fn apply(self, x: [f64; 3]) -> f64 {
-        let cubic = |(k, x): (usize, f64)| {
+        let cubic_of_variable = |(k, x): (usize, f64)| {
             let (order, pace, phase) = (self.order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table() as f64);
             let derivative =
                 |n: usize| pace.powi(n as i32) * (phase + std::f64::consts::FRAC_PI_2 * n as f64).sin();
             (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
         };
-        x.into_iter().take(self.variables()).enumerate().map(cubic).product()
+        x.into_iter().take(self.variables()).enumerate().map(cubic_of_variable).product()
     }
 }
 
@@ -183,12 +183,12 @@ impl Extreme {
     }
 }
 
-/// A node of the graph.
+/// Node of the expression graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Node {
-    /// A constant, the same in all lanes.
+    /// Constant with the same value in all lanes.
     Const(f64),
-    /// An input, the same in all lanes.
+    /// Input with the same value in all lanes.
     Symbol(Symbol),
     /// Negation `-a`.
     Neg(Id),
@@ -223,7 +223,7 @@ pub enum Node {
 }
 
 impl Node {
-    /// Calls `f` with every operand.
+    /// Calls `f` with the index of every operand of the node.
     pub fn operands(self, mut f: impl FnMut(Id)) {
         match self {
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => {}

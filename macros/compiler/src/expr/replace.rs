@@ -71,27 +71,27 @@ fn rebuilt<'g>(
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
     call: Call<'_, 'g>,
 ) -> Expr<'g> {
-    let replaced = |a: Id| graph.expr(known.get(a).unwrap_or(a));
+    let replaced_operand = |a: Id| graph.expr(known.get(a).unwrap_or(a));
     match graph.node(id) {
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
-        Node::Sum(n, a) => replaced(a).lane_sum(n.into()),
-        Node::Lane(k, a) => replaced(a).lane(k.into()),
-        Node::Join(n, a, b) => replaced(a).joined(n.into(), replaced(b)),
+        Node::Sum(n, a) => replaced_operand(a).lane_sum(n.into()),
+        Node::Lane(k, a) => replaced_operand(a).lane(k.into()),
+        Node::Join(n, a, b) => replaced_operand(a).joined(n.into(), replaced_operand(b)),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
-        Node::Neg(a) => -replaced(a),
-        Node::Add(a, b) => replaced(a) + replaced(b),
-        Node::Sub(a, b) => replaced(a) - replaced(b),
-        Node::Mul(a, b) => replaced(a) * replaced(b),
-        Node::Div(a, b) => replaced(a) / replaced(b),
-        Node::Call(f, a) => call(f, replaced(a)),
-        Node::Atan2(a, b) => replaced(a).atan2(replaced(b)),
-        Node::Pow(a, b) => replaced(a).pow(replaced(b)),
-        Node::Extreme(f, a, b) => replaced(a).extreme(f, replaced(b)),
+        Node::Neg(a) => -replaced_operand(a),
+        Node::Add(a, b) => replaced_operand(a) + replaced_operand(b),
+        Node::Sub(a, b) => replaced_operand(a) - replaced_operand(b),
+        Node::Mul(a, b) => replaced_operand(a) * replaced_operand(b),
+        Node::Div(a, b) => replaced_operand(a) / replaced_operand(b),
+        Node::Call(f, a) => call(f, replaced_operand(a)),
+        Node::Atan2(a, b) => replaced_operand(a).atan2(replaced_operand(b)),
+        Node::Pow(a, b) => replaced_operand(a).pow(replaced_operand(b)),
+        Node::Extreme(f, a, b) => replaced_operand(a).extreme(f, replaced_operand(b)),
         Node::Table(lookup, a, b, c) => {
             // Variables beyond those of the table are ignored.
             let x = [a, b, c];
             let last = lookup.variables().saturating_sub(1);
-            graph.lookup(lookup, std::array::from_fn(|k| replaced(x[k.min(last)])))
+            graph.lookup(lookup, std::array::from_fn(|k| replaced_operand(x[k.min(last)])))
         }
     }
 }

@@ -5,10 +5,10 @@ use super::matrix::{Mat3, Sym3, Vec3};
 use super::node::{Function, Node};
 use super::{Expr, Graph};
 
-/// One step of a rotation.
+/// One step of a rotation, which is applied to the axes after the previous step.
 #[derive(Clone, Copy, Debug)]
 enum Step<'g> {
-    /// A rotation matrix.
+    /// Rotation matrix.
     Matrix(Mat3<'g>),
     /// A rotation about coordinate axis `axis` by the angle with this sine and cosine.
     Axis { axis: usize, sin: Expr<'g>, cos: Expr<'g> },
@@ -23,7 +23,7 @@ pub struct Rotation<'g> {
 }
 
 impl<'g> Rotation<'g> {
-    /// Returns the identity.
+    /// Returns the identity rotation.
     pub fn identity(graph: &'g Graph) -> Rotation<'g> {
         Rotation { steps: Vec::new(), graph }
     }
@@ -93,8 +93,8 @@ impl<'g> Rotation<'g> {
         Rotation { steps, graph: self.graph }
     }
 
-    /// Appends a step. Adjacent constant steps are combined into one rotation with the minimum number of
-    /// steps.
+    /// Appends a step to the rotation. Adjacent constant steps are combined into one rotation with the
+    /// minimum number of steps.
     fn push(&mut self, step: Step<'g>) {
         let Some(mut product) = step.constant() else {
             self.steps.push(step);
@@ -137,15 +137,15 @@ impl<'g> Rotation<'g> {
 
     /// Applies a function to all expressions of the rotation.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Rotation<'g> {
-        let step = |step: &Step<'g>| match *step {
+        let map_step = |step: &Step<'g>| match *step {
             Step::Matrix(m) => Step::Matrix(Mat3::from_fn(|i, j| f(m.0[i][j]))),
             Step::Axis { axis, sin, cos } => Step::Axis { axis, sin: f(sin), cos: f(cos) },
         };
-        Rotation { steps: self.steps.iter().map(step).collect(), graph: self.graph }
+        Rotation { steps: self.steps.iter().map(map_step).collect(), graph: self.graph }
     }
 
-    /// Combines one rotation per lane into a rotation with lanes. `merge` combines one expression per lane;
-    /// the result is `None` if it fails.
+    /// Combines the rotations of several lanes into one rotation with lanes. `merge` combines one expression
+    /// per lane; the result is `None` if `merge` fails.
     pub fn side_by_side(
         lanes: &[&Rotation<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
@@ -162,12 +162,12 @@ impl<'g> Rotation<'g> {
             kinds.len() == 1 && kinds[0].is_some()
         };
         let common = (0..first.steps.len()).take_while(is_common).count();
-        let rest = |r: &Rotation<'g>| {
+        let remaining_rotation = |r: &Rotation<'g>| {
             let steps = r.steps[..r.steps.len() - common].to_vec();
             Rotation { steps, graph: r.graph }
         };
         if lanes.iter().any(|r| r.steps.len() > common) {
-            let matrices: Vec<Mat3<'g>> = lanes.iter().map(|r| rest(r).matrix()).collect();
+            let matrices: Vec<Mat3<'g>> = lanes.iter().map(|r| remaining_rotation(r).matrix()).collect();
             rotation.steps.push(Step::Matrix(merged_matrix(&matrices, merge)?));
         }
         for k in (0..common).rev() {
@@ -228,19 +228,19 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     (error <= 8.0 * f64::EPSILON).then_some(steps)
 }
 
-/// Factors a constant rotation matrix, one of whose columns is a coordinate axis, into a rotation by right
-/// angles and a rotation about that axis. `None` for other matrices.
+/// Factors a constant rotation matrix that has a coordinate axis as a column: a rotation by right angles,
+/// followed by a rotation about that axis. Returns `None` for other matrices.
 fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let g = m.0[0][0].graph();
     let values = m.values()?;
     if *m == Mat3::identity(g) {
         return Some(Vec::new());
     }
-    let column = |j: usize| [values[0][j], values[1][j], values[2][j]];
-    let is_axis = |v: [f64; 3]| v.iter().filter(|c| **c == 0.0).count() == 2;
-    let b = (0..3).find(|j| is_axis(column(*j)))?;
+    let column_of_values = |j: usize| [values[0][j], values[1][j], values[2][j]];
+    let is_coordinate_axis = |v: [f64; 3]| v.iter().filter(|c| **c == 0.0).count() == 2;
+    let b = (0..3).find(|j| is_coordinate_axis(column_of_values(*j)))?;
     let i = (b + 1) % 3;
-    let x = column(i);
+    let x = column_of_values(i);
     let r = (0..3).max_by(|p, q| x[*p].abs().total_cmp(&x[*q].abs()))?;
     // Nearest rotation by right angles.
     let along = m.column(b);
@@ -282,7 +282,7 @@ impl<'g> Step<'g> {
         }
     }
 
-    /// Combines steps of one kind, one per lane, into a step with lanes.
+    /// Combines steps of one kind, one for each lane, into a step with lanes.
     fn side_by_side(
         lanes: &[Step<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
@@ -291,14 +291,18 @@ impl<'g> Step<'g> {
             let matrices: Vec<Mat3<'g>> = lanes.iter().map(Step::matrix).collect();
             return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
         };
-        let part = |sine: bool| {
+        let merge_candidates = |sine: bool| {
             let lane_part = |step: &Step<'g>| match *step {
                 Step::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
                 Step::Matrix(_) => None,
             };
             lanes.iter().map(lane_part).collect::<Option<Vec<_>>>()
         };
-        Some(Step::Axis { axis, sin: merge(&part(true)?)?, cos: merge(&part(false)?)? })
+        Some(Step::Axis {
+            axis,
+            sin: merge(&merge_candidates(true)?)?,
+            cos: merge(&merge_candidates(false)?)?,
+        })
     }
 
     fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
@@ -411,7 +415,7 @@ impl<'g> Step<'g> {
     }
 }
 
-/// Returns the angle of an expression that is a sine, or the negative of one.
+/// Returns the angle of an expression that is a sine, or the negative of a sine.
 fn angle_of(sin: Expr<'_>) -> Option<Expr<'_>> {
     let graph = sin.graph();
     match sin.node() {

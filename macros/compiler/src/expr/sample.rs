@@ -3,11 +3,11 @@
 use super::eval::eval_one;
 use super::{Expr, Symbol};
 
-/// Tolerance of the comparison.
+/// Tolerance of the comparison of sampled values.
 const TOLERANCE: f64 = 1e-9;
 
-/// Returns a reproducible value in [0.5, 1.5) for a symbol, one set of values for each `seed`. Special cases
-/// are unlikely.
+/// Returns a reproducible value in [0.5, 1.5) for a symbol. Each `seed` gives another set of values; special
+/// values are unlikely.
 pub fn sample(symbol: Symbol, seed: u64) -> f64 {
     let mut h = (u64::from(symbol.0) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
         ^ (seed + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);

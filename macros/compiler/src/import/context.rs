@@ -7,13 +7,13 @@ use proc_macro2::Span;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-/// Maximum number of reported errors of one import. A file of the wrong kind may have thousands.
+/// Maximum number of errors that one import reports, since a file of the wrong kind may have thousands.
 const MISTAKES_SHOWN: usize = 32;
 
-/// Distance in bytes between stored positions.
+/// Distance in bytes between stored source positions.
 const BLOCK: usize = 256;
 
-/// File that was read.
+/// File that was read, with its source positions.
 struct File<'a> {
     text: &'a str,
     path: Rc<str>,
@@ -126,7 +126,7 @@ impl<'a> Cx<'a> {
         self.files[file].text.get(start..end).filter(|_| file == other)
     }
 
-    /// Reports an error; `mend` adds the help.
+    /// Reports an error at a position of the file; `mend` adds the help.
     pub(super) fn error(
         &mut self,
         place: &Place,
@@ -159,13 +159,14 @@ impl<'a> Cx<'a> {
         self.error(place, message, |d| d.help(help));
     }
 
-    /// Reports something that was read and has no place in the mechanism, although no error was reported.
+    /// Reports an internal error: something that was read from the file has no counterpart in the mechanism,
+    /// although no error was reported.
     pub(super) fn report_lost(&mut self, name: &Name) {
         let message = format!("internal error: {} of the file is lost", quote(&name.text));
         self.error(&name.place, message, |d| d.help("please report this with the file"));
     }
 
-    /// Returns true if an error was reported.
+    /// Returns whether an error was reported.
     pub(super) fn failed(&self) -> bool {
         self.mistakes > 0
     }

@@ -6,10 +6,10 @@ use crate::diag::{Place, nearest};
 use crate::import::imported::Placed;
 use crate::syntax::Name;
 
-/// XML element of the file.
+/// XML element of a robot file.
 pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 
-/// Attribute of an XML element.
+/// Attribute of an XML element of a robot file.
 pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
 
 /// Returns the source position of an element.
@@ -17,7 +17,7 @@ pub(super) fn place(node: Node<'_>, cx: &Cx<'_>) -> Place {
     cx.place(node.range().start)
 }
 
-/// Returns `<name>` of an element, in backticks.
+/// Returns the tag `<name>` of an element, in backticks.
 pub(super) fn tag(node: Node<'_>) -> String {
     quote(&format!("<{}>", node.tag_name().name()))
 }
@@ -30,7 +30,7 @@ pub(super) fn elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
 }
 
 /// Returns the child elements named in `known`, at most one of each. Other children are ignored, unless their
-/// name looks like a typing error: ignoring `<inertal>` would silently remove a body's mass.
+/// name looks like a typing error: to ignore `<inertal>` would silently remove a body's mass.
 pub(super) fn children<'a, const N: usize>(
     node: Node<'a>,
     known: [&str; N],
@@ -48,7 +48,7 @@ pub(super) fn children<'a, const N: usize>(
     found
 }
 
-/// Reports an element that occurs twice in another one.
+/// Reports an element that occurs a second time in its parent.
 pub(super) fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
     let first = first.map(|node| position(&place(node, cx))).unwrap_or_default();
     let message = format!("second {} of one element", tag(child));

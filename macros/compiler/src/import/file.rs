@@ -8,7 +8,7 @@ use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// Largest size of a file, bytes. The largest published robots take less than one mebibyte.
+/// Maximum size of a robot file, bytes. The largest published robots take less than one mebibyte.
 pub const LARGEST_FILE: usize = 16 << 20;
 
 /// Maximum number of entries of a folder that are searched for names similar to a missing file.
@@ -54,7 +54,7 @@ pub(super) fn read_named(
     None
 }
 
-/// Returns the reason not to open a file, if there is one. Reading a pipe or a device might never end.
+/// Returns the reason why a file is not opened, if there is one; to read a pipe or a device might never end.
 fn refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
         _ if about.is_dir() => Some(format!("is a directory, expected {}", format.article())),

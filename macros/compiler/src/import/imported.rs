@@ -1,11 +1,11 @@
-//! Result of an import.
+//! Result of the import of a robot file.
 
 use crate::diag::Place;
 use crate::syntax::file_parameters::FileField;
 use crate::syntax::{Body, Collision, Constraint, Contact, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 
-/// Mechanism that a file describes.
+/// Mechanism that a robot file describes.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// Bodies of the links, each after its parent.
@@ -37,11 +37,11 @@ pub struct Imported {
     pub snapped: Vec<String>,
     /// Descriptions of contents of the file that the mechanism does not represent.
     pub left_out: Vec<String>,
-    /// Paths of included files.
+    /// Paths of the files that the robot file includes.
     pub files: Vec<PathBuf>,
 }
 
-/// Value with its source position.
+/// Value of a file with its source position.
 #[derive(Clone, Debug)]
 pub struct Placed<T> {
     /// Value as written in the file.

@@ -1,5 +1,5 @@
-//! Misplaced elements, attributes and texts in robots, links and joints. They are errors, because otherwise
-//! they would be ignored silently. Elements and attributes of other tools are accepted.
+//! Detection of misplaced elements, attributes and texts in robots, links and joints. They are errors,
+//! because they would be ignored silently. Elements and attributes of other tools are accepted.
 
 use crate::diag::nearest;
 use crate::import::context::{Cx, quote};
@@ -67,8 +67,8 @@ pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
         }
     }
     // `<mimic>` names its leader by `joint`.
-    let is_word = |name: &str| WORDS.contains(&name) && name != "joint";
-    for attribute in node.attributes().filter(|a| a.namespace().is_none() && is_word(a.name())) {
+    let is_misplaced_word = |name: &str| WORDS.contains(&name) && name != "joint";
+    for attribute in node.attributes().filter(|a| a.namespace().is_none() && is_misplaced_word(a.name())) {
         let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
         cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
     }
@@ -84,8 +84,8 @@ pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
 
 /// Returns true for an element without effect: it has no text or children, and all its attributes are zero.
 fn is_neutral(node: Node<'_>) -> bool {
-    let is_zero = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
-    node.attributes().all(|attribute| is_zero(attribute.value()))
+    let is_zero_list = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
+    node.attributes().all(|attribute| is_zero_list(attribute.value()))
         && node.children().all(|child| child.text().is_none_or(|text| text.trim().is_empty()))
         && !node.children().any(|child| child.is_element())
 }

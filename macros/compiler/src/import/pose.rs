@@ -8,10 +8,10 @@ pub(in crate::import) type Vector = [f64; 3];
 /// Matrix stored by rows. The columns of a rotation matrix are the axes of the rotated frame.
 pub(in crate::import) type Matrix = [[f64; 3]; 3];
 
-/// Identity matrix.
+/// Identity matrix, as the axes of a frame that is not rotated.
 pub(in crate::import) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Maximum magnitude of rounding errors of zero.
+/// Maximum magnitude of a number that is taken for a rounding error of zero.
 const ROUNDING: f64 = 1e-15;
 
 /// Pose of a frame relative to a reference frame.
@@ -24,7 +24,7 @@ pub(in crate::import) struct Pose {
 }
 
 impl Pose {
-    /// Identity pose.
+    /// Pose of a frame that coincides with its reference frame.
     pub(in crate::import) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
 
     /// Returns the inverse: the pose of the reference frame relative to this frame.
@@ -115,8 +115,8 @@ pub(in crate::import) fn axis_rotation(axis: Vector, angle: f64) -> Matrix {
 /// Returns sine and cosine, exact at multiples of a right angle.
 fn sin_cos(angle: f64) -> (f64, f64) {
     let (s, c) = angle.sin_cos();
-    let zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
-    (zero(s), zero(c))
+    let round_noise_to_zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
+    (round_noise_to_zero(s), round_noise_to_zero(c))
 }
 
 /// Returns the smallest rotation that maps the z axis to `direction`.

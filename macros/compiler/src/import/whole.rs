@@ -14,21 +14,21 @@ pub(super) const MAX_DEPTH: usize = 32;
 /// Maximum number of included files.
 pub(super) const MAX_FILES: usize = 256;
 
-/// File that was read.
+/// Robot file that was read, with its path.
 pub(super) struct Read {
     /// Text of the file.
     pub(super) text: String,
     /// Path of the file for messages.
     pub(super) shown: String,
-    /// Path of the file.
+    /// Canonical path of the file.
     pub(super) path: PathBuf,
 }
 
 /// Files of an import and the text composed of them.
 pub(super) struct Whole {
-    /// Files; the first is the one that the user names.
+    /// Files that were read; the first one is the file that the user names.
     pub(super) files: Vec<Read>,
-    /// Text composed so far.
+    /// Text that has been composed so far.
     pub(super) text: String,
     /// Pieces of the text, each with its file of origin.
     pub(super) pieces: Vec<Piece>,
@@ -41,7 +41,7 @@ impl Whole {
         Whole { files: vec![first], text: String::new(), pieces: Vec::new() }
     }
 
-    /// Appends bytes of a file.
+    /// Appends bytes of a file to the composed text.
     pub(super) fn copy(
         &mut self,
         file: usize,
@@ -121,7 +121,7 @@ pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
     cx.error(at.place.clone(), format!("more than {most} {what}"));
 }
 
-/// Returns the canonical path, so that each file has only one path.
+/// Returns the canonical path, so that a file has only one path.
 pub(super) fn plain(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }

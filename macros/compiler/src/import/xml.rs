@@ -11,9 +11,9 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-/// Maximum number of attributes of one element. The parser compares every pair of them.
+/// Maximum number of attributes of one element, since the parser compares every pair of them.
 const MOST_ATTRIBUTES: usize = 64;
-/// Maximum number of namespace declarations in a file. The parser passes each one down the tree.
+/// Maximum number of namespace declarations in a file, since the parser passes each one down the tree.
 const MOST_NAMESPACES: usize = 256;
 /// Maximum number of `<` and `=` in a file. The parser reserves memory for each.
 const MOST_MARKS: usize = 1_000_000;

@@ -1,4 +1,4 @@
-//! Unit vectors, orthogonal to others.
+//! Unit vectors that are orthogonal to given vectors.
 
 use crate::expr::Vec3;
 use crate::expr::diff::TINY;

@@ -10,9 +10,9 @@ use crate::mechanism::{LinkId, Model, Quantity};
 
 /// A scalar with its first time derivative, and its second time derivative at zero accelerations.
 pub struct Jet<'g> {
-    /// Value of the scalar.
+    /// Value of the moving scalar.
     pub value: Expr<'g>,
-    /// First time derivative.
+    /// First time derivative of the scalar.
     pub rate: Expr<'g>,
     /// Second time derivative at zero accelerations.
     pub second: Expr<'g>,
@@ -22,21 +22,21 @@ pub struct Jet<'g> {
 /// of a link that is treated as fixed.
 #[derive(Clone, Copy)]
 pub struct Moving<'g> {
-    /// Value of the vector.
+    /// Value of the moving vector.
     pub value: Vec3<'g>,
-    /// First time derivative.
+    /// First time derivative of the vector.
     pub rate: Vec3<'g>,
     /// Second time derivative at zero accelerations.
     pub second: Vec3<'g>,
 }
 
 impl<'g> Moving<'g> {
-    /// Returns the difference.
+    /// Returns the difference of two moving vectors.
     pub fn minus(&self, b: &Moving<'g>) -> Moving<'g> {
         Moving { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
     }
 
-    /// Returns the inner product.
+    /// Returns the inner product of two moving vectors.
     pub fn dot(&self, b: &Moving<'g>) -> Jet<'g> {
         let twice = self.rate.dot(b.rate) * 2.0;
         Jet {
@@ -46,7 +46,7 @@ impl<'g> Moving<'g> {
         }
     }
 
-    /// Returns a component.
+    /// Returns component `k` of the moving vector.
     pub fn component(&self, k: usize) -> Jet<'g> {
         Jet { value: self.value[k], rate: self.rate[k], second: self.second[k] }
     }
@@ -54,11 +54,11 @@ impl<'g> Moving<'g> {
 
 /// Motion of a link relative to one of its ancestors, in the link's axes.
 pub struct Relative<'g> {
-    /// The link; `None` for the ground.
+    /// Link whose motion is described; `None` for the ground.
     pub link: Option<LinkId>,
-    /// The ancestor; `None` for the ground.
+    /// Ancestor that the motion is relative to; `None` for the ground.
     pub ancestor: Option<LinkId>,
-    /// Velocity of the origin, angular velocity.
+    /// Velocity of the link's origin, and angular velocity.
     pub twist: Spatial<'g>,
     /// Acceleration of the origin, angular acceleration, at zero accelerations of the coordinates.
     pub acceleration: Spatial<'g>,
@@ -71,16 +71,16 @@ pub fn relative<'g>(
     link: Option<LinkId>,
     other: Option<LinkId>,
 ) -> Relative<'g> {
-    let parent = |l: LinkId| joints[l.0].parent;
+    let parent_of_link = |l: LinkId| joints[l.0].parent;
     let (mut a, mut b) = (link, other);
     let mut path = Vec::new();
     // Parents have smaller indices, so the deeper of two links is the one with the larger index.
     while a != b {
         if a > b {
             path.extend(a);
-            a = a.and_then(parent);
+            a = a.and_then(parent_of_link);
         } else {
-            b = b.and_then(parent);
+            b = b.and_then(parent_of_link);
         }
     }
     let g = model.graph;

@@ -12,7 +12,7 @@ use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Qu
 /// except for links that are placed by expressions.
 #[derive(Clone, Debug)]
 pub struct Dof<'g> {
-    /// Index in `v`.
+    /// Index of the degree of freedom in `v`.
     pub index: usize,
     /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
@@ -29,7 +29,7 @@ pub struct Joint<'g> {
     pub rotation: Rotation<'g>,
     /// Origin of the link, in the parent's frame.
     pub translation: Vec3<'g>,
-    /// Degrees of freedom, parent side first.
+    /// Degrees of freedom of the joint, parent side first.
     pub dofs: Vec<Dof<'g>>,
     /// Additional motion of a link placed by expressions, whose motion subspace is not constant or which is
     /// driven in time.
@@ -69,7 +69,8 @@ impl<'g> Joint<'g> {
         if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
     }
 
-    /// Returns the mass properties of the parent with those of the link, or of all identical limbs in lanes.
+    /// Returns the combined mass properties of the parent and of the link, or of all identical limbs in SIMD
+    /// lanes.
     pub fn composite(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
             return parent.plus_placed(link, &self.rotation, self.translation);
@@ -144,29 +145,31 @@ pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
 pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
-    let components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
-    let single = |c: &Coordinate, linear, angular| {
+    let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
+    let single_dof = |c: &Coordinate, linear, angular| {
         vec![Dof { index: c.v.0, ratio: c.ratio, subspace: Spatial { linear, angular } }]
     };
     let (motion, shift, dofs) = match &link.motion {
-        Motion::Turn { axis, coordinate } => {
-            (Rotation::eigenaxis(*axis, position_in(g, coordinate)), zero, single(coordinate, zero, *axis))
-        }
+        Motion::Turn { axis, coordinate } => (
+            Rotation::eigenaxis(*axis, position_in(g, coordinate)),
+            zero,
+            single_dof(coordinate, zero, *axis),
+        ),
         Motion::Slide { axis, coordinate } => {
-            (Rotation::identity(g), *axis * position_in(g, coordinate), single(coordinate, *axis, zero))
+            (Rotation::identity(g), *axis * position_in(g, coordinate), single_dof(coordinate, *axis, zero))
         }
         Motion::Helix { axis, pitch, coordinate } => {
             let angle = position_in(g, coordinate);
             let shift = *axis * (*pitch * angle);
-            (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
+            (Rotation::eigenaxis(*axis, angle), shift, single_dof(coordinate, *axis * *pitch, *axis))
         }
         Motion::Ball { q, v } => {
-            let rotation = Rotation::quaternion(components(*q));
+            let rotation = Rotation::quaternion(quaternion_components(*q));
             let dofs = (0..3).map(|k| unit_dof(g, v.0 + k, None, Some(k))).collect();
             (rotation, zero, dofs)
         }
         Motion::Free { q, v } => {
-            let rotation = Rotation::quaternion(components(*q + 3));
+            let rotation = Rotation::quaternion(quaternion_components(*q + 3));
             let dofs = (0..6).map(|k| match k {
                 0..3 => unit_dof(g, v.0 + k, Some(k), None),
                 _ => unit_dof(g, v.0 + k, None, Some(k - 3)),
@@ -226,11 +229,11 @@ fn rate_of_placement<'g>(
 
 fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
-    let index = |s: Symbol| match Quantity::from_symbol(s) {
+    let velocity_index = |s: Symbol| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(k),
         _ => None,
     };
-    symbols_in(&all).into_iter().filter_map(index).collect()
+    symbols_in(&all).into_iter().filter_map(velocity_index).collect()
 }
 
 /// Returns an expression with all velocities set to zero.
@@ -239,6 +242,10 @@ fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
 }
 
 fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
-    let axis = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::axis(g, k));
-    Dof { index, ratio: 1.0, subspace: Spatial { linear: axis(linear), angular: axis(angular) } }
+    let axis_or_zero = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::axis(g, k));
+    Dof {
+        index,
+        ratio: 1.0,
+        subspace: Spatial { linear: axis_or_zero(linear), angular: axis_or_zero(angular) },
+    }
 }

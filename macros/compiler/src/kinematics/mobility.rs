@@ -15,9 +15,9 @@ const STARTS: u64 = 24;
 const WITNESSES: usize = 3;
 /// Approximate bound on the operations of the search: large mechanisms are searched from fewer starts.
 const WORK: u64 = 40_000_000;
-/// Maximum number of steps from each start.
+/// Maximum number of Newton steps from each start.
 const STEPS: u64 = 60;
-/// Tolerance of the residuals.
+/// Residual below which the constraints are satisfied.
 const CLOSED: f64 = 1e-11;
 /// Residuals above this, m or rad, are not reduced to zero by more steps.
 const OPEN: f64 = 1e-4;
@@ -75,17 +75,18 @@ pub fn degrees_of_freedom(
     cx: &mut Diagnostics,
 ) -> Freedom {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let free = |(q, seed): &Sample, count: usize| {
+    let free_dof_count = |(q, seed): &Sample, count: usize| {
         let mut basis = Basis::default();
         rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
         nv - basis.rank()
     };
     // The first sample that can move; others may be locked.
-    let sample = samples.iter().find(|w| free(w, nc) > 0).or(samples.first());
-    let count = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free(w, rank));
-    let freedom = Freedom { coordinates: count(model.holonomic()), velocities: count(nc) };
-    let stands = || samples.iter().all(|sample| !is_driven(model, rows, sample));
-    if freedom.velocities == 0 && !samples.is_empty() && stands() {
+    let sample = samples.iter().find(|w| free_dof_count(w, nc) > 0).or(samples.first());
+    let count_free_dofs = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free_dof_count(w, rank));
+    let freedom =
+        Freedom { coordinates: count_free_dofs(model.holonomic()), velocities: count_free_dofs(nc) };
+    let is_undriven = || samples.iter().all(|sample| !is_driven(model, rows, sample));
+    if freedom.velocities == 0 && !samples.is_empty() && is_undriven() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
             "its {nv} coordinates are fixed by {nc} constraints: remove a joint or a constraint"
@@ -145,18 +146,18 @@ fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Ve
             q[k.0] *= spread;
         }
     }
-    let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let sum_of_squares = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
     let mut r = rows.residuals(&q, seed);
     let mut damping = 1e-3;
     for _ in 0..steps {
-        if size(&r) <= CLOSED * CLOSED || !size(&r).is_finite() {
+        if sum_of_squares(&r) <= CLOSED * CLOSED || !sum_of_squares(&r).is_finite() {
             break;
         }
         let jacobian = &rows.jacobian(&q, seed)[..r.len()];
         let step = damped_step(jacobian, &r, damping);
         let next = displaced(model, &q, &step);
         let trial = rows.residuals(&next, seed);
-        if size(&trial) < size(&r) {
+        if sum_of_squares(&trial) < sum_of_squares(&r) {
             (q, r, damping) = (next, trial, damping * 0.1);
         } else {
             damping *= 10.0;

@@ -62,8 +62,8 @@ pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
         let w = [0, 1, 2].map(|k| velocity(space, v + k));
         for k in 0..3 {
             let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-            let rate = |i: usize| axes[next][i] * w[last] - axes[last][i] * w[next];
-            all.extend((0..3).map(|i| (axes[k][i], rate(i))));
+            let component_of_rotation_rate = |i: usize| axes[next][i] * w[last] - axes[last][i] * w[next];
+            all.extend((0..3).map(|i| (axes[k][i], component_of_rotation_rate(i))));
         }
     }
     all
@@ -78,16 +78,16 @@ fn velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
 }
 
 /// Derivatives with respect to single symbols, cached across expressions. The positions of a chain contain
-/// those of their predecessors, and differentiating each of them by each coordinate without a cache would
-/// take a number of operations that is cubic in the length of the chain.
+/// the positions of their predecessors, and to differentiate each of them by each coordinate without a cache
+/// would take a number of operations that is cubic in the length of the chain.
 #[derive(Default)]
 pub struct Partials<'g>(BTreeMap<Symbol, Derivative<'g>>);
 
 impl<'g> Partials<'g> {
     /// Returns the derivative of an expression with respect to a symbol.
     pub fn derivative(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
-        let new = || Derivative::with_respect_to(symbol, e.graph());
-        self.0.entry(symbol).or_insert_with(new).differentiate(e)
+        let new_derivative = || Derivative::with_respect_to(symbol, e.graph());
+        self.0.entry(symbol).or_insert_with(new_derivative).differentiate(e)
     }
 
     /// Returns the time derivative of an expression along the motion, at constant `v`.
@@ -113,11 +113,11 @@ fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol
 pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     let Some(first) = e.first() else { return Vec::new() };
     let graph = first.graph();
-    let symbol = |id| match graph.node(id) {
+    let symbol_of_node = |id| match graph.node(id) {
         Node::Symbol(s) => Some(s),
         _ => None,
     };
-    let mut symbols: Vec<Symbol> = needed(graph, e).into_iter().filter_map(symbol).collect();
+    let mut symbols: Vec<Symbol> = needed(graph, e).into_iter().filter_map(symbol_of_node).collect();
     symbols.sort_unstable();
     symbols
 }
@@ -128,20 +128,22 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
 /// entries of `v`.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
-    let v = |index: InV| velocity(space, index);
-    let components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
-    let three = |first: InV| [0, 1, 2].map(|k| v(first + k));
+    let velocity_component = |index: InV| velocity(space, index);
+    let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
+    let three_velocities = |first: InV| [0, 1, 2].map(|k| velocity_component(first + k));
     for chart in space.charts {
         match *chart {
-            Chart::Plain(a, b) if a.0 == k => return v(b),
+            Chart::Plain(a, b) if a.0 == k => return velocity_component(b),
             Chart::Ball(a, b) if a.and_next(4).contains(&k) => {
-                return quaternion_rate(components(a), three(b), k - a.0);
+                return quaternion_rate(quaternion_components(a), three_velocities(b), k - a.0);
             }
             Chart::Free(a, b) if a.and_next(7).contains(&k) => {
-                let quaternion = components(a + 3);
+                let quaternion = quaternion_components(a + 3);
                 return match k - a.0 {
-                    position @ 0..3 => Rotation::quaternion(quaternion).to_parent(Vec3(three(b)))[position],
-                    component => quaternion_rate(quaternion, three(b + 3), component - 3),
+                    position @ 0..3 => {
+                        Rotation::quaternion(quaternion).to_parent(Vec3(three_velocities(b)))[position]
+                    }
+                    component => quaternion_rate(quaternion, three_velocities(b + 3), component - 3),
                 };
             }
             _ => {}
@@ -190,8 +192,8 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
 /// Returns the generalized forces that oppose an energy: the derivatives of its time derivative with respect
 /// to the velocities, at constant time.
 pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
-    let find = || velocity_gradient(time_derivative(model.space(), energy));
-    model.gradients.of_energy(&model.charts, energy, find)
+    let gradient_of_energy_rate = || velocity_gradient(time_derivative(model.space(), energy));
+    model.gradients.of_energy(&model.charts, energy, gradient_of_energy_rate)
 }
 
 /// Returns the derivatives of an expression with respect to all velocities from the model's cache.

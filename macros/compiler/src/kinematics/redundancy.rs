@@ -21,24 +21,27 @@ const ROUNDING: f64 = 1e-15;
 /// Returns for each row whether no velocity influences it in any configuration, up to rounding. An example is
 /// the height of a wheel whose axle has a constant height.
 pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
-    let sampled = |seed| rows.jacobian(&random_configuration(model, seed), seed);
-    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sampled).collect();
-    let group = |row: usize| model.constraints[row].group;
+    let sample_jacobian = |seed| rows.jacobian(&random_configuration(model, seed), seed);
+    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sample_jacobian).collect();
+    let group_of_row = |row: usize| model.constraints[row].group;
     let is_small = |sizes: &[f64], row: usize| {
         let all = sizes.iter().copied().fold(0.0, f64::max);
-        let own = (0..sizes.len()).filter(|k| group(*k) == group(row)).map(|k| sizes[k]).fold(0.0, f64::max);
+        let own = (0..sizes.len())
+            .filter(|k| group_of_row(*k) == group_of_row(row))
+            .map(|k| sizes[k])
+            .fold(0.0, f64::max);
         sizes[row] <= NOISE * own || sizes[row] <= ROUNDING * all
     };
     let sizes: Vec<Vec<f64>> =
         samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
-    let zeros = |seed| rows.may_be_zero(&random_configuration(model, seed), seed);
-    let zeros: Vec<Vec<bool>> = (0..SAMPLES).map(zeros).collect();
-    let idle = |row| {
+    let sample_zero_rows = |seed| rows.may_be_zero(&random_configuration(model, seed), seed);
+    let zeros: Vec<Vec<bool>> = (0..SAMPLES).map(sample_zero_rows).collect();
+    let is_constant_row = |row| {
         rows.is_constant(row)
             || zeros.iter().all(|zeros| zeros[row])
             || sizes.iter().all(|sizes| is_small(sizes, row))
     };
-    (0..model.constraints.len()).map(idle).collect()
+    (0..model.constraints.len()).map(is_constant_row).collect()
 }
 
 /// Reports rows that no velocity influences and that are violated: they have the same value in every
@@ -47,18 +50,18 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
     let all = model.constraints.iter().zip(constant);
     let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
     let tape = Tape::new(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
-    let values = |seed| {
+    let sample_gap_values = |seed| {
         let q = random_configuration(model, seed);
         tape.values(&|s| value_of(s, &q, seed))
     };
-    let open = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
-    for ((c, gap), again) in constant.iter().zip(values(0)).zip(values(1)) {
+    let is_violated = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
+    for ((c, gap), again) in constant.iter().zip(sample_gap_values(0)).zip(sample_gap_values(1)) {
         if gap.is_nan() && again.is_nan() {
             cx.error(c.place.clone(), format!("`{}` is undefined in every configuration", c.name)).help(
                 "one of its lengths or directions is always zero: for a circle on a plane, for example, the \
                  axes must differ",
             );
-        } else if open(gap) && open(again) {
+        } else if is_violated(gap) && is_violated(again) {
             cx.error(
                 c.place.clone(),
                 format!("`{}` cannot be satisfied: its residual is at least {gap}", c.name),
@@ -103,7 +106,7 @@ pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples:
 pub struct Basis(Vec<Vec<f64>>);
 
 impl Basis {
-    /// Returns the number of independent rows.
+    /// Returns the number of independent rows in the basis.
     pub fn rank(&self) -> usize {
         self.0.len()
     }

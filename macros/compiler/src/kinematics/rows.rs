@@ -6,14 +6,14 @@ use crate::expr::sample::sample;
 use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Model, Quantity};
 
-/// Constraints compiled for numerical evaluation, in their order.
+/// Constraints compiled for numerical evaluation, in the order of the model.
 pub struct Rows<'g> {
     residuals: Tape<'g>,
     /// Row and column of each nonzero entry of the Jacobian.
     at: Vec<(usize, usize)>,
     entries: Tape<'g>,
     rates: Tape<'g>,
-    /// Numbers of constraints and of velocities.
+    /// Number of constraints, and number of velocities.
     size: (usize, usize),
 }
 

@@ -1,4 +1,4 @@
-//! Spatial vectors: twists and wrenches.
+//! Spatial vectors of expressions: twists and wrenches.
 
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Model;
@@ -7,14 +7,14 @@ use crate::mechanism::Model;
 /// velocity), or a wrench (force, moment about the link's origin).
 #[derive(Clone, Copy, Debug)]
 pub struct Spatial<'g> {
-    /// Velocity or force.
+    /// Linear part: velocity of the origin, or force.
     pub linear: Vec3<'g>,
-    /// Angular velocity or moment.
+    /// Angular part: angular velocity, or moment about the origin.
     pub angular: Vec3<'g>,
 }
 
 impl<'g> Spatial<'g> {
-    /// Returns the zero vector.
+    /// Returns the spatial vector of zeros.
     pub fn zero(model: &Model<'g>) -> Spatial<'g> {
         Spatial { linear: Vec3::zero(model.graph), angular: Vec3::zero(model.graph) }
     }
@@ -24,12 +24,12 @@ impl<'g> Spatial<'g> {
         self.linear.dot(other.linear) + self.angular.dot(other.angular)
     }
 
-    /// Returns the sum.
+    /// Returns the sum of two spatial vectors.
     pub fn plus(&self, other: &Spatial<'g>) -> Spatial<'g> {
         Spatial { linear: self.linear + other.linear, angular: self.angular + other.angular }
     }
 
-    /// Returns the vector multiplied by a scalar.
+    /// Returns the spatial vector multiplied by a scalar.
     pub fn times(&self, s: Expr<'g>) -> Spatial<'g> {
         Spatial { linear: self.linear * s, angular: self.angular * s }
     }

@@ -1,4 +1,4 @@
-//! Generalized speeds: the velocities that they depend on, their invertibility, and the inverse matrix.
+//! Generalized speeds: the velocities on which they depend, their invertibility, and the inverse matrix.
 
 use super::redundancy::Basis;
 use super::rows::{random_configuration, value_of};
@@ -165,7 +165,7 @@ fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     Some(expression(model.graph, &normal.ring, &p))
 }
 
-/// Returns the components of all unit quaternions.
+/// Returns the symbols of the components of all unit quaternions.
 pub fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
     let firsts = model.charts.iter().filter_map(Chart::quaternion);
     firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q.0 + k).symbol())).collect()

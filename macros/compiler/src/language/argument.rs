@@ -2,10 +2,10 @@
 
 use super::dimension::{Dimension, INERTIA, LENGTH, MASS, PLAIN};
 
-/// An argument.
+/// Argument of a solid, a surface or a rotation.
 #[derive(Debug)]
 pub struct Argument {
-    /// The name, as messages print it.
+    /// Name of the argument, as messages print it.
     pub name: &'static str,
     /// Quantity that the argument expects.
     pub kind: ArgumentKind,

@@ -8,9 +8,9 @@ use crate::expr::Function;
 pub enum Callable {
     /// A piecewise expression `if a < b { below } else { above }`, with its operands and pieces.
     If,
-    /// An elementary function.
+    /// Elementary function of one variable.
     Elementary(Function),
-    /// Another function.
+    /// Function of the language with its own row.
     Function(FunctionId),
     /// A solid, as in `inertia = …`.
     Solid(Solid),
@@ -32,7 +32,7 @@ pub const IF: &str = "if";
 /// Name of the collision geometry of a file's link.
 pub const COLLISION: &str = "collision";
 
-/// Callable names that are in no table.
+/// Names that can be called and belong to no table.
 const OTHERS: [(&str, Callable); 5] = [
     (IF, Callable::If),
     ("rolls", Callable::Rolls),
@@ -45,13 +45,13 @@ impl Callable {
     /// Returns the callable with this name.
     pub fn of_name(name: &str) -> Option<Callable> {
         let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
-        let other = || OTHERS.iter().find(|(known, _)| *known == name);
+        let find_other_callable = || OTHERS.iter().find(|(known, _)| *known == name);
         elementary
             .map(|(_, function)| Callable::Elementary(*function))
             .or_else(|| FunctionId::of_name(name).map(Callable::Function))
             .or_else(|| Solid::of_name(name).map(Callable::Solid))
             .or_else(|| Rotation::of_name(name).map(Callable::Rotation))
-            .or_else(|| other().map(|(_, callable)| *callable))
+            .or_else(|| find_other_callable().map(|(_, callable)| *callable))
     }
 
     /// Returns the name `rolls` or `slips` of a pair of surfaces.

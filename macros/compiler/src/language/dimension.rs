@@ -2,7 +2,7 @@
 
 use super::ratio::Ratio;
 
-/// An unknown dimension.
+/// Index of an unknown dimension.
 pub type Variable = usize;
 
 /// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
@@ -21,7 +21,7 @@ impl Dimension {
         Dimension { base, unknown: Vec::new() }
     }
 
-    /// Returns an unknown dimension.
+    /// Returns the dimension that is a single unknown.
     pub fn variable(v: Variable) -> Dimension {
         Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
     }
@@ -31,7 +31,7 @@ impl Dimension {
         self.unknown.is_empty()
     }
 
-    /// Returns true for plain numbers and angles.
+    /// Returns whether the dimension is that of plain numbers and angles.
     pub fn is_plain(&self) -> bool {
         self.is_known() && self.base.iter().all(|e| e.is_zero())
     }
@@ -41,17 +41,17 @@ impl Dimension {
         self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
     }
 
-    /// Returns the dimension of a product.
+    /// Returns the dimension of a product of two quantities.
     pub fn times(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::ONE)
     }
 
-    /// Returns the dimension of a quotient.
+    /// Returns the dimension of a quotient of two quantities.
     pub fn quotient(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::integer(-1))
     }
 
-    /// Returns the dimension of a power.
+    /// Returns the dimension of a power of a quantity.
     pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
         Dimension::new(0, 0, 0).times_power(self, exponent)
     }

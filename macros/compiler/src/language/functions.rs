@@ -1,4 +1,4 @@
-//! The functions of expressions other than the elementary ones.
+//! Table of the functions of expressions, except the elementary functions.
 
 use super::dimension::{
     ACCELERATION, ANGULAR_MOMENTUM, DENSITY, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN,
@@ -10,20 +10,20 @@ use UnitRule::{
     Quotient, TimeDerivative, Unknown,
 };
 
-/// A row of the table of functions.
+/// Row of the table of functions.
 #[derive(Debug)]
 pub struct FunctionRow {
-    /// The name.
+    /// Name of the function.
     pub name: &'static str,
-    /// Words of other tools.
+    /// Names of the function in other tools.
     pub synonyms: &'static str,
-    /// The arguments, as the message about wrong ones lists them.
+    /// Arguments of the function, as the message about wrong arguments lists them.
     pub takes: &'static str,
-    /// The help of this message.
+    /// Help of the message about wrong arguments.
     pub usage: &'static str,
-    /// The quantities that the value depends on.
+    /// Quantities on which the value depends.
     pub depends_on: Dependence,
-    /// The dimension of the value, and those that the arguments must have.
+    /// Dimension of the value, and those that the arguments must have.
     pub unit: UnitRule,
 }
 
@@ -32,9 +32,9 @@ pub struct FunctionRow {
 pub enum Dependence {
     /// The configuration, and the quantities that its arguments depend on.
     Arguments,
-    /// Velocities.
+    /// The value depends on velocities.
     Motion,
-    /// Accelerations.
+    /// The value depends on accelerations.
     Acceleration,
     /// Velocities, and accelerations where an argument is a motion itself.
     Rate,
@@ -44,12 +44,12 @@ pub enum Dependence {
     Reaction,
 }
 
-/// The dimension of a function's value.
+/// Dimension of a function's value.
 #[derive(Debug)]
 pub enum UnitRule {
-    /// An unknown dimension.
+    /// Unknown dimension, which is inferred from the use of the value.
     Unknown,
-    /// A fixed dimension, for all arguments.
+    /// Fixed dimension, for the value and all arguments.
     Of(Dimension),
     /// Dimension of a direction.
     Direction,
@@ -63,12 +63,12 @@ pub enum UnitRule {
     LikeLast,
     /// Dimension of the product of the arguments; for a scalar the product of two directions is plain.
     Product {
-        /// The value is a scalar.
+        /// Whether the value is a scalar.
         scalar: bool,
     },
     /// Dimension of the first argument, plain for a direction.
     Magnitude,
-    /// The first argument to the power of the second.
+    /// Dimension of the first argument raised to the second argument.
     Power,
     /// Dimension of the first argument over time.
     TimeDerivative,
@@ -92,7 +92,7 @@ const THREE: &str = "3 arguments";
 const CURVE: &str = "a curve and the coordinate along it";
 const MOVING: &str = "a body and a frame";
 
-/// Returns a row; in the order of its fields.
+/// Returns a row from its fields, in their order.
 const fn row(
     name: &'static str,
     synonyms: &'static str,
@@ -104,14 +104,14 @@ const fn row(
 }
 
 table! {
-    /// A function of the language that is not an elementary one.
+    /// Function of the language that is not elementary.
     FunctionId: FunctionRow {
         /// The angle of the point `(x, y)`, from −π to π.
         Atan2 = row("atan2", "arctan2", (TWO, "write `atan2(y, x)`"), Arguments, Quotient);
         /// An angle given in degrees.
         Degrees = row("degrees", "radians deg2rad rad2deg degtorad deg degree torad rad radian",
             (ONE, "write `degrees(90)`"), Arguments, Unknown);
-        /// A power.
+        /// Power with a constant exponent.
         Pow = row("pow", "power powi powf powr", (TWO, "write `pow(a, n)`"), Arguments, UnitRule::Power);
         /// The smaller of two values.
         Min = row("min", "minimum", (TWO, "write `min(a, b)`"), Arguments, Alike);
@@ -130,7 +130,7 @@ table! {
         /// The direction of a vector.
         Unit = row("unit", "normalize normalise normalized normalised unitvector hat direction",
             (ONE, "write `unit(v)`"), Arguments, Direction);
-        /// The relative position of two points.
+        /// Position of a point relative to another point.
         Position = row("r", "position pos displacement", (TWO, "write `r(point / point)`"),
             Arguments, Places(LENGTH));
         /// The relative velocity of two points, seen from a frame.
@@ -139,7 +139,7 @@ table! {
         /// The relative acceleration of two points, seen from a frame.
         Acceleration = row("a", "acceleration acc accel linearacceleration",
             (THREE, "write `a(point / point / frame)`"), Acceleration, Places(ACCELERATION));
-        /// The relative angular velocity of two frames.
+        /// Angular velocity of a frame relative to another frame.
         Omega = row("omega", "angularvelocity angvel w ω", (TWO, "write `omega(frame / frame)`"),
             Motion, Places(RATE));
         /// The relative angular acceleration of two frames, seen from a third.
@@ -148,7 +148,7 @@ table! {
         /// The rate of a coordinate or of an expression.
         Rate = row("rate", "ddt dt der derivative diff derive dif speed qdot ratederivative",
             ("one coordinate", "write `rate(coordinate)`"), Rate, TimeDerivative);
-        /// The angle between two vectors, or from one to the other about a third.
+        /// Angle between two vectors, or from one vector to another about a third.
         Angle = row("angle", "anglebetween",
             ("two vectors, and a third about which it is directed",
              "write `angle(a, b)` or `angle(a, b, normal)`"), Arguments, Of(PLAIN));
@@ -192,7 +192,7 @@ table! {
         /// The advance of a body along its screw axis per radian.
         ScrewPitch = row("screw_pitch", "",
             (MOVING, "write `screw_pitch(body / frame)`"), Motion, Places(LENGTH));
-        /// The projection onto a line.
+        /// Matrix of the projection onto a line.
         Projector = row("projector", "", (ONE, "write `projector(a)`"), Arguments, Of(PLAIN));
         /// The matrix of a cross product.
         Skew = row("skew", "", (ONE, "write `skew(a)`"), Arguments, LikeFirst);

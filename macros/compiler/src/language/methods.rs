@@ -6,13 +6,13 @@ use super::callable::COLLISION;
 /// A method of a body or an inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// `body.at(vector)`: a point of a body.
+    /// Point of a body: `body.at(vector)`.
     At,
     /// `body.rotated(rotation, …)`: axes, or an inertia, after successive rotations about the rotated axes.
     Rotated,
     /// `link.collision()`: the collision geometry of a file's link.
     Collision,
-    /// A surface of a body.
+    /// Surface of a body.
     Surface(SurfaceId),
 }
 

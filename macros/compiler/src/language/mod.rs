@@ -16,7 +16,7 @@ macro_rules! table {
             /// The ids of all rows, in the order of the table.
             pub const ALL: &'static [$ids] = &[$($ids::$id),+];
 
-            /// Returns the row of an id.
+            /// Returns the table row of an id.
             pub fn row(self) -> &'static $row {
                 match self {
                     $($ids::$id => {
@@ -36,7 +36,7 @@ macro_rules! table {
                 Self::ALL.iter().copied().find(|id| id.name() == name)
             }
 
-            /// Returns the names of all rows.
+            /// Returns the names of all rows of the table.
             pub fn names<'a>() -> impl Iterator<Item = &'a str> {
                 Self::ALL.iter().map(|id| id.name())
             }

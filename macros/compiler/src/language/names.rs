@@ -11,17 +11,17 @@ pub enum Builtin {
     Time,
 }
 
-/// The names of the axes.
+/// Names of the axes of a frame.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The name of the number π.
+/// Name of the number π in the language.
 pub const PI: &str = "pi";
 
-/// The name of time.
+/// Name of time in the language.
 pub const TIME: &str = "t";
 
 impl Builtin {
-    /// Returns the meaning of a name.
+    /// Returns the built-in quantity with this name.
     pub fn of_name(name: &str) -> Option<Builtin> {
         match name {
             PI => Some(Builtin::Pi),

@@ -1,5 +1,5 @@
-//! Exponents as small fractions, since the square root of a length has the dimension of length to the power
-//! one half.
+//! Exponents of dimensions as small fractions, since the square root of a length has the dimension of length
+//! to the power one half.
 
 /// A fraction in lowest terms with a positive denominator. Numerator and denominator stay small, so that
 /// products of two never overflow; arithmetic that would leave this range has no result.
@@ -9,18 +9,18 @@ pub struct Ratio {
     d: i64,
 }
 
-/// Largest numerator and denominator.
+/// Largest numerator and denominator of an exponent.
 const LIMIT: i64 = 1_000_000;
 /// Largest denominator of a power that is read from a number.
 const READABLE: i64 = 120;
 
 impl Ratio {
-    /// Zero.
+    /// The exponent zero.
     pub const ZERO: Ratio = Ratio::integer(0);
-    /// One.
+    /// The exponent one.
     pub const ONE: Ratio = Ratio::integer(1);
 
-    /// Returns a small integer.
+    /// Returns an integer as a fraction.
     pub const fn integer(n: i64) -> Ratio {
         Ratio { n, d: 1 }
     }
@@ -37,19 +37,19 @@ impl Ratio {
 
     /// Returns the simple fraction that equals a number, if there is one.
     pub fn from_value(x: f64) -> Option<Ratio> {
-        let numerator = |d: i64| {
+        let numerator_for = |d: i64| {
             let n = x * d as f64;
             ((n - n.round()).abs() < 1e-9 && n.abs() < 1e6).then(|| n.round() as i64)
         };
-        (1..=READABLE).find_map(|d| numerator(d).and_then(|n| Ratio::new(n, d)))
+        (1..=READABLE).find_map(|d| numerator_for(d).and_then(|n| Ratio::new(n, d)))
     }
 
-    /// Returns true for zero.
+    /// Returns whether the fraction is zero.
     pub fn is_zero(self) -> bool {
         self.n == 0
     }
 
-    /// Returns numerator and denominator.
+    /// Returns numerator and denominator of the fraction.
     pub fn parts(self) -> (i64, i64) {
         (self.n, self.d)
     }
@@ -75,7 +75,7 @@ impl Ratio {
     }
 }
 
-/// Returns the greatest common divisor (Euclid).
+/// Returns the greatest common divisor by Euclid's algorithm.
 fn divisor(mut a: i64, mut b: i64) -> i64 {
     while b != 0 {
         (a, b) = (b, a % b);

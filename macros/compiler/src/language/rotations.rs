@@ -2,16 +2,16 @@
 
 use super::{Argument, ArgumentKind};
 
-/// A row of the table of rotations.
+/// Row of the table of rotations.
 #[derive(Debug)]
 pub struct RotationRow {
-    /// The name.
+    /// Name of the rotation.
     pub name: &'static str,
-    /// Words of other tools.
+    /// Names of the rotation in other tools.
     pub synonyms: &'static str,
-    /// The arguments.
+    /// Arguments of the rotation.
     pub arguments: &'static [Argument],
-    /// True for axes determined by a vector or a curve; they come first in a `Frame`.
+    /// True for axes that a vector or a curve determines; such axes come first in a `Frame`.
     pub natural: bool,
 }
 

@@ -4,12 +4,12 @@ use super::{Argument, ArgumentKind};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::mechanism::PieceKind;
 
-/// A row of the table of solids.
+/// Row of the table of solids.
 #[derive(Debug)]
 pub struct SolidRow {
-    /// The name.
+    /// Name of the solid.
     pub name: &'static str,
-    /// Words of other tools.
+    /// Names of the solid in other tools.
     pub synonyms: &'static str,
     /// The arguments; a direction comes last, and the masses and lengths are not negative.
     pub arguments: &'static [Argument],
@@ -170,8 +170,12 @@ fn diagonal(moments: [Expr<'_>; 3]) -> Sym3<'_> {
 
 /// Returns moments proportional to the sums of squares of two of three lengths.
 fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
-    let square = |k: usize| n[k].square();
-    diagonal([m * (square(2) + square(3)), m * (square(1) + square(3)), m * (square(1) + square(2))])
+    let squared_length = |k: usize| n[k].square();
+    diagonal([
+        m * (squared_length(2) + squared_length(3)),
+        m * (squared_length(1) + squared_length(3)),
+        m * (squared_length(1) + squared_length(2)),
+    ])
 }
 
 /// Returns `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, moment `t` about all normals of `n`.

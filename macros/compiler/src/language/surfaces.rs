@@ -92,7 +92,9 @@ impl SurfaceId {
     /// Returns the surface with a name and a number of arguments; if none has this number, another surface
     /// of this name.
     pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
-        let candidates = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
-        candidates().find(|id| id.row().arguments.len() == count).or_else(|| candidates().next())
+        let candidates_by_name = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
+        candidates_by_name()
+            .find(|id| id.row().arguments.len() == count)
+            .or_else(|| candidates_by_name().next())
     }
 }

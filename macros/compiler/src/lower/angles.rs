@@ -6,26 +6,26 @@ use std::cmp::Reverse;
 
 /// One angle with the instructions that compute its sine and cosine.
 pub struct Angle {
-    /// The angle.
+    /// Angle whose sine and cosine are computed.
     pub angle: Operand,
-    /// The instruction that computes its sine.
+    /// Instruction that computes the sine of the angle.
     pub sine: Option<usize>,
-    /// The instruction that computes its cosine.
+    /// Instruction that computes the cosine of the angle.
     pub cosine: Option<usize>,
 }
 
 /// Angles that are arithmetic expressions of the arguments.
 pub struct Angles {
-    /// The angles.
+    /// Angles of the program.
     pub list: Vec<Angle>,
-    /// For each instruction: it is the sine or cosine of one of the angles.
+    /// Whether each instruction is the sine or cosine of one of the angles.
     pub covered: Vec<bool>,
-    /// For each instruction: an angle depends on it.
+    /// Whether an angle depends on each instruction.
     pub before: Vec<bool>,
 }
 
 impl Angles {
-    /// Finds the angles of a program.
+    /// Finds the angles whose sines or cosines a program computes.
     pub fn find(program: &Program) -> Angles {
         let n = program.instructions.len();
         let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
@@ -72,8 +72,8 @@ impl Angles {
 }
 
 impl Angles {
-    /// Returns the angles with most lanes first; angles with equally many lanes in the order of the inputs
-    /// they depend on.
+    /// Returns the angles in descending order of their lanes; angles with equally many lanes in the order of
+    /// the inputs on which they depend.
     pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
         list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), input(program, angle.angle)));

@@ -43,7 +43,7 @@ impl Program {
         if ends.iter().any(|t| self.fuses(*t)) {
             return None;
         }
-        let joined = |from: usize| {
+        let chain_from_end = |from: usize| {
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
             self.descend(ends[1 - from], &mut sum).then(|| {
                 sum.additions.reverse();
@@ -52,7 +52,7 @@ impl Program {
                 sum
             })
         };
-        joined(0).or_else(|| joined(1))
+        chain_from_end(0).or_else(|| chain_from_end(1))
     }
 
     /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it

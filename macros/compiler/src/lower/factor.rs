@@ -1,11 +1,11 @@
-//! Factors common to several terms of a sum are taken out: `a b + a c` becomes `a (b + c)`, with one
+//! Extraction of factors that are common to several terms of a sum: `a b + a c` becomes `a (b + c)`, with one
 //! multiplication less. The number of instructions stays the same where products are fused into sums.
 
 use super::terms::{LONGEST, Term};
 use super::{Op, Operand, Program};
 
 impl Program {
-    /// Takes common factors out of the sums of a program.
+    /// Extracts common factors from the sums of a program.
     pub(super) fn factored(self) -> Program {
         let inner = self.inner_additions();
         let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
@@ -127,12 +127,13 @@ impl Program {
     /// Returns the other factor of a term that is a product with this factor.
     fn cofactor(&self, term: Term, factor: Operand) -> Option<Term> {
         let (a, b) = self.lone_product(term.operand)?;
-        let opposite = |x: Operand| match (x, factor) {
+        let sign_of_cofactor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
             _ => None,
         };
-        let (other, opposite) = opposite(a).map(|o| (b, o)).or_else(|| opposite(b).map(|o| (a, o)))?;
+        let (other, opposite) =
+            sign_of_cofactor(a).map(|o| (b, o)).or_else(|| sign_of_cofactor(b).map(|o| (a, o)))?;
         Some(Term { operand: other, negative: term.negative != opposite })
     }
 
@@ -171,7 +172,7 @@ impl Program {
     }
 }
 
-/// Terms with a common factor, if there is one, divided by it.
+/// Terms of a sum that have a common factor, divided by it; terms without a factor form a group of their own.
 struct Group {
     factor: Option<Operand>,
     others: Vec<Term>,

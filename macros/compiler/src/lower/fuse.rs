@@ -1,4 +1,5 @@
-//! Fused multiply-add: a product whose only use is a sum becomes one instruction with it.
+//! Fusion of multiplications and additions: a product whose only use is a sum becomes one instruction
+//! together with the sum.
 
 use super::{Op, Operand, Program};
 
@@ -61,13 +62,13 @@ impl Program {
         Some(product).filter(|product| is_product(*product))
     }
 
-    /// Moves each product that will be fused right before its sum.
+    /// Moves each product that will be fused directly before its sum.
     pub(super) fn with_products_at_their_sums(self) -> Program {
         let n = self.instructions.len();
         let waits = self.products_to_fuse();
-        let product = |k: usize| self.product_to_fuse(k).map(Operand::number);
+        let product_to_place = |k: usize| self.product_to_fuse(k).map(Operand::number);
         let order: Vec<usize> =
-            (0..n).filter(|k| !waits[*k]).flat_map(|k| product(k).into_iter().chain([k])).collect();
+            (0..n).filter(|k| !waits[*k]).flat_map(|k| product_to_place(k).into_iter().chain([k])).collect();
         match order.iter().enumerate().all(|(place, k)| place == *k) {
             true => self,
             false => self.reordered(&order),

@@ -1,5 +1,5 @@
-//! Hoisted values, which are computed before a program runs: programs treat them as constants with symbols of
-//! their own, one for each sign. A node of the graph has the same symbol in all programs.
+//! Hoisting of values that are computed before a program runs. Programs treat such values as constants with
+//! symbols of their own, one for each sign. A node of the graph has the same symbol in all programs.
 
 use super::{Operand, Program};
 use crate::expr::{Id, Node, Symbol};
@@ -39,7 +39,7 @@ pub(super) fn operand(id: Id) -> Operand {
     Operand::Symbol(Symbol(HOISTED | id))
 }
 
-/// Returns true for constants and hoisted values.
+/// Returns whether an operand is a constant or a hoisted value.
 pub(super) fn is_constant(o: Operand) -> bool {
     match o {
         Operand::Const(_) | Operand::Tuple(_) => true,
@@ -57,8 +57,8 @@ pub(super) fn negated(o: Operand) -> Operand {
     }
 }
 
-/// Returns for each node, operands first, whether it depends on known symbols and constants, and on at least
-/// one known symbol. Operations on constants alone are not hoisted.
+/// Returns for each node, operands first, whether it depends on known symbols and constants only, and on at
+/// least one known symbol. Operations on constants alone are not hoisted.
 pub(super) fn hoisted_nodes(
     nodes: &[Node],
     place: impl Fn(Id) -> usize,
@@ -88,13 +88,14 @@ mod tests {
     use crate::expr::{Graph, Symbol};
     use crate::lower::{hoisted, lower_without};
 
-    /// With two parameters and two variables, values of the parameters alone are not computed, nor negated.
+    /// Checks a program with two parameters and two variables: it neither computes nor negates values of the
+    /// parameters alone.
     #[test]
     fn hoisted_values_are_not_computed() {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let is_known = |s: Symbol| s.0 < 2;
-        let value = |s: Symbol| 0.7 + f64::from(s.0);
+        let value_of_symbol = |s: Symbol| 0.7 + f64::from(s.0);
         let ml = m * l;
         for (outputs, operations) in [
             (vec![ml * l.sin() * x], 1),
@@ -104,10 +105,12 @@ mod tests {
             (vec![x * y - ml, ml - x * y + y], 3),
         ] {
             let program = lower_without(&outputs, &is_known);
-            let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value)).collect();
+            let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value_of_symbol)).collect();
             let found = program.run(&|s| match hoisted(s) {
-                Some((id, negative)) => eval_one(g.expr(id), &value) * if negative { -1.0 } else { 1.0 },
-                None => value(s),
+                Some((id, negative)) => {
+                    eval_one(g.expr(id), &value_of_symbol) * if negative { -1.0 } else { 1.0 }
+                }
+                None => value_of_symbol(s),
             });
             for (found, expected) in found.iter().zip(&expected) {
                 assert!((found - expected).abs() < 1e-14, "{found} is not {expected}");

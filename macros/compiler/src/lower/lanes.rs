@@ -16,7 +16,7 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
-    /// Starts a program with the constants and inputs of another one.
+    /// Returns the lanes of the constants and inputs of a program, before its instructions.
     pub(super) fn of_inputs(program: &Program) -> Lanes {
         let gathers = program.gathers.iter().map(Vec::len).collect();
         Lanes { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
@@ -56,7 +56,7 @@ impl Lanes {
         }
     }
 
-    /// Records the lanes of the next instruction.
+    /// Records the number of lanes of the next instruction.
     pub(super) fn push(&mut self, op: &Op) {
         let width = self.width_of(op);
         self.widths.push(width);
@@ -93,7 +93,7 @@ impl Program {
         self
     }
 
-    /// Returns the estimated cost in tenths of an instruction on one lane.
+    /// Returns the estimated cost of the program, in tenths of an instruction on one lane.
     pub fn cost(&self) -> usize {
         let gathers: usize = self.gathers.iter().map(|g| GATHER_COST * g.len()).sum();
         // A product that will be fused costs nothing in addition to its sum.

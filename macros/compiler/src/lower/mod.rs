@@ -43,7 +43,7 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     program
 }
 
-/// Translates expressions to instructions one by one.
+/// Translates expressions to instructions, one for each node.
 fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let Some(first) = outputs.first() else {
         return Program::default();
@@ -53,57 +53,61 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     // that a small function does not pay for a large graph.
     let mut places = graph.borrow_table();
     let order = needed(outputs, &mut places);
-    let place = |id: Id| places[id as usize] as usize - 1;
+    let index_of_node = |id: Id| places[id as usize] as usize - 1;
     let nodes = nodes_of(graph, &order);
-    let hoisted = hoist::hoisted_nodes(&nodes, place, known);
+    let hoisted = hoist::hoisted_nodes(&nodes, index_of_node, known);
     let mut uses = vec![0_u32; order.len()];
     for (node, _) in nodes.iter().zip(&hoisted).filter(|(_, hoisted)| !**hoisted) {
-        node.operands(|a| uses[place(a)] += 1);
+        node.operands(|a| uses[index_of_node(a)] += 1);
     }
     for output in outputs {
-        uses[place(output.id())] += 1;
+        uses[index_of_node(output.id())] += 1;
     }
     let mut program = Program::default();
     let mut values: Vec<Operand> = Vec::with_capacity(order.len());
     let mut lanes = lanes::Lanes::default();
     for (k, node) in nodes.iter().enumerate() {
-        let operand = |a: Id| values[place(a)];
+        let operand_of_node = |a: Id| values[index_of_node(a)];
         if hoisted[k] {
             values.push(match *node {
-                Node::Neg(a) => hoist::negated(operand(a)),
+                Node::Neg(a) => hoist::negated(operand_of_node(a)),
                 _ => hoist::operand(order[k]),
             });
             continue;
         }
-        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &operand) {
+        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &operand_of_node) {
             values.push(leaf);
             continue;
         }
         let op = match *node {
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => continue,
-            Node::Sum(n, a) => lanes.sum(n.into(), operand(a)),
-            Node::Lane(k, a) => Op::Lane(k.into(), operand(a)),
-            Node::Join(n, a, b) => Op::Join(n.into(), operand(a), operand(b)),
-            Node::Neg(a) => match nodes[place(a)] {
+            Node::Sum(n, a) => lanes.sum(n.into(), operand_of_node(a)),
+            Node::Lane(k, a) => Op::Lane(k.into(), operand_of_node(a)),
+            Node::Join(n, a, b) => Op::Join(n.into(), operand_of_node(a), operand_of_node(b)),
+            Node::Neg(a) => match nodes[index_of_node(a)] {
                 // −(a − b) is b − a if nothing else uses a − b.
-                Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(operand(y), operand(x)),
-                _ => Op::Neg(operand(a)),
+                Node::Sub(x, y) if uses[index_of_node(a)] == 1 => {
+                    Op::Sub(operand_of_node(y), operand_of_node(x))
+                }
+                _ => Op::Neg(operand_of_node(a)),
             },
-            Node::Add(a, b) => Op::Add(operand(a), operand(b)),
-            Node::Sub(a, b) => Op::Sub(operand(a), operand(b)),
-            Node::Mul(a, b) => Op::Mul(operand(a), operand(b)),
-            Node::Div(a, b) => Op::Div(operand(a), operand(b)),
-            Node::Call(f, a) => Op::Call(f, operand(a)),
-            Node::Atan2(a, b) => Op::Atan2(operand(a), operand(b)),
-            Node::Pow(a, b) => Op::Pow(operand(a), operand(b)),
-            Node::Extreme(f, a, b) => Op::Extreme(f, operand(a), operand(b)),
-            Node::Table(lookup, a, b, c) => Op::Table(lookup, operand(a), operand(b), operand(c)),
+            Node::Add(a, b) => Op::Add(operand_of_node(a), operand_of_node(b)),
+            Node::Sub(a, b) => Op::Sub(operand_of_node(a), operand_of_node(b)),
+            Node::Mul(a, b) => Op::Mul(operand_of_node(a), operand_of_node(b)),
+            Node::Div(a, b) => Op::Div(operand_of_node(a), operand_of_node(b)),
+            Node::Call(f, a) => Op::Call(f, operand_of_node(a)),
+            Node::Atan2(a, b) => Op::Atan2(operand_of_node(a), operand_of_node(b)),
+            Node::Pow(a, b) => Op::Pow(operand_of_node(a), operand_of_node(b)),
+            Node::Extreme(f, a, b) => Op::Extreme(f, operand_of_node(a), operand_of_node(b)),
+            Node::Table(lookup, a, b, c) => {
+                Op::Table(lookup, operand_of_node(a), operand_of_node(b), operand_of_node(c))
+            }
         };
         values.push(Operand::Value(program.instructions.len()));
         lanes.push(&op);
         program.instructions.push(op);
     }
-    program.outputs = outputs.iter().map(|o| values[place(o.id())]).collect();
+    program.outputs = outputs.iter().map(|o| values[index_of_node(o.id())]).collect();
     for id in &order {
         places[*id as usize] = 0;
     }
@@ -123,10 +127,10 @@ pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
     for id in &order {
         places[*id as usize] = 0;
     }
-    let counts = |node: &Node| {
+    let is_counted_operation = |node: &Node| {
         matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Sum(..))
     };
-    nodes.iter().zip(hoisted).filter(|(node, hoisted)| !hoisted && counts(node)).count()
+    nodes.iter().zip(hoisted).filter(|(node, hoisted)| !hoisted && is_counted_operation(node)).count()
 }
 
 /// Returns the nodes with these ids.
@@ -135,8 +139,8 @@ fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
     ids.iter().map(|id| nodes[*id as usize]).collect()
 }
 
-/// Returns the ids of all nodes that the outputs need, operands first, and writes their positions, counted
-/// from one, to the table.
+/// Returns the ids of all nodes that the outputs need, operands first, and writes the position of each node,
+/// counted from one, to the table.
 fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();

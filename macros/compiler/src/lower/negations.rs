@@ -14,13 +14,13 @@ use std::collections::BTreeSet;
 
 /// Number of operand levels in which free signs are searched for a negated value.
 const DEPTH: usize = 6;
-/// Maximum number of free signs that are tried for one negated value.
+/// Maximum number of free signs that are tried to remove one negation.
 const TRIES: usize = 6;
 /// Maximum number of values that a changed sign may affect; a change with more effects is rejected.
 const REACH: usize = 400;
 
 impl Program {
-    /// Removes negations by choosing signs. Angles `c - q` become `q - c` if that takes at most one more
+    /// Removes negations by the choice of signs. Angles `c - q` become `q - c` if that needs at most one more
     /// negation: the offsets of all angles are then one vector addition.
     pub(super) fn with_cheap_signs(self) -> Program {
         let reversed = self.reversed_angles();
@@ -56,16 +56,16 @@ struct Signs<'a> {
     users: Vec<Vec<usize>>,
     /// True for values that must be stored with plus.
     sink: Vec<bool>,
-    /// Chosen sign of each free value.
+    /// Chosen sign of each value whose sign is free.
     choice: Vec<bool>,
     /// True for free values whose chosen sign is fixed.
     fixed: Vec<bool>,
-    /// True for values stored with minus.
+    /// Whether each value is stored with a minus sign.
     negative: Vec<bool>,
 }
 
 impl<'a> Signs<'a> {
-    /// Searches signs from all free ones plus, with some of them fixed to minus.
+    /// Searches signs that need few negations, from all free signs plus, with some values fixed to minus.
     fn optimised(program: &'a Program, negative: &[usize]) -> Signs<'a> {
         let mut signs = Signs::new(program, negative);
         signs.search();
@@ -109,7 +109,7 @@ impl<'a> Signs<'a> {
         matches!(o, Operand::Value(a) if self.negative[a])
     }
 
-    /// Returns the sign of a value from those of its operands, or its chosen sign if it is free.
+    /// Returns the sign of a value from the signs of its operands, or the chosen sign if it is free.
     fn sign(&self, k: usize) -> bool {
         match self.program.instructions[k] {
             _ if self.is_free(k) => self.choice[k],
@@ -137,7 +137,7 @@ impl<'a> Signs<'a> {
         self.sink.iter().zip(&self.negative).filter(|(sink, negative)| **sink && **negative).count()
     }
 
-    /// Changes free signs while that saves negations.
+    /// Changes free signs as long as that saves negations.
     fn search(&mut self) {
         for least in [1, 0, 1, 0, 1] {
             let mut better = false;
@@ -191,7 +191,7 @@ impl<'a> Signs<'a> {
         false
     }
 
-    /// Updates the signs that depend on changed ones; returns the number of negations saved.
+    /// Updates the signs that depend on changed signs; returns the number of negations saved.
     fn propagate(&mut self, from: &[usize], changed: &mut Vec<usize>) -> isize {
         let mut gain = 0;
         let mut todo: BTreeSet<usize> = from.iter().copied().collect();
@@ -239,14 +239,14 @@ impl<'a> Signs<'a> {
     }
 }
 
-/// Program that is being written with signs.
+/// Writer of the program in which values are stored with the chosen signs.
 struct Rewrite<'a> {
     signs: &'a Signs<'a>,
     instructions: Vec<Op>,
     tuples: Vec<Vec<f64>>,
-    /// Operand that each value is stored in, with its sign.
+    /// Operand in which each value is stored, with its sign.
     stored: Vec<Operand>,
-    /// Operand that each value is stored in with plus, if there is one.
+    /// Operand in which each value is stored with a plus sign, if there is one.
     positive: Vec<Option<Operand>>,
 }
 
@@ -309,7 +309,7 @@ impl Rewrite<'_> {
         self.positive.push((!negative).then_some(stored));
     }
 
-    /// Adds the sum of two terms; at most one of them is negative unless one is a constant.
+    /// Adds the instruction for the sum of two terms; at most one term is negative, unless one is a constant.
     fn sum(&mut self, terms: [Term; 2]) -> Operand {
         let mut terms = terms.map(|t| Term { operand: self.stored(t.operand), ..t });
         if terms.iter().all(|t| t.negative) {
@@ -329,7 +329,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// Returns the negative of a constant.
+    /// Returns the operand for the negative of a constant.
     fn negated(&mut self, o: Operand) -> Operand {
         match o {
             Operand::Tuple(k) => {

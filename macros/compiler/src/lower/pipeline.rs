@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 /// A pass over a program and over its SIMD variant.
 #[derive(Clone, Copy)]
 pub struct Pass {
-    /// Name of the pass.
+    /// Name of the pass over programs.
     pub name: &'static str,
-    /// Description in one clause.
+    /// Description of the pass in one clause.
     pub about: &'static str,
     run: fn(Program) -> Program,
 }
 
-/// Name of the translation from expressions to instructions: not a pass, but observed like one.
+/// Name of the translation from expressions to instructions, which is observed like a pass.
 pub const SELECT: &str = "select";
 
 const FACTOR: Pass = Pass {
@@ -98,7 +98,7 @@ pub fn begin(function: &str) {
     }
 }
 
-/// Calls the observer, if there is one.
+/// Reports a pass to the observer, if there is one.
 pub(super) fn observe(pass: &str, program: &Program, time: Duration) {
     OBSERVER.with(|cell| {
         if let Ok(mut observer) = cell.try_borrow_mut()

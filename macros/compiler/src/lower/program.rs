@@ -8,11 +8,11 @@ use std::collections::BTreeSet;
 /// Operand of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand {
-    /// A constant.
+    /// Constant.
     Const(f64),
-    /// An input.
+    /// Input of the program.
     Symbol(Symbol),
-    /// The result of an earlier instruction.
+    /// Result of an earlier instruction.
     Value(usize),
     /// A constant of each lane: an index of the program's tuples.
     Tuple(usize),
@@ -41,42 +41,42 @@ impl Operand {
 /// Operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Op {
-    /// `-a`
+    /// Negation `-a`.
     Neg(Operand),
-    /// `a + b`
+    /// Sum `a + b`.
     Add(Operand, Operand),
-    /// `a - b`
+    /// Difference `a - b`.
     Sub(Operand, Operand),
-    /// `a * b`
+    /// Product `a * b`.
     Mul(Operand, Operand),
-    /// `a / b`
+    /// Quotient `a / b`.
     Div(Operand, Operand),
-    /// `a * b + c`
+    /// Fused product and sum `a * b + c`.
     MulAdd(Operand, Operand, Operand),
-    /// `a * b - c`
+    /// Fused product and difference `a * b - c`.
     MulSub(Operand, Operand, Operand),
-    /// `c - a * b`
+    /// Fused product and difference `c - a * b`.
     NegMulAdd(Operand, Operand, Operand),
-    /// `f(a)`
+    /// Elementary function `f(a)`.
     Call(Function, Operand),
-    /// `atan2(a, b)`
+    /// Angle `atan2(a, b)` of the point with ordinate `a` and abscissa `b`.
     Atan2(Operand, Operand),
-    /// `a` to the power `b`
+    /// Power `a^b`.
     Pow(Operand, Operand),
     /// The smaller or the larger of `a` and `b`.
     Extreme(Extreme, Operand, Operand),
     /// A table's value or derivative; variables that it does not have repeat the last.
     Table(Lookup, Operand, Operand, Operand),
-    /// The sum of the first `n` lanes.
+    /// Sum of the first `n` lanes of `a`.
     Sum(usize, Operand),
-    /// One lane.
+    /// Value of one lane of `a`.
     Lane(usize, Operand),
-    /// A vector of the first `n` lanes of one value, then `n` lanes of another.
+    /// Vector of the first `n` lanes of one value, followed by the first `n` lanes of another.
     Join(usize, Operand, Operand),
 }
 
 impl Op {
-    /// Calls `f` with every operand.
+    /// Calls `f` with every operand of the operation.
     pub fn operands(&self, mut f: impl FnMut(Operand)) {
         match *self {
             Op::Neg(a) | Op::Call(_, a) | Op::Sum(_, a) | Op::Lane(_, a) => f(a),
@@ -101,40 +101,41 @@ impl Op {
     }
 }
 
-/// A straight-line program.
+/// Program without branches and loops: a list of instructions with its outputs.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
-    /// Instructions; instruction `k` computes value `k`.
+    /// Instructions of the program; instruction `k` computes value `k`.
     pub instructions: Vec<Op>,
     /// Number of uses of each value as an operand or an output.
     pub uses: Vec<u32>,
-    /// The results.
+    /// Operands that are the results of the program.
     pub outputs: Vec<Operand>,
     /// Operation counts before fusing; an operation on all lanes of a value counts once.
     pub counts: Counts,
-    /// Constants of lanes.
+    /// Constants of the lanes, for each operand with one constant per lane.
     pub tuples: Vec<Vec<f64>>,
-    /// Inputs of lanes.
+    /// Symbols of the lanes, for each operand with one input per lane.
     pub gathers: Vec<Vec<Symbol>>,
     /// Variant of the program with identical limbs as SIMD lanes, if it is cheaper.
     pub simd: Option<Box<Program>>,
 }
 
-/// Operations of a program: one for every arithmetic instruction, a negation counted as an addition.
+/// Numbers of operations of a program: one for every arithmetic instruction; a negation counts as an
+/// addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Multiplications.
+    /// Number of multiplications.
     pub mul: usize,
-    /// Additions, subtractions and negations.
+    /// Number of additions, subtractions and negations.
     pub add: usize,
-    /// Divisions.
+    /// Number of divisions.
     pub div: usize,
-    /// Elementary functions (a sine and a cosine of one angle are two).
+    /// Number of elementary functions; a sine and a cosine of one angle are two.
     pub calls: usize,
 }
 
 impl Counts {
-    /// Multiplications, additions and divisions together.
+    /// Returns the number of multiplications, additions and divisions together.
     pub fn total(&self) -> usize {
         self.mul + self.add + self.div
     }
@@ -204,7 +205,7 @@ impl Program {
         }
     }
 
-    /// Counts the operations.
+    /// Counts the operations of the program.
     pub fn count(&self) -> Counts {
         let mut counts = Counts::default();
         for op in &self.instructions {
@@ -223,7 +224,7 @@ impl Program {
         counts
     }
 
-    /// Returns the inputs that the program uses.
+    /// Returns the symbols of the inputs that the program uses.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
         let mut note = |o: Operand| match o {
@@ -237,7 +238,7 @@ impl Program {
         symbols
     }
 
-    /// Returns true if every constant is finite.
+    /// Returns whether every constant of the program is finite.
     pub fn is_finite(&self) -> bool {
         let mut finite = true;
         let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
@@ -251,22 +252,22 @@ impl Program {
     /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations
     /// on constants with a finite result may remain where a pass has changed a sign.
     pub fn undefined(&self) -> Option<String> {
-        let constant = |o: Operand| match o {
+        let constant_value = |o: Operand| match o {
             Operand::Const(c) => Some(c),
             _ => None,
         };
         self.instructions.iter().find_map(|op| {
             let (value, text) = match *op {
                 Op::Call(f, a) => {
-                    let a = constant(a)?;
+                    let a = constant_value(a)?;
                     (f.apply(a), format!("{}({a})", f.name()))
                 }
                 Op::Pow(a, b) => {
-                    let (a, b) = (constant(a)?, constant(b)?);
+                    let (a, b) = (constant_value(a)?, constant_value(b)?);
                     (a.powf(b), format!("pow({a}, {b})"))
                 }
                 Op::Div(a, b) => {
-                    let (a, b) = (constant(a)?, constant(b)?);
+                    let (a, b) = (constant_value(a)?, constant_value(b)?);
                     (a / b, format!("{a} / {b}"))
                 }
                 _ => return None,
@@ -298,34 +299,35 @@ impl Program {
         symbol: &dyn Fn(Symbol) -> f64,
         table: &dyn Fn(Lookup, [f64; 3]) -> f64,
     ) -> Vec<f64> {
-        let each = |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
+        let lanes_from_list =
+            |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
         let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
-        let operand = |values: &[[f64; N]], o: Operand| match o {
+        let operand_lanes = |values: &[[f64; N]], o: Operand| match o {
             Operand::Const(c) => [c; N],
             Operand::Symbol(s) => [symbol(s); N],
             Operand::Value(k) => values[k],
-            Operand::Tuple(k) => each(self.tuples[k].clone()),
-            Operand::Gather(k) => each(self.gathers[k].iter().map(|s| symbol(*s)).collect()),
+            Operand::Tuple(k) => lanes_from_list(self.tuples[k].clone()),
+            Operand::Gather(k) => lanes_from_list(self.gathers[k].iter().map(|s| symbol(*s)).collect()),
         };
         for op in &self.instructions {
             let result = match *op {
-                Op::Sum(n, a) => [operand(&values, a)[..n].iter().sum(); N],
-                Op::Lane(k, a) => [operand(&values, a)[k]; N],
-                Op::Join(n, a, b) => joined(n, operand(&values, a), operand(&values, b)),
+                Op::Sum(n, a) => [operand_lanes(&values, a)[..n].iter().sum(); N],
+                Op::Lane(k, a) => [operand_lanes(&values, a)[k]; N],
+                Op::Join(n, a, b) => joined(n, operand_lanes(&values, a), operand_lanes(&values, b)),
                 op => {
                     let mut operands = Vec::with_capacity(3);
-                    op.operands(|o| operands.push(operand(&values, o)));
+                    op.operands(|o| operands.push(operand_lanes(&values, o)));
                     std::array::from_fn(|lane| op.apply(|k| operands[k][lane], table))
                 }
             };
             values.push(result);
         }
-        self.outputs.iter().map(|o| operand(&values, *o)[0]).collect()
+        self.outputs.iter().map(|o| operand_lanes(&values, *o)[0]).collect()
     }
 }
 
 impl Op {
-    /// Returns the result in one lane from the operands in that lane.
+    /// Returns the result of the operation in one lane from its operands in that lane.
     fn apply(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
         match self {
             Op::Neg(_) => -get(0),
@@ -351,7 +353,7 @@ impl Op {
         self.mapped(|o| renumber(o, number))
     }
 
-    /// Returns the operation with each operand replaced.
+    /// Returns the operation with each operand replaced by its image under a function.
     pub fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
         match self {
             Op::Neg(a) => Op::Neg(n(a)),

@@ -10,11 +10,12 @@ use super::{Operand, Program};
 use crate::machine::MULTIPLY;
 
 impl Program {
-    /// Orders the terms of sums on the critical path by the times at which they become available.
+    /// Orders the terms of sums on the critical path by the times at which they become available, late terms
+    /// last.
     pub(super) fn with_late_terms_last(mut self) -> Program {
         let sums = self.sums();
         let lanes = self.lanes();
-        let is_wide = |o: Operand| match o {
+        let is_multi_lane_operand = |o: Operand| match o {
             Operand::Value(a) => lanes[a] > 1,
             Operand::Tuple(_) | Operand::Gather(_) => true,
             _ => false,
@@ -23,7 +24,7 @@ impl Program {
         let mut ordered: Vec<Option<Sum>> = Vec::with_capacity(sums.len());
         for (k, sum) in sums.into_iter().enumerate() {
             let before = times.instruction_time(&self, k);
-            let sum = sum.map(|sum| times.ordered(&self, sum, &is_wide));
+            let sum = sum.map(|sum| times.ordered(&self, sum, &is_multi_lane_operand));
             let sum =
                 sum.map(|sum| (times.chain(&self, &sum.terms), sum)).filter(|(time, _)| *time <= before);
             let (time, sum) = sum.map_or((before, None), |(time, sum)| (time, Some(sum)));
@@ -115,8 +116,8 @@ impl Program {
 }
 
 impl Times {
-    /// Orders the terms of a sum by time, scalars before lanes; at least one of the first two terms is not a
-    /// product.
+    /// Orders the terms of a sum by time, scalars before vectors of lanes; at least one of the first two
+    /// terms is not a product.
     fn ordered(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
         sum.terms
             .sort_by_key(|term| (is_wide(term.operand), self.term(program, *term).0, term.operand.number()));
@@ -134,7 +135,7 @@ impl Program {
     fn remaining_latency(&self, sums: &[Option<Sum>]) -> Vec<u32> {
         let mut rest = vec![0; self.instructions.len()];
         let mut is_part = vec![false; self.instructions.len()];
-        let raise = |rest: &mut Vec<u32>, o: Operand, to: u32| {
+        let raise_remaining_time = |rest: &mut Vec<u32>, o: Operand, to: u32| {
             if let Operand::Value(a) = o {
                 rest[a] = rest[a].max(to);
             }
@@ -153,7 +154,7 @@ impl Program {
                 (None, Some(pair)) => pair.as_slice(),
                 (None, None) => {
                     let time = rest[k] + latency(op);
-                    op.operands(|o| raise(&mut rest, o, time));
+                    op.operands(|o| raise_remaining_time(&mut rest, o, time));
                     continue;
                 }
             };
@@ -166,10 +167,10 @@ impl Program {
                 match self.lone_product(term.operand) {
                     Some((a, b)) => {
                         is_part[term.operand.number()] = true;
-                        raise(&mut rest, a, time);
-                        raise(&mut rest, b, time);
+                        raise_remaining_time(&mut rest, a, time);
+                        raise_remaining_time(&mut rest, b, time);
                     }
-                    None => raise(&mut rest, term.operand, time),
+                    None => raise_remaining_time(&mut rest, term.operand, time),
                 }
             }
         }
@@ -182,7 +183,7 @@ mod tests {
     use crate::expr::{Graph, Symbol};
     use crate::lower::lower;
 
-    /// A sum of one late term and several early ones.
+    /// Checks that a late term is added to a sum after several early ones.
     #[test]
     fn late_terms_are_added_last() {
         let g = Graph::new();
@@ -195,13 +196,16 @@ mod tests {
         assert_eq!(fused.counts, before);
         // Six quotients of squares and four additions, the last one fused with the late product.
         assert_eq!(fused.instructions.len(), 12 + 4);
-        let symbol = |s: Symbol| 1.0 + 0.1 * f64::from(s.0);
-        let value = |k: u32| symbol(Symbol(k));
+        let value_of_symbol = |s: Symbol| 1.0 + 0.1 * f64::from(s.0);
+        let value_of_index = |k: u32| value_of_symbol(Symbol(k));
         let expected = {
-            let late = (0..6).fold(value(0), |e, _| e * e / value(1));
-            late * value(2) + value(3) * value(4) - value(5) * value(6) + value(7) + value(8) * value(9)
+            let late = (0..6).fold(value_of_index(0), |e, _| e * e / value_of_index(1));
+            late * value_of_index(2) + value_of_index(3) * value_of_index(4)
+                - value_of_index(5) * value_of_index(6)
+                + value_of_index(7)
+                + value_of_index(8) * value_of_index(9)
         };
-        assert!((fused.run(&symbol)[0] - expected).abs() < 1e-14);
+        assert!((fused.run(&value_of_symbol)[0] - expected).abs() < 1e-14);
         assert_eq!(fused.time(), 16 + 6 * (4 + 13) + 4);
     }
 }

@@ -1,4 +1,4 @@
-//! Order of instructions with few live values, for processors that keep all values of a state in registers.
+//! Ordering of instructions for few live values, for processors that keep all values of a state in registers.
 //! Results are stored as soon as they are computed, and arguments are read before their first use.
 
 use super::{Operand, Program};
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 impl Program {
     /// Reorders the instructions so that few values are live at once. `arrays` are the lengths of the arrays
-    /// that consecutive results belong to. Of several orders the best one is used.
+    /// to which consecutive results belong. The best of several orders is used.
     pub fn with_few_live_values(self, arrays: &[usize]) -> Program {
         let mut needs = Needs::from_program(&self);
         let mut best: Vec<usize> = (0..self.instructions.len()).collect();
@@ -45,21 +45,22 @@ impl Program {
         keys.resize(self.outputs.len(), (arrays.len(), 0, 0));
         let mut all: Vec<usize> = (0..self.outputs.len()).collect();
         all.sort_by_key(|k| keys[*k]);
-        let value = |k: &usize| match self.outputs[*k] {
+        let index_of_output_value = |k: &usize| match self.outputs[*k] {
             Operand::Value(k) => Some(k),
             _ => None,
         };
-        all.iter().filter_map(value).collect()
+        all.iter().filter_map(index_of_output_value).collect()
     }
 }
 
 /// Maximum number of instructions of programs for which orders with quadratic effort are tried.
 const GREEDY: usize = 4000;
 
-/// Values that each instruction needs. Arguments of the program follow the values of its instructions.
+/// Values that each instruction needs, where arguments of the program are numbered after the values of its
+/// instructions.
 struct Needs {
     of: Vec<Vec<usize>>,
-    /// Number of values and arguments.
+    /// Number of values and arguments together.
     count: usize,
     /// Instructions whose values are results, in the order of the results.
     results: Vec<usize>,
@@ -91,7 +92,7 @@ impl Needs {
         Needs { of, count: n + arguments.len(), results: results.collect() }
     }
 
-    /// Returns the maximum number of live values.
+    /// Returns the maximum number of values that are live at once in an order of the instructions.
     fn most_live(&self, order: &[usize]) -> usize {
         let mut last = vec![usize::MAX; self.count];
         for (at, k) in order.iter().enumerate() {
@@ -116,8 +117,8 @@ impl Needs {
         most
     }
 
-    /// Computes results one after the other; of the operands of an instruction, the one that needs most
-    /// values first (Sethi and Ullman 1970).
+    /// Returns an order that computes one result after the other; of the operands of an instruction, the
+    /// operand that needs most values comes first (Sethi and Ullman 1970).
     fn depth_first(&self, program: &Program) -> Vec<usize> {
         let n = self.of.len();
         let mut need = vec![1_usize; n];
@@ -149,8 +150,8 @@ impl Needs {
         order
     }
 
-    /// Chooses instructions from the last to the first: the one that adds fewest live values before it, and
-    /// of these the one whose value became live last.
+    /// Returns an order that is chosen from the last instruction to the first: the next instruction adds the
+    /// fewest live values before it, and of equal ones its value became live last.
     fn backwards(&self) -> Vec<usize> {
         let n = self.of.len();
         let mut users = vec![0_usize; self.count];
@@ -163,11 +164,11 @@ impl Needs {
         let mut ready: Vec<usize> = (0..n).filter(|k| users[*k] == 0).collect();
         let mut order = Vec::with_capacity(n);
         while !ready.is_empty() {
-            let key = |k: usize| {
+            let pressure_key = |k: usize| {
                 let added = self.of[k].iter().filter(|a| since[**a] == 0).count() as isize;
                 (added - isize::from(since[k] > 0), usize::MAX - since[k], usize::MAX - rank[k])
             };
-            let Some(at) = (0..ready.len()).min_by_key(|at| key(ready[*at])) else { break };
+            let Some(at) = (0..ready.len()).min_by_key(|at| pressure_key(ready[*at])) else { break };
             let k = ready.swap_remove(at);
             order.push(k);
             for a in &self.of[k] {

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 impl Program {
-    /// Schedules the instructions.
+    /// Orders the instructions by their latencies.
     pub(super) fn scheduled(self) -> Program {
         match self.order() {
             Some(order) => self.reordered(&order),
@@ -96,12 +96,12 @@ mod tests {
     use crate::lower::pipeline::PART;
     use crate::lower::{Op, Operand, lower};
 
-    /// Returns a long chain and a longer one that comes after it.
+    /// Returns a long chain of operations, and a longer one that follows it in the program.
     fn chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
         let [x, y] = [0, 1].map(|k| g.symbol(Symbol(k)));
-        let chain = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
-        let first = chain(x + y, 8);
-        vec![first, chain((x - y).sin() / y, 12)]
+        let chain_of_products = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
+        let first = chain_of_products(x + y, 8);
+        vec![first, chain_of_products((x - y).sin() / y, 12)]
     }
 
     #[test]
@@ -109,8 +109,8 @@ mod tests {
         let g = Graph::new();
         let before = lower(&chains(&g)).run_passes(PART);
         let after = before.clone().scheduled();
-        let symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
-        assert_eq!(before.run(&symbol), after.run(&symbol));
+        let value_of_symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
+        assert_eq!(before.run(&value_of_symbol), after.run(&value_of_symbol));
         assert_eq!(after.counts, before.counts);
         let mut uses = vec![0; after.instructions.len()];
         for (k, op) in after.instructions.iter().enumerate() {
@@ -132,11 +132,11 @@ mod tests {
     #[test]
     fn the_longest_chain_comes_first() {
         let g = Graph::new();
-        let place = |program: &crate::lower::Program| {
+        let index_of_division = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
         };
         let program = lower(&chains(&g)).run_passes(PART);
-        assert!(place(&program) > 8, "the quotient comes after the other chain");
-        assert!(place(&program.scheduled()) < 6, "the quotient begins the longest chain");
+        assert!(index_of_division(&program) > 8, "the quotient comes after the other chain");
+        assert!(index_of_division(&program.scheduled()) < 6, "the quotient begins the longest chain");
     }
 }

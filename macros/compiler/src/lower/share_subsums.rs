@@ -20,7 +20,7 @@ const ROUNDS: usize = 5;
 /// Maximum length of a sum into which inner sums are merged. The number of pairs grows as half the square of
 /// the length.
 const LONGEST: usize = 32;
-/// Maximum length of a sum after expansion.
+/// Maximum number of terms of a sum after expansion.
 const MOST_TERMS: usize = 8;
 /// Expansions that are tried: the maximum number of terms of an inner sum that is expanded into an outer one,
 /// and whether inner sums are expanded whose products could then no longer be fused.
@@ -48,13 +48,13 @@ impl Key {
 /// Number of the first sum, larger than that of any value.
 const FIRST_SUM: u32 = 1 << 31;
 
-/// Terms with their coefficients, by key.
+/// Terms of a sum with their coefficients, by key.
 type Terms = Vec<(Key, f64)>;
 
-/// The sums of a program.
+/// Sums of a program, expanded to terms.
 #[derive(Clone)]
 struct Sums {
-    /// Operands that are not sums.
+    /// Operands that are not sums themselves.
     atoms: Vec<Operand>,
     /// True for each atom that is a product with a single use.
     lone_products: Vec<bool>,
@@ -121,7 +121,7 @@ impl Program {
         best
     }
 
-    /// Returns the program with its sums replaced.
+    /// Returns the program in which the sums are computed as listed.
     fn with_sums(&self, sums: &Sums) -> Program {
         let mut out = Writer {
             sums,
@@ -196,15 +196,15 @@ impl Sums {
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
         }
-        let lone = |o: &Operand| program.lone_product(*o).is_some();
-        sums.lone_products = sums.atoms.iter().map(lone).collect();
-        let ends = |o: Operand| match o {
+        let is_lone_product = |o: &Operand| program.lone_product(*o).is_some();
+        sums.lone_products = sums.atoms.iter().map(is_lone_product).collect();
+        let sum_ending_at = |o: Operand| match o {
             Operand::Value(k) => sums.ends[k],
             _ => None,
         };
-        let mut wanted: Vec<usize> = program.outputs.iter().filter_map(|o| ends(*o)).collect();
+        let mut wanted: Vec<usize> = program.outputs.iter().filter_map(|o| sum_ending_at(*o)).collect();
         for op in program.instructions.iter().filter(|op| op.terms().is_none()) {
-            op.operands(|o| wanted.extend(ends(o)));
+            op.operands(|o| wanted.extend(sum_ending_at(o)));
         }
         sums.wanted = wanted;
         sums
@@ -249,9 +249,12 @@ impl Sums {
     /// Expands inner sums of up to `short` terms into the sums that contain them; unless `products` is set,
     /// sums with products that fuse are not expanded.
     fn write_out(&mut self, short: usize, products: bool) {
-        let fuses = |key: &Key| matches!(key, Key::Atom(a) if self.lone_products[*a]);
-        let keeps: Vec<bool> =
-            self.sums.iter().map(|terms| !products && terms.iter().any(|(key, _)| fuses(key))).collect();
+        let is_fused_product = |key: &Key| matches!(key, Key::Atom(a) if self.lone_products[*a]);
+        let keeps: Vec<bool> = self
+            .sums
+            .iter()
+            .map(|terms| !products && terms.iter().any(|(key, _)| is_fused_product(key)))
+            .collect();
         for k in 0..self.sums.len() {
             let mut terms = Terms::new();
             for (key, c) in &self.sums[k] {
@@ -269,7 +272,7 @@ impl Sums {
         }
     }
 
-    /// Replaces the most frequently shared pairs of terms by sums of their own.
+    /// Replaces the pairs of terms that most sums share by sums of their own.
     fn share(&mut self) {
         let mut pairs = Pairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
@@ -281,15 +284,15 @@ impl Sums {
                 else {
                     continue;
                 };
-                let is_gone = |key: u32| key == pair.first() || key == pair.second();
+                let is_member_of_pair = |key: u32| key == pair.first() || key == pair.second();
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
-                        if is_gone(a.0.number()) || is_gone(b.0.number()) {
+                        if is_member_of_pair(a.0.number()) || is_member_of_pair(b.0.number()) {
                             pairs.remove(Pair::new(*a, *b), k);
                         }
                     }
                 }
-                terms.retain(|(key, _)| !is_gone(key.number()));
+                terms.retain(|(key, _)| !is_member_of_pair(key.number()));
                 with_new.extend(terms.iter().map(|term| (Pair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
@@ -299,7 +302,7 @@ impl Sums {
         }
     }
 
-    /// Returns the key with a number.
+    /// Returns the key of the atom or sum with this number.
     fn key(&self, number: u32) -> Key {
         match number {
             0 => Key::One,
@@ -309,9 +312,9 @@ impl Sums {
     }
 }
 
-/// Atoms that already have an index.
+/// Indices of the atoms that have occurred so far.
 struct AtomNumbers {
-    /// Atom of each instruction.
+    /// Index of the atom that each instruction computes.
     values: Vec<Option<usize>>,
     /// Atom of each other operand, by kind and number.
     others: BTreeMap<(u8, u64), Option<usize>>,

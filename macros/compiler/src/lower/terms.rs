@@ -2,10 +2,10 @@
 
 use super::{Op, Operand, Program};
 
-/// Maximum number of terms that a pass processes as one sum; bounds the time for long sums.
+/// Maximum number of terms that a pass processes as one sum, which bounds the time for long sums.
 pub(super) const LONGEST: usize = 64;
 
-/// A term of a sum.
+/// Term of a sum: an operand with its sign.
 #[derive(Clone, Copy)]
 pub(super) struct Term {
     pub operand: Operand,
@@ -41,7 +41,7 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    /// Returns the operations that add the terms one after another, or `None` if all terms are negative.
+    /// Returns the operations that add the terms in order, or `None` if all terms are negative.
     pub fn chain(&self) -> Option<Vec<Op>> {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;

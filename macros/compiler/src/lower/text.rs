@@ -1,4 +1,4 @@
-//! Programs as text with one line per instruction, such as `t3 = x0 * t1`, for people to read.
+//! Printing of programs as text, with one line per instruction, such as `t3 = x0 * t1`.
 
 use super::{Op, Operand, Program};
 use crate::expr::Symbol;
@@ -8,11 +8,11 @@ impl Program {
     /// Returns the instructions and outputs as text, with names for symbols.
     pub fn text(&self, name: &dyn Fn(Symbol) -> String) -> String {
         let mut text = String::new();
-        let operand = |o: Operand| self.operand_text(o, name);
+        let format_operand = |o: Operand| self.operand_text(o, name);
         for (k, op) in self.instructions.iter().enumerate() {
-            let _ = writeln!(text, "t{k} = {}", op_text(op, &operand));
+            let _ = writeln!(text, "t{k} = {}", op_text(op, &format_operand));
         }
-        let outputs: Vec<String> = self.outputs.iter().map(|o| operand(*o)).collect();
+        let outputs: Vec<String> = self.outputs.iter().map(|o| format_operand(*o)).collect();
         let _ = writeln!(text, "-> {}", outputs.join(", "));
         text
     }

@@ -39,7 +39,7 @@ impl Times {
         }
     }
 
-    /// Returns the time at which the sum of terms added one after another is available.
+    /// Returns the time at which the sum of terms that are added in order is available.
     pub fn chain(&self, program: &Program, terms: &[Term]) -> u32 {
         let mut times = terms.iter().map(|term| self.term(program, *term));
         let (Some(first), Some(second)) = (times.next(), times.next()) else { return 0 };

@@ -1,6 +1,6 @@
-//! Forward dynamics by the articulated-body algorithm (Featherstone 1983, 2008, ch. 7). It acts on the forces
-//! that the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at
-//! rest without gravity, so the recursion has no velocity terms.
+//! Forward dynamics by the articulated-body algorithm (Featherstone 1983, 2008, ch. 7). The algorithm acts on
+//! the forces that the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the
+//! mechanism at rest without gravity, so that the recursion has no velocity terms.
 
 use super::is_plain_tree;
 use super::ldl::second_inverse;
@@ -122,7 +122,8 @@ fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> 
 }
 
 impl<'g> Eliminated<'g> {
-    /// Eliminates one degree of freedom. `inverse` is `1 / D` if it has already been computed.
+    /// Eliminates one degree of freedom from an articulated inertia. `inverse` is `1 / D` if it has already
+    /// been computed.
     fn new(
         dof: &Dof<'g>,
         inertia: &Articulated<'g>,
@@ -191,10 +192,10 @@ impl<'g> Articulated<'g> {
     /// then exactly zero.
     fn eliminate(&mut self, handle: &Eliminated<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
-        let outer = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
-        self.m = self.m - Sym3::from_upper(&outer(handle.scaled.linear, f));
-        self.h = self.h - outer(handle.scaled.angular, f);
-        self.i = self.i - Sym3::from_upper(&outer(handle.scaled.angular, n));
+        let outer_product = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
+        self.m = self.m - Sym3::from_upper(&outer_product(handle.scaled.linear, f));
+        self.h = self.h - outer_product(handle.scaled.angular, f);
+        self.i = self.i - Sym3::from_upper(&outer_product(handle.scaled.angular, n));
         let zero = handle.r.zero();
         match handle.axis {
             Some(Axis { entry: k @ 0..3, .. }) => {
@@ -220,15 +221,20 @@ impl<'g> Articulated<'g> {
         let i = joint.rotation.sym_to_parent(self.i);
         let p = Mat3::skew(joint.translation);
         let moved = h + p * m.full();
-        let entry = |h: &Mat3<'g>, row: usize, column: usize| h.row(row).dot(p.column(column));
+        let entry_of_product = |h: &Mat3<'g>, row: usize, column: usize| h.row(row).dot(p.column(column));
         let both = h + moved;
         let shift = Sym3 {
-            diagonal: std::array::from_fn(|k| entry(&both, k, k)),
-            off: [(0, 1), (0, 2), (1, 2)].map(|(a, b)| entry(&h, a, b) + entry(&moved, b, a)),
+            diagonal: std::array::from_fn(|k| entry_of_product(&both, k, k)),
+            off: [(0, 1), (0, 2), (1, 2)]
+                .map(|(a, b)| entry_of_product(&h, a, b) + entry_of_product(&moved, b, a)),
         };
-        let all = |e| joint.lane_sum(e);
-        let moved = Mat3::from_fn(|i, j| all(moved.0[i][j]));
-        Articulated { m: sum.m + m.map(all), h: sum.h + moved, i: sum.i + (i - shift).map(all) }
+        let sum_over_lanes = |e| joint.lane_sum(e);
+        let moved = Mat3::from_fn(|i, j| sum_over_lanes(moved.0[i][j]));
+        Articulated {
+            m: sum.m + m.map(sum_over_lanes),
+            h: sum.h + moved,
+            i: sum.i + (i - shift).map(sum_over_lanes),
+        }
     }
 }
 

@@ -12,14 +12,14 @@ use crate::kinematics::redundancy::Basis;
 use crate::kinematics::{Joint, Rows, mobility, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
-/// Number of random states that are tested.
+/// Number of random states at which conservation is tested.
 const STATES: u64 = 5;
 /// Tolerance of a zero time derivative relative to the sum of the magnitudes of its terms: the accuracy of
 /// the finite differences.
 const LEFT: f64 = 1e-9;
 /// Tolerance of a zero time derivative relative to the value of the quantity.
 const ROUNDING: f64 = 1e-11;
-/// Step of the finite differences, s.
+/// Step of the finite differences in time, s.
 const STEP: f64 = 1e-3;
 /// A gradient counts as a linear combination of others if its relative remainder is below this tolerance.
 const DEPENDENT: f64 = 1e-6;
@@ -27,9 +27,9 @@ const DEPENDENT: f64 = 1e-6;
 /// A conserved quantity.
 #[derive(Clone)]
 pub struct Conserved<'g> {
-    /// Name for the user.
+    /// Name of the quantity, as shown to the user.
     pub name: String,
-    /// Value as an expression of the state.
+    /// Value of the quantity as an expression of the state.
     pub value: Expr<'g>,
 }
 
@@ -72,7 +72,7 @@ pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'
     candidates.into_iter().enumerate().filter(|(k, _)| kept[*k] && adds(*k)).map(|(_, c)| c).collect()
 }
 
-/// Returns all quantities that may be conserved.
+/// Returns all quantities of a mechanism that may be conserved, such as the momenta of its coordinates.
 fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
     let v = velocities(model);
     let p = momentum::generalized_momentum(model, joints, &v);
@@ -130,7 +130,7 @@ impl<'g> Motion<'g> {
     }
 }
 
-/// A numerical state.
+/// State with numeric values.
 #[derive(Clone)]
 struct State {
     t: f64,
@@ -143,17 +143,18 @@ impl State {
     /// Returns a state with the configuration `q` and a random velocity that satisfies the constraints, or
     /// `None` if the velocity is not finite. `at` is the seed of the velocity, `seed` that of the parameters.
     fn random(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
-        let random = |k: usize| 4.0 * sample(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
+        let random_velocity = |k: usize| 4.0 * sample(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
         let t = sample(Quantity::Time.symbol(), seed);
-        let mut state = State { t, q: q.to_vec(), v: (0..model.nv()).map(random).collect(), seed };
+        let mut state = State { t, q: q.to_vec(), v: (0..model.nv()).map(random_velocity).collect(), seed };
         if motion.nc > 0 {
             let values = motion.equations.values(&|s| state.value(s));
             let (nv, nc) = (motion.nv, motion.nc);
             let jacobian: Vec<&[f64]> = values[nv * nv + nv..][..nc * nv].chunks(nv).collect();
             let gap = &values[nv * nv + nv + nc * nv..][..nc];
             // Correction of minimum norm: x = Jᵀ y.
-            let product = |i: usize, j: usize| jacobian[i].iter().zip(jacobian[j]).map(|(a, b)| a * b).sum();
-            let normal = (0..nc).map(|i| (0..nc).map(|j| product(i, j)).collect()).collect();
+            let product_of_jacobian_rows =
+                |i: usize, j: usize| jacobian[i].iter().zip(jacobian[j]).map(|(a, b)| a * b).sum();
+            let normal = (0..nc).map(|i| (0..nc).map(|j| product_of_jacobian_rows(i, j)).collect()).collect();
             let y = solved(normal, gap.to_vec());
             for (row, y) in jacobian.iter().zip(y) {
                 state.v.iter_mut().zip(*row).for_each(|(v, entry)| *v -= entry * y);
@@ -183,13 +184,13 @@ impl State {
         let (mass, rest) = values.split_at(nv * nv);
         let (bias, rest) = rest.split_at(nv);
         let (jacobian, rest) = rest.split_at(nc * nv);
-        let entry = |i: usize, j: usize| match (i < nv, j < nv) {
+        let entry_of_system = |i: usize, j: usize| match (i < nv, j < nv) {
             (true, true) => mass[i * nv + j],
             (true, false) => jacobian[(j - nv) * nv + i],
             (false, true) => jacobian[(i - nv) * nv + j],
             (false, false) => 0.0,
         };
-        let system = (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry(i, j)).collect()).collect();
+        let system = (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry_of_system(i, j)).collect()).collect();
         let right = bias.iter().chain(&rest[nc..]).map(|x| -x).collect();
         let mut a = solved(system, right);
         a.truncate(nv);
@@ -198,8 +199,14 @@ impl State {
 
     /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
     fn displaced(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
-        let displaced = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
-        State { t: self.t + h * t, q: displaced(&self.q, q), v: displaced(&self.v, v), seed: self.seed }
+        let displaced_by_rate =
+            |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
+        State {
+            t: self.t + h * t,
+            q: displaced_by_rate(&self.q, q),
+            v: displaced_by_rate(&self.v, v),
+            seed: self.seed,
+        }
     }
 
     /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
@@ -207,8 +214,9 @@ impl State {
     fn directional_derivatives(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let values_at = |h: f64| self.displaced(h * STEP, t, q, v).values(tape);
         let all = [values_at(-2.0), values_at(-1.0), values_at(1.0), values_at(2.0)];
-        let rate = |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
-        (0..all[0].len()).map(rate).collect()
+        let central_difference =
+            |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
+        (0..all[0].len()).map(central_difference).collect()
     }
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
@@ -222,20 +230,22 @@ impl State {
             self.directional_derivatives(tape, 0.0, &no_q, &v),
         ];
         let now = self.values(tape);
-        let constant = |k: usize| {
+        let is_constant_entry = |k: usize| {
             let size: f64 = parts.iter().map(|part| part[k].abs()).sum();
             whole[k].abs() <= LEFT * size + ROUNDING * now[k].abs()
         };
-        v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(constant).collect())
+        v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(is_constant_entry).collect())
     }
 
     /// Returns for each value its gradient with respect to all entries of the configuration, then of the
     /// velocity.
     fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
         let (nq, nv) = (self.q.len(), self.v.len());
-        let unit = |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let gradient_entry =
-            |k: usize| self.directional_derivatives(tape, 0.0, &unit(nq, k), &unit(nv, k.wrapping_sub(nq)));
+        let unit_vector =
+            |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+        let gradient_entry = |k: usize| {
+            self.directional_derivatives(tape, 0.0, &unit_vector(nq, k), &unit_vector(nv, k.wrapping_sub(nq)))
+        };
         let columns: Vec<Vec<f64>> = (0..nq + nv).map(gradient_entry).collect();
         let count = columns.first().map_or(0, Vec::len);
         (0..count).map(|value| columns.iter().map(|column| column[value]).collect()).collect()

@@ -27,12 +27,12 @@ pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
 /// Returns the derivatives of `rates` with respect to the velocities: a row for each rate, a column for each
 /// velocity.
 pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
-    let row = |gradient: Vec<(usize, Expr<'g>)>| {
+    let row_from_gradient = |gradient: Vec<(usize, Expr<'g>)>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         gradient.into_iter().for_each(|(k, d)| row[k] = d);
         row
     };
-    velocity_gradients(rates).into_iter().map(row).collect()
+    velocity_gradients(rates).into_iter().map(row_from_gradient).collect()
 }
 
 /// Returns the residuals of the holonomic constraints.
@@ -65,7 +65,8 @@ pub fn solve<'g>(
     solve_in(k, right_side(force, bias), &order, nv).with_reliability(nv)
 }
 
-/// Returns the right side of the equations of motion with constraints: forces, then negative biases.
+/// Returns the right side of the equations of motion with constraints: forces, followed by the negative
+/// biases of the constraint accelerations.
 pub(super) fn right_side<'g>(mut force: Vec<Expr<'g>>, bias: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
     force.extend(bias.into_iter().map(|b| -b));
     force
@@ -81,18 +82,20 @@ pub fn responses<'g>(
     bias: &[Expr<'g>],
     joints: &[Joint<'g>],
 ) -> Vec<Expr<'g>> {
-    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).map(|(a, b)| *a * *b).reduce(|a, b| a + b);
+    let dot_product =
+        |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).map(|(a, b)| *a * *b).reduce(|a, b| a + b);
     let mut out = ldl::solve(mass.clone(), force, joints);
     let given: Matrix<'g> =
         jacobian.iter().map(|row| ldl::solve(mass.clone(), row.clone(), joints)).collect();
-    let lacking = jacobian.iter().zip(bias).map(|(row, b)| dot(row, &out).map_or(-*b, |sum| -*b - sum));
+    let lacking =
+        jacobian.iter().zip(bias).map(|(row, b)| dot_product(row, &out).map_or(-*b, |sum| -*b - sum));
     let lacking: Vec<Expr<'g>> = lacking.collect();
     out.extend(lacking);
     for (i, row) in jacobian.iter().enumerate() {
         // The lower triangle gives both triangles.
         out.extend((0..given.len()).filter_map(|j| match j <= i {
-            true => dot(row, &given[j]),
-            false => dot(&jacobian[j], &given[i]),
+            true => dot_product(row, &given[j]),
+            false => dot_product(&jacobian[j], &given[i]),
         }));
     }
     out.extend(given.concat());
@@ -156,25 +159,28 @@ pub fn solve_by_speeds<'g>(
     let (solved, sizes) = eliminate(rows.clone(), right, &pivots);
     let column = |c: usize| -> Vec<Expr<'g>> {
         let independent_velocity = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
-        let velocity = |k: usize| {
+        let component_of_velocity = |k: usize| {
             pivots.iter().find(|(_, j)| *j == k).map_or(independent_velocity(k), |(row, _)| solved[*row][c])
         };
-        (0..nv).map(velocity).collect()
+        (0..nv).map(component_of_velocity).collect()
     };
     let columns: Matrix<'g> = (0..free.len()).map(column).collect();
     let start = column(free.len());
-    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
-    let times = |v: &[Expr<'g>]| -> Vec<Expr<'g>> { mass.iter().map(|row| dot(row, v)).collect() };
-    let carried: Matrix<'g> = columns.iter().map(|c| times(c)).collect();
-    let reduced: Matrix<'g> = columns.iter().map(|a| carried.iter().map(|b| dot(a, b)).collect()).collect();
-    let lacking: Vec<Expr<'g>> = force.iter().zip(times(&start)).map(|(f, m)| *f - m).collect();
-    let r = columns.iter().map(|c| dot(c, &lacking)).collect();
+    let dot_product =
+        |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let multiply_by_mass =
+        |v: &[Expr<'g>]| -> Vec<Expr<'g>> { mass.iter().map(|row| dot_product(row, v)).collect() };
+    let carried: Matrix<'g> = columns.iter().map(|c| multiply_by_mass(c)).collect();
+    let reduced: Matrix<'g> =
+        columns.iter().map(|a| carried.iter().map(|b| dot_product(a, b)).collect()).collect();
+    let lacking: Vec<Expr<'g>> = force.iter().zip(multiply_by_mass(&start)).map(|(f, m)| *f - m).collect();
+    let r = columns.iter().map(|c| dot_product(c, &lacking)).collect();
     let order: Vec<usize> = (0..free.len()).rev().collect();
     let s = solve_in(reduced, r, &order, 0).x;
     let a: Vec<Expr<'g>> =
         (0..nv).map(|k| columns.iter().zip(&s).fold(start[k], |sum, (c, s)| sum + c[k] * *s)).collect();
     // J_dᵀ λ = (M a − f)_d, with the same pivots, rows and columns exchanged.
-    let left: Vec<Expr<'g>> = times(&a).iter().zip(force).map(|(m, f)| *m - *f).collect();
+    let left: Vec<Expr<'g>> = multiply_by_mass(&a).iter().zip(force).map(|(m, f)| *m - *f).collect();
     let transposed: Matrix<'g> = (0..nv).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
     let backwards: Vec<(usize, usize)> = pivots.iter().map(|(row, column)| (*column, *row)).collect();
     let (lambda, _) = eliminate(transposed, left.into_iter().map(|l| vec![l]).collect(), &backwards);
@@ -184,12 +190,12 @@ pub fn solve_by_speeds<'g>(
         at.map_or(g.zero(), |(k, _)| lambda[*k][0])
     }));
     out.extend(sizes.iter().map(|p| p.square()));
-    out.extend(rows.iter().map(|row| dot(row, row)));
+    out.extend(rows.iter().map(|row| dot_product(row, row)));
     out
 }
 
-/// Eliminates the rows by Gauss–Jordan with the given pivots (row, column) and applies the steps to the right
-/// sides. Returns the solved right sides, and the pivot of each row.
+/// Eliminates the rows by the Gauss–Jordan method with the given pivots (row, column), and applies the steps
+/// to the right sides. Returns the solved right sides, and the pivot of each row.
 fn eliminate<'g>(
     mut rows: Matrix<'g>,
     mut right: Matrix<'g>,
@@ -225,12 +231,12 @@ fn eliminate<'g>(
 /// after everything else.
 pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usize>, usize) {
     let n = k.len();
-    let is_last = |i: usize| i >= nv && last.contains(&(i - nv));
+    let is_eliminated_last = |i: usize| i >= nv && last.contains(&(i - nv));
     let mut full: Vec<Vec<bool>> =
         (0..n).map(|i| (0..n).map(|j| !k[i][j].is_zero() || !k[j][i].is_zero()).collect()).collect();
     let waits: Vec<Vec<usize>> = (0..n)
-        .map(|i| match (is_last(i), i < nv) {
-            (true, _) => (0..n).filter(|j| !is_last(*j)).collect(),
+        .map(|i| match (is_eliminated_last(i), i < nv) {
+            (true, _) => (0..n).filter(|j| !is_eliminated_last(*j)).collect(),
             (_, true) => Vec::new(),
             _ => (0..nv).filter(|j| full[i][*j]).collect(),
         })
@@ -238,10 +244,10 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
     let mut left: Vec<usize> = (0..n).collect();
     let (mut order, mut done, mut products) = (Vec::with_capacity(n), vec![false; n], 0);
     while !left.is_empty() {
-        let degree = |i: usize| left.iter().filter(|j| **j != i && full[i][**j]).count();
+        let elimination_degree = |i: usize| left.iter().filter(|j| **j != i && full[i][**j]).count();
         let ready = left.iter().copied().filter(|i| waits[*i].iter().all(|j| done[*j]));
         // Among equal degrees the last index is taken: leaves precede the links that carry them.
-        let Some(next) = ready.min_by_key(|i| (degree(*i), usize::MAX - i)) else { break };
+        let Some(next) = ready.min_by_key(|i| (elimination_degree(*i), usize::MAX - i)) else { break };
         left.retain(|i| *i != next);
         order.push(next);
         done[next] = true;
@@ -260,8 +266,9 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
 /// at run time.
 pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let symbols = |block, n: usize| (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect();
-    (symbols(Supplied::Force, nv), symbols(Supplied::Bias, nc))
+    let argument_expressions =
+        |block, n: usize| (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect();
+    (argument_expressions(Supplied::Force, nv), argument_expressions(Supplied::Bias, nc))
 }
 
 /// First derivatives of the terms that constraints add to the equations of motion.

@@ -10,12 +10,13 @@ use crate::vectorise::{LaneGroup, Paths, Visitor};
 /// Square matrix of expressions, by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
-/// Returns `M(q)`, both triangles.
+/// Returns the mass matrix `M(q)`, both triangles.
 pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     mass_matrix_in_lanes(model, joints, 1)
 }
 
-/// Returns `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of one expression.
+/// Returns the mass matrix `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of
+/// one expression.
 pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
     let paths = Paths::new(joints, most);
     let dofs =
@@ -30,8 +31,8 @@ pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     m
 }
 
-/// Visitor that adds the entries of each degree of freedom with itself, with the earlier degrees of freedom
-/// of its joint, and with those of all ancestors.
+/// Visitor that adds the entries of the mass matrix: of each degree of freedom with itself, with the earlier
+/// degrees of freedom of its joint, and with those of all ancestors.
 struct Columns<'a, 'g> {
     joints: &'a [Joint<'g>],
     /// Joint, and index of the degree of freedom in the joint.

@@ -75,12 +75,16 @@ pub fn inverse_dynamics<'g>(
     if a == symbols {
         return found;
     }
-    let acceleration = |s| match Quantity::from_symbol(s) {
+    let acceleration_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };
-    let replaced = |m: Matrix<'g>| m.iter().map(|row| replace_all(row, &acceleration)).collect();
-    ForceDerivatives { by_q: replaced(found.by_q), by_v: replaced(found.by_v) }
+    let substitute_accelerations =
+        |m: Matrix<'g>| m.iter().map(|row| replace_all(row, &acceleration_of_symbol)).collect();
+    ForceDerivatives {
+        by_q: substitute_accelerations(found.by_q),
+        by_v: substitute_accelerations(found.by_v),
+    }
 }
 
 /// Linearises the equations of motion about the motion under the forces `tau`.

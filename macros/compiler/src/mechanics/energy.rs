@@ -1,4 +1,4 @@
-//! Energies, mass and centre of mass.
+//! Kinetic and potential energy, total mass and centre of mass.
 
 use super::crba::{composites, momentum};
 use super::inertances;

@@ -1,5 +1,5 @@
-//! Generalized forces of the inputs by virtual work: `τ = Σ Sᵀ W`, summed over the link on which the wrench
-//! acts and all its ancestors.
+//! Generalized forces of the inputs by virtual work, `τ = Σ Sᵀ W`, summed over the link on which the wrench
+//! acts and all ancestors of this link.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Vec3};

@@ -13,7 +13,7 @@ use crate::mechanism::{Model, NamedFrame, Pose, Quantity, Supplied};
 pub struct Placement<'g> {
     /// Columns are the frame's axes in ground axes.
     pub rotation: Mat3<'g>,
-    /// The frame's origin in ground axes.
+    /// Position of the frame's origin in ground axes.
     pub position: Vec3<'g>,
 }
 
@@ -44,7 +44,7 @@ fn given_vector<'g>(model: &Model<'g>, block: Supplied, first: usize) -> Vec3<'g
     Vec3(std::array::from_fn(|k| Quantity::Given(block, first + k).expr(model.graph)))
 }
 
-/// Returns the placement of the parent, which comes first in its motion.
+/// Returns the placement of the parent, which is the first part of its motion in the arguments.
 fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
     let [a, b, c, position] = [0, 3, 6, 9].map(|first| given_vector(model, Supplied::Parent, first));
     Placement { rotation: Mat3([a.0, b.0, c.0]), position }
@@ -120,8 +120,8 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
     Spatial { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
 }
 
-/// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: twist of the frame per
-/// unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
+/// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: the twist of the frame
+/// per unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
 pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
     let placement = given_placement(model);
     let arm = given_vector(model, Supplied::Origin, 0) - placement.position;

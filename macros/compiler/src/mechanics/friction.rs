@@ -33,7 +33,7 @@ pub fn slipping(model: &Model<'_>) -> Vec<usize> {
 
 /// Returns `T`, with a row for each constraint and a column for each velocity.
 pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
-    let row = |c: &crate::mechanism::Constraint<'g>| {
+    let friction_row = |c: &crate::mechanism::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         let rates: Vec<Expr<'g>> = c.friction.iter().map(|d| d.rate).collect();
         for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.friction) {
@@ -41,7 +41,7 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
         }
         row
     };
-    model.constraints.iter().map(row).collect()
+    model.constraints.iter().map(friction_row).collect()
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
@@ -69,8 +69,9 @@ pub fn solve<'g>(
 /// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the
 /// first `first` indices has subtracted from each diagonal entry.
 fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
-    let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
-    let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
+    let zero_vector = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
+    let (mut inverse, mut x, mut pivots, mut taken) =
+        (zero_vector(), zero_vector(), zero_vector(), zero_vector());
     for (step, &k) in order.iter().enumerate() {
         pivots[k] = m[k][k];
         inverse[k] = m[k][k].num(1.0) / m[k][k];

@@ -10,13 +10,13 @@ use crate::mechanism::{Model, Quantity};
 /// A column whose remainder relative to its norm is below this tolerance counts as dependent.
 const TOLERANCE: f64 = 1e-8;
 
-/// Linear combination of columns: index, factor.
+/// Linear combination of columns: pairs of an index and a factor.
 pub type Combination = Vec<(usize, f64)>;
 
-/// Result for one column.
+/// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// Independent of its predecessors.
+    /// The column is independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
     Combined(Combination),
@@ -29,16 +29,16 @@ pub fn independent(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
         return one;
     }
     let other = parts(&values(model, columns, 1));
-    let same = |(one, other): (Part, Part)| match (&one, &other) {
+    let part_if_agreed = |(one, other): (Part, Part)| match (&one, &other) {
         (Part::Combined(a), Part::Combined(b)) if !agree(a, b) => Part::Own,
         _ => one,
     };
-    one.into_iter().zip(other).map(same).collect()
+    one.into_iter().zip(other).map(part_if_agreed).collect()
 }
 
 fn agree(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
-    let close = |x: f64, y: f64| (x - y).abs() <= 1e-6 * (1.0 + x.abs());
-    a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && close(*x, *y))
+    let is_nearly_equal = |x: f64, y: f64| (x - y).abs() <= 1e-6 * (1.0 + x.abs());
+    a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && is_nearly_equal(*x, *y))
 }
 
 /// Returns the values of each column at random states, for one choice of parameters. The number of values per
@@ -67,7 +67,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors).
+/// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors), and
+/// returns which columns are independent.
 fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
@@ -100,9 +101,12 @@ fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
             base.push((rest.iter().map(|r| r / left).collect(), of));
             parts.push(Part::Own);
         } else {
-            let size_of = |i: usize| dot(&columns[i], &columns[i]).sqrt();
-            let matters = |i: &usize| (combination[*i] * size_of(*i)).abs() > 1e-7 * size;
-            parts.push(Part::Combined((0..k).filter(matters).map(|i| (i, combination[i])).collect()));
+            let norm_of_column = |i: usize| dot(&columns[i], &columns[i]).sqrt();
+            let is_significant_coefficient =
+                |i: &usize| (combination[*i] * norm_of_column(*i)).abs() > 1e-7 * size;
+            parts.push(Part::Combined(
+                (0..k).filter(is_significant_coefficient).map(|i| (i, combination[i])).collect(),
+            ));
         }
     }
     parts

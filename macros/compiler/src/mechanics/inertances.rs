@@ -6,7 +6,7 @@ use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::Model;
 
-/// Adds the inertances to the mass matrix.
+/// Adds the inertances of inerters to the mass matrix.
 pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
@@ -41,7 +41,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>) -> Expr<'g> {
     model.inertances.iter().fold(model.graph.zero(), |sum, e| sum + e.inertance * 0.5 * e.rate.square())
 }
 
-/// Adds the generalized momentum of the inerters.
+/// Adds the generalized momentum of the inerters to a momentum.
 pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {

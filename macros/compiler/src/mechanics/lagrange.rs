@@ -18,9 +18,9 @@ use crate::mechanism::{Chart, InV, Model, Quantity};
 
 /// The energies and the equations of motion derived from them.
 pub struct Lagrange<'g> {
-    /// Kinetic energy.
+    /// Kinetic energy of the mechanism.
     pub kinetic: Expr<'g>,
-    /// Potential energy.
+    /// Potential energy of the mechanism.
     pub potential: Expr<'g>,
     /// Mass matrix `∂²T/∂v²`.
     pub mass_matrix: Matrix<'g>,
@@ -59,7 +59,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     Lagrange { kinetic, potential, mass_matrix, bias }
 }
 
-/// Returns `Σ ∂e/∂q q̇ + ∂e/∂t`.
+/// Returns the time derivative `Σ ∂e/∂q q̇ + ∂e/∂t` of an expression.
 fn time_derivative<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
     let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).differentiate(e);
     for (rate, d) in rates.iter().zip(by_q) {
@@ -84,7 +84,7 @@ fn subtract_tangent_gradient<'g>(
 }
 
 fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: &mut [Expr<'g>]) {
-    let three = |e: &[Expr<'g>], k: usize| Vec3([e[k], e[k + 1], e[k + 2]]);
+    let three_components = |e: &[Expr<'g>], k: usize| Vec3([e[k], e[k + 1], e[k + 2]]);
     let mut add = |k: usize, term: Vec3<'g>| {
         for i in 0..3 {
             bias[k + i] += term[i];
@@ -93,11 +93,11 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
     for chart in &model.charts {
         match *chart {
             Chart::Plain(..) => {}
-            Chart::Ball(_, InV(k)) => add(k, three(v, k).cross(three(p, k))),
+            Chart::Ball(_, InV(k)) => add(k, three_components(v, k).cross(three_components(p, k))),
             Chart::Free(_, InV(k)) => {
-                let (linear, w) = (three(v, k), three(v, k + 3));
-                add(k, w.cross(three(p, k)));
-                add(k + 3, w.cross(three(p, k + 3)) + linear.cross(three(p, k)));
+                let (linear, w) = (three_components(v, k), three_components(v, k + 3));
+                add(k, w.cross(three_components(p, k)));
+                add(k + 3, w.cross(three_components(p, k + 3)) + linear.cross(three_components(p, k)));
             }
         }
     }

@@ -11,11 +11,11 @@ pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<E
     solve_in(m, r, &order, 0).x
 }
 
-/// A solution with measures of its reliability.
+/// Solution of a linear system with measures of its reliability.
 pub struct Solution<'g> {
-    /// Unknowns `x`.
+    /// Unknowns `x` of the linear system.
     pub x: Vec<Expr<'g>>,
-    /// Pivot of each index.
+    /// Pivot of each index in the factorisation.
     pub pivots: Vec<Expr<'g>>,
     /// Amount that the elimination of the first `first` indices has subtracted from each diagonal entry.
     pub taken: Vec<Expr<'g>>,
@@ -36,8 +36,9 @@ impl<'g> Solution<'g> {
 
 /// Solves `m x = r` for a symmetric `m`, eliminated in a given order.
 pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
-    let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
-    let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
+    let zero_vector = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
+    let (mut inverse, mut x, mut pivots, mut taken) =
+        (zero_vector(), zero_vector(), zero_vector(), zero_vector());
     // For each index: the rows from which its row is subtracted, each with the multiple.
     let mut factors: Vec<Vec<(usize, Expr<'g>)>> = vec![Vec::new(); r.len()];
     let mut known = Vec::new().into_iter();
@@ -79,9 +80,10 @@ pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], fi
 /// condition number if two pivots are small compared with the first (light links that carry a heavy load,
 /// velocities that follow from others by large factors).
 pub fn inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
-    let entry = |i: usize, j: usize| m[order[i]][order[j]];
-    let Some(a) = order.first().map(|_| entry(0, 0)) else { return Vec::new() };
-    let second = (order.len() > 1).then(|| second_inverse(a, entry(0, 1), entry(1, 1))).flatten();
+    let permuted_entry = |i: usize, j: usize| m[order[i]][order[j]];
+    let Some(a) = order.first().map(|_| permuted_entry(0, 0)) else { return Vec::new() };
+    let second =
+        (order.len() > 1).then(|| second_inverse(a, permuted_entry(0, 1), permuted_entry(1, 1))).flatten();
     std::iter::once(a.num(1.0) / a).chain(second).collect()
 }
 

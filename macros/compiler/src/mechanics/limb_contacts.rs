@@ -9,7 +9,7 @@ pub struct LimbContacts<'a, 'g> {
     limbs: &'a Limbs<'g>,
     groups: Vec<LimbRows>,
     merge: Merge<'g>,
-    /// Number of contact velocities.
+    /// Number of all contact velocities.
     count: usize,
 }
 
@@ -29,8 +29,8 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
         })
     }
 
-    /// Merges values, one for each contact velocity, into lanes. Returns `None` if the expressions of the
-    /// limbs differ in structure.
+    /// Merges values, one for each contact velocity, into SIMD lanes. Returns `None` if the expressions of
+    /// the limbs differ in structure.
     pub fn values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
         for row in self.groups.iter().flat_map(|group| &group.rows) {
@@ -40,19 +40,19 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
         Some(out)
     }
 
-    /// Merges matrix rows, one for each contact velocity with a column for each velocity. Each row depends
-    /// only on the limb of its contact velocity.
+    /// Merges matrix rows into SIMD lanes, one row for each contact velocity with a column for each velocity.
+    /// Each row depends only on the limb of its contact velocity.
     pub fn rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
         let mut out = vec![Vec::new(); self.count];
         for numbers in self.groups.iter().flat_map(|group| &group.rows) {
             let lanes: Vec<&[Expr<'g>]> = numbers.iter().map(|i| rows[*i].as_slice()).collect();
             let all = self.limbs.merged_rows(&lanes, &mut self.merge)?;
             for (lane, i) in numbers.iter().enumerate() {
-                let entry = |(index, of): (usize, Option<usize>)| match of {
+                let entry_in_lane = |(index, of): (usize, Option<usize>)| match of {
                     Some(of) if of != lane => all[index].zero(),
                     _ => all[index].lane(lane),
                 };
-                out[*i] = self.limbs.places().map(entry).collect();
+                out[*i] = self.limbs.places().map(entry_in_lane).collect();
             }
         }
         Some(out)
@@ -65,16 +65,18 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
         let mut sum: Option<Matrix<'g>> = None;
         for lanes in groups {
             let all = self.limbs.merged_squares(lanes, &mut self.merge)?;
-            let entry = |(i, row): (usize, Option<usize>), (j, column): (usize, Option<usize>)| {
-                let entry = all[i][j];
-                match (row, column) {
-                    (None, None) => entry.lane_sum(lanes.len()),
-                    (Some(a), Some(b)) if a != b => entry.zero(),
-                    (Some(lane), _) | (None, Some(lane)) => entry.lane(lane),
-                }
+            let entry_of_lane_pair =
+                |(i, row): (usize, Option<usize>), (j, column): (usize, Option<usize>)| {
+                    let entry = all[i][j];
+                    match (row, column) {
+                        (None, None) => entry.lane_sum(lanes.len()),
+                        (Some(a), Some(b)) if a != b => entry.zero(),
+                        (Some(lane), _) | (None, Some(lane)) => entry.lane(lane),
+                    }
+                };
+            let row = |row: &(usize, Option<usize>)| {
+                places.iter().map(|column| entry_of_lane_pair(*row, *column)).collect()
             };
-            let row =
-                |row: &(usize, Option<usize>)| places.iter().map(|column| entry(*row, *column)).collect();
             let found: Matrix<'g> = places.iter().map(row).collect();
             match &mut sum {
                 None => sum = Some(found),

@@ -6,11 +6,11 @@ use crate::expr::Expr;
 use crate::vectorise::{LimbRows, Limbs, joined};
 use std::collections::BTreeMap;
 
-/// Contact velocities of the limbs of one group.
+/// Contact velocities of the limbs of one group of identical limbs.
 struct Family<'g> {
     /// First velocity of the group's limbs, which identifies the group.
     group: usize,
-    /// Number of limbs.
+    /// Number of limbs in the group.
     width: usize,
     rows: Vec<Row<'g>>,
 }
@@ -37,14 +37,15 @@ struct Factor<'g> {
     order: Vec<usize>,
     /// Off-diagonal entries of `L`, a row for each velocity.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
-    /// Diagonal of `D⁻¹`, by velocity.
+    /// Diagonal of `D⁻¹`, in the order of `v`.
     inverse: Vec<Expr<'g>>,
     /// Group of limbs of each velocity; `None` for the trunk.
     groups: Vec<Option<usize>>,
 }
 
-/// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. Returns `None` unless each row
-/// depends on one limb of a group of identical limbs, and all limbs of a group have the same number of rows.
+/// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of the contact Jacobian `G`. Returns
+/// `None` unless each row depends on one limb of a group of identical limbs, and all limbs of a group have
+/// the same number of rows.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
     let groups = limbs.limb_rows(rows)?;
     let factor = Factor::new(limbs, limbs.groups());
@@ -103,7 +104,7 @@ impl<'g> Factor<'g> {
         Factor { order, rows, inverse, groups }
     }
 
-    /// Solves for one contact velocity of each limb of a group, whose entries `g` are in lanes.
+    /// Solves for one contact velocity of each limb of a group, whose Jacobian entries `g` are in SIMD lanes.
     fn row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
         let mut reduced = g;
         for &k in &self.order {
@@ -145,16 +146,16 @@ impl<'g> Factor<'g> {
     fn weight(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
         let (first, second) = (&families[a.family], &families[b.family]);
         let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);
-        let sum = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
+        let sum_over_velocities = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
             let terms = (0..x.len()).filter(|k| is_in(*k)).map(|k| {
                 let [x, y] = of(k);
                 x * (y * self.inverse[k])
             });
             terms.reduce(|a, b| a + b).unwrap_or_else(|| self.inverse[0].zero())
         };
-        let trunk = |k: usize| self.groups[k].is_none();
+        let is_in_trunk = |k: usize| self.groups[k].is_none();
         if a.family != b.family {
-            return sum(&trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
+            return sum_over_velocities(&is_in_trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
         }
         let n = first.width;
         let by = (n + b.lane - a.lane) % n;
@@ -162,8 +163,11 @@ impl<'g> Factor<'g> {
             return self.weight(families, b, a);
         }
         match by {
-            0 => sum(&|k| trunk(k) || self.groups[k] == Some(first.group), &|k| [x[k], y[k]]).lane(a.lane),
-            _ => sum(&trunk, &|k| [x[k], rotated_lanes(y[k], n, by)]).lane(a.lane),
+            0 => sum_over_velocities(&|k| is_in_trunk(k) || self.groups[k] == Some(first.group), &|k| {
+                [x[k], y[k]]
+            })
+            .lane(a.lane),
+            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], rotated_lanes(y[k], n, by)]).lane(a.lane),
         }
     }
 }

@@ -32,7 +32,7 @@ fn weighted<'g>(
     rows(model).into_iter().map(|row| (row, jacobian[row].iter().map(|e| *e * w).collect())).collect()
 }
 
-/// Returns `M + w Jᵀ J`.
+/// Returns the mass matrix with weighted constraints, `M + w Jᵀ J`.
 pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
     if rows(model).is_empty() {
         return mass;
@@ -46,7 +46,7 @@ pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix
     mass
 }
 
-/// Returns `f − w Jᵀ b`.
+/// Returns the force with weighted constraints, `f − w Jᵀ b`.
 pub fn loaded_force<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],

@@ -50,7 +50,7 @@ pub fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
 }
 
-/// Returns true if every velocity belongs to exactly one joint coordinate, so that the articulated-body
+/// Returns whether every velocity belongs to exactly one joint coordinate, so that the articulated-body
 /// algorithm applies.
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];

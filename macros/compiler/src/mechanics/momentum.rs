@@ -84,7 +84,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
     rate
 }
 
-/// Returns the weight of each link, about its origin in its axes.
+/// Returns the weight of each link as a wrench about the link's origin in its axes.
 fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
     let mut gravity: Vec<Vec3<'g>> = Vec::new();
     for joint in joints {

@@ -1,4 +1,4 @@
-//! Passive forces: those of springs, dashpots, friction and other elements that act without inputs.
+//! Passive forces: forces of springs, dashpots, friction and other elements that act without inputs.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Function};

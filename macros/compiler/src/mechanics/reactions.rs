@@ -13,7 +13,7 @@ use crate::mechanism::{Model, Quantity, Released, SolvedSide};
 /// Number of components of a joint's reaction: force, torque.
 const SIX: usize = 6;
 
-/// Returns true if one of the expressions contains a reaction.
+/// Returns whether one of the expressions contains a reaction.
 pub fn names_one(e: &[Expr<'_>]) -> bool {
     symbols_in(e).into_iter().any(|s| matches!(Quantity::from_symbol(s), Quantity::Reaction(_)))
 }
@@ -21,26 +21,26 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
 /// Returns the expressions with reactions replaced by expressions of `q`, `v`, `a` and the inputs;
 /// multipliers are arguments. With `touched`, contact forces are included; otherwise they are zero.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
-    let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::from_symbol(s) {
+    let multiplier_of_symbol = |s: Symbol, all: &[Expr<'g>]| match Quantity::from_symbol(s) {
         Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
         _ => None,
     };
     let Some(released) = &model.released else {
         let all = constraints::multipliers(model);
-        return replace_all(e, &|s| multiplier(s, &all));
+        return replace_all(e, &|s| multiplier_of_symbol(s, &all));
     };
     let (held, multipliers) = on_released_coordinates(model, released, touched);
-    let reaction = |s: Symbol| {
+    let reaction_of_symbol = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::from_symbol(s) else { return None };
         if k >= Quantity::MULTIPLIERS {
-            return multiplier(s, &multipliers);
+            return multiplier_of_symbol(s, &multipliers);
         }
         let (joint, component) = (k / SIX, k % SIX);
         let released_index = || released.joints.iter().position(|j| *j == joint);
         of_multipliers(model, released, &multipliers, joint, component)
             .or_else(|| Some(held[SIX * released_index()? + component]))
     };
-    replace_all(e, &reaction)
+    replace_all(e, &reaction_of_symbol)
 }
 
 /// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
@@ -63,7 +63,7 @@ fn of_multipliers<'g>(
     sum.map(|e| replace_all(&[e], &|s| is_open(model, s).then(|| model.graph.zero()))[0])
 }
 
-/// Returns true for a coordinate of a released joint, or its velocity.
+/// Returns whether a symbol is a coordinate of a released joint, or the velocity of such a coordinate.
 fn is_open(model: &Model<'_>, s: Symbol) -> bool {
     match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => k >= model.nq(),
@@ -81,9 +81,11 @@ fn on_released_coordinates<'g>(
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (g, open) = (model.graph, &released.model);
     let joints = joints(open);
-    let closed = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
-    let v: Vec<Expr<'g>> = (0..open.nv()).map(|k| closed(k, Quantity::Velocity(k))).collect();
-    let a: Vec<Expr<'g>> = (0..open.nv()).map(|k| closed(k, Quantity::Acceleration(k))).collect();
+    let value_with_closed_joints = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
+    let v: Vec<Expr<'g>> =
+        (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Velocity(k))).collect();
+    let a: Vec<Expr<'g>> =
+        (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
     let inputs = forces::generalized_forces(open, &joints);
     let mut multipliers = constraints::multipliers(open);
@@ -97,10 +99,10 @@ fn on_released_coordinates<'g>(
         let force = Quantity::ContactForce(i).expr(g);
         forces_needed.iter_mut().zip(row).for_each(|(needed, entry)| *needed -= entry * force);
     }
-    let closed = |e: &[Expr<'g>]| replace_all(e, &|s| is_open(model, s).then(|| g.zero()));
-    let mut needed = closed(&forces_needed[model.nv()..]);
+    let set_open_symbols_to_zero = |e: &[Expr<'g>]| replace_all(e, &|s| is_open(model, s).then(|| g.zero()));
+    let mut needed = set_open_symbols_to_zero(&forces_needed[model.nv()..]);
     let rows = constraints::jacobian(open).split_off(multipliers.len());
-    let rows: Matrix<'g> = rows.iter().map(|row| closed(&row[model.nv()..])).collect();
+    let rows: Matrix<'g> = rows.iter().map(|row| set_open_symbols_to_zero(&row[model.nv()..])).collect();
     let solved = closing_forces(released, &needed, &rows);
     for (row, l) in rows.iter().zip(&solved) {
         needed.iter_mut().zip(row).for_each(|(force, entry)| *force -= *entry * *l);

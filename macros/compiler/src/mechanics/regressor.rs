@@ -17,7 +17,7 @@ pub const NAMES: [&str; COUNT] = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz",
 /// Row and column in the tensor of inertia of each parameter after the fourth.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A frame fixed in a link.
+/// Frame fixed in a link, whose inertial parameters are identified.
 #[derive(Clone)]
 pub struct Site<'g> {
     /// Link in which the frame is fixed.
@@ -26,7 +26,7 @@ pub struct Site<'g> {
     pub pose: Pose<'g>,
 }
 
-/// Returns the ten parameters of mass properties.
+/// Returns the ten inertial parameters of mass properties.
 pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
     std::array::from_fn(|k| match k {
         0 => inertia.mass,

@@ -12,19 +12,19 @@ use crate::expr::sample::sample;
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Chart, Model, Quantity};
 
-/// Number of random states that are tested.
+/// Number of random states at which the rates are tested.
 const STATES: u64 = 6;
 /// Tolerance of a zero rate relative to the largest rate.
 const ROUNDING: f64 = 1e-11;
 
-/// Equations of a mechanism without its cyclic coordinates, as functions of `q`, the velocities of the other
-/// coordinates and the momenta of the cyclic ones.
+/// Routh's equations: the mechanism without its cyclic coordinates, as functions of `q`, the velocities of
+/// the other coordinates and the momenta of the cyclic coordinates.
 pub struct Routh<'g> {
     /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
     /// Routhian `R`.
     pub routhian: Expr<'g>,
-    /// Velocities of the cyclic coordinates.
+    /// Velocities of the cyclic coordinates in terms of their momenta.
     pub velocity: Vec<Expr<'g>>,
     /// Accelerations of the other coordinates, under the forces `τ`.
     pub acceleration: Vec<Expr<'g>>,
@@ -84,7 +84,7 @@ pub fn solved<'g>(
     Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
 }
 
-/// Derives the equations of the reduced mechanism.
+/// Derives Routh's equations, from which the cyclic coordinates are eliminated.
 pub fn derive<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -106,18 +106,21 @@ pub fn derive<'g>(
     let selected_forces = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
     let across = part(mass, &others, &cyclic);
     let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
-    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
+    let dot_product =
+        |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
     let mut reduced = part(mass, &others, &others);
     for (row, across) in reduced.iter_mut().zip(&across) {
-        row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot(across, taken));
+        row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot_product(across, taken));
     }
     let of_cyclic = selected_forces(&cyclic);
-    let right = selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot(taken, &of_cyclic));
+    let right =
+        selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot_product(taken, &of_cyclic));
     let acceleration = solved_by(&reduced, right.collect());
     Routh { cyclic, routhian, velocity, acceleration }
 }
 
-/// Returns all velocity symbols, with those of the cyclic coordinates replaced by `velocity`.
+/// Returns the symbols of all velocities, where the velocities of the cyclic coordinates are replaced by
+/// `velocity`.
 pub fn with_cyclic_velocities<'g>(
     model: &Model<'g>,
     cyclic: &[usize],

@@ -9,8 +9,9 @@ use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, Model, Motion};
 use std::collections::BTreeMap;
 
-/// Partial velocities of links that are placed by expressions, for links that share at least one with another
-/// link. A shared partial velocity is stored once. Empty if no two links share one.
+/// Partial velocities of links that are placed by expressions, for links that share at least one partial
+/// velocity with another link. A shared partial velocity is stored once. The list is empty if no two links
+/// share one.
 pub struct SharedMotions<'g> {
     motions: Vec<SharedMotion<'g>>,
     /// True for each link that shares a partial velocity with another link.
@@ -28,12 +29,12 @@ struct SharedMotion<'g> {
 }
 
 impl<'g> SharedMotions<'g> {
-    /// Collects shared motion subspaces.
+    /// Collects the motion subspaces that several links share.
     pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
         SharedMotions::collect(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
     }
 
-    /// Collects shared time derivatives of motion subspaces.
+    /// Collects the time derivatives of motion subspaces that several links share.
     pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
         SharedMotions::collect(model, joints, |joint, dof| {
             joint.drift.as_ref()?.subspace_rates.get(dof).copied()
@@ -119,22 +120,22 @@ impl<'g> SharedMotions<'g> {
 /// Returns the common elements of two descending lists.
 fn common(a: &[usize], b: &[usize]) -> Vec<usize> {
     let mut b = b.iter().copied().peekable();
-    let is_in_b = |k: &usize| {
+    let is_in_second_list = |k: &usize| {
         while b.next_if(|other| other > k).is_some() {}
         b.peek() == Some(k)
     };
-    a.iter().copied().filter(is_in_b).collect()
+    a.iter().copied().filter(is_in_second_list).collect()
 }
 
 /// Returns the component-wise sum; both inertias refer to the same point and axes.
 fn plus<'g>(a: &Inertia<'g>, b: &Inertia<'g>) -> Inertia<'g> {
-    let sums = |a: [Expr<'g>; 3], b: [Expr<'g>; 3]| std::array::from_fn(|k| a[k] + b[k]);
+    let add_vectors = |a: [Expr<'g>; 3], b: [Expr<'g>; 3]| std::array::from_fn(|k| a[k] + b[k]);
     Inertia {
         mass: a.mass + b.mass,
         moment: a.moment + b.moment,
         tensor: Sym3 {
-            diagonal: sums(a.tensor.diagonal, b.tensor.diagonal),
-            off: sums(a.tensor.off, b.tensor.off),
+            diagonal: add_vectors(a.tensor.diagonal, b.tensor.diagonal),
+            off: add_vectors(a.tensor.off, b.tensor.off),
         },
     }
 }

@@ -45,9 +45,9 @@ pub enum Role {
     Responses(usize),
 }
 
-/// Transformation from joint velocities to generalized speeds.
+/// Transformation of a mechanism from joint velocities to generalized speeds.
 pub struct InSpeeds<'g> {
-    /// The mechanism in joint velocities.
+    /// Model of the mechanism in joint velocities.
     pub native: Model<'g>,
     /// The mechanism in which everything that contains velocities is expressed in generalized speeds:
     /// constraints, contacts and outputs.
@@ -132,14 +132,14 @@ impl<'g> InSpeeds<'g> {
         self.speeds_of(&relative)
     }
 
-    /// Expresses `e` in speeds, where the given forces are generalized forces of the joints: those of the
-    /// result are the generalized forces of the speeds.
+    /// Expresses `e` in generalized speeds. The given forces in `e` are generalized forces of the joints; the
+    /// given forces of the result are generalized forces of the speeds.
     pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.with_arguments(e, |k| Quantity::Given(Supplied::Force, k))
     }
 
-    /// Expresses `e` in speeds, where its momenta are those of the joints: the momenta of the result are
-    /// those of the speeds.
+    /// Expresses `e` in generalized speeds. The given momenta in `e` are momenta of the joints; the given
+    /// momenta of the result are momenta of the speeds.
     pub fn with_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.with_arguments(e, Quantity::Momentum)
     }
@@ -202,7 +202,7 @@ impl<'g> InSpeeds<'g> {
         }
     }
 
-    /// Returns `Zᵀ M Z`.
+    /// Returns the mass matrix of the speeds, `Zᵀ M Z`.
     pub fn metric(&self, mass: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
         let by_column = transposed(&rows);
@@ -214,7 +214,7 @@ impl<'g> InSpeeds<'g> {
         transposed(&transposed(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect())
     }
 
-    /// Returns `Y M⁻¹ Yᵀ`.
+    /// Returns the inverse mass matrix of the speeds, `Y M⁻¹ Yᵀ`.
     pub fn inverse_metric(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = inverse.iter().map(|row| times(&self.speeds.of_rates, row)).collect();
         transposed(&transposed(&rows).iter().map(|c| times(&self.speeds.of_rates, c)).collect())
@@ -234,22 +234,22 @@ impl<'g> InSpeeds<'g> {
         self::columns(&by_row)
     }
 
-    /// Returns `Ż`.
+    /// Returns the time derivative `Ż` of the velocity transformation.
     fn turning_rates(&self) -> Matrix<'g> {
         let space = self.model.space();
-        let of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
-        self.speeds.rates.iter().map(of_row).collect()
+        let rates_of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
+        self.speeds.rates.iter().map(rates_of_row).collect()
     }
 
     /// Returns `Zᵀ (C Z + M Ż)`, a Coriolis matrix in generalized speeds. `Ṁ_u − 2 C_u` is skew-symmetric if
     /// `Ṁ − 2 C` is.
     pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
         let (z, rates) = (&self.speeds.rates, self.turning_rates());
-        let row = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
+        let row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
             let own = transposed_times(z, &self.written(c));
             own.into_iter().zip(transposed_times(&rates, m)).map(|(own, carried)| own + carried).collect()
         };
-        let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row).collect();
+        let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row_in_speeds).collect();
         transposed(&transposed(&sum).iter().map(|c| transposed_times(z, c)).collect())
     }
 
@@ -307,9 +307,9 @@ impl<'g> InSpeeds<'g> {
             .iter()
             .map(|row| transposed_times(&self.speeds.rates, &self.written(row)))
             .collect();
-        let sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
+        let entry_of_sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
         let n = self.model.nv();
-        let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| sum(i, j)).collect()).collect();
+        let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| entry_of_sum(i, j)).collect()).collect();
         transposed(&by_column.iter().map(|column| self.speeds_of(column)).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! Constraints as scalar rows.
+//! Constraints of a mechanism, as scalar rows.
 
 use super::index::InV;
 use crate::diag::Place;
@@ -9,7 +9,7 @@ use crate::expr::{Expr, Vec3};
 pub struct Constraint<'g> {
     /// Name: that of the joint or constraint, and the component.
     pub name: String,
-    /// Place of the name in the source.
+    /// Position of the constraint's name in the source.
     pub place: Place,
     /// Expression of configuration and time whose time derivative is `rate`; `None` for a constraint on
     /// velocities only.
@@ -23,8 +23,8 @@ pub struct Constraint<'g> {
     pub measure: Measure,
     /// Forces and torques per unit of its multiplier in a joint that closes a loop.
     pub transmits: Vec<Transmission<'g>>,
-    /// Index of a group of constraints that are components of one vector. The magnitude of a component is
-    /// compared with those of its group.
+    /// Index of the group of constraints that are components of the same vector. The magnitude of a component
+    /// is compared with the other components of its group.
     pub group: usize,
     /// True if the constraint determines coordinates that may have no inertia.
     pub determines: bool,
@@ -42,7 +42,7 @@ pub struct FrictionTerm<'g> {
     pub share: Expr<'g>,
 }
 
-/// Quantity that a scalar constraint measures.
+/// Quantity that a scalar constraint measures, which determines the unit of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Length between two points or surfaces.
@@ -56,11 +56,11 @@ pub enum Measure {
 /// Component of the force or torque that a joint's parent exerts on its child.
 #[derive(Clone, Copy, Debug)]
 pub struct Transmission<'g> {
-    /// Index of the joint.
+    /// Index of the joint that transmits the force or torque.
     pub joint: usize,
     /// True for a torque, false for a force.
     pub torque: bool,
-    /// Direction in ground axes.
+    /// Direction of the component in ground axes.
     pub direction: Vec3<'g>,
 }
 
@@ -68,24 +68,24 @@ pub struct Transmission<'g> {
 /// is given in the joint's frame on the parent.
 #[derive(Clone, Debug)]
 pub struct SolvedSide<'g> {
-    /// Index of the joint.
+    /// Index of the joint that closes the loop.
     pub joint: usize,
     /// True for a Pin, false for a Sleeve.
     pub turns: bool,
-    /// Axis of the joint.
+    /// Axis of the joint that closes the loop.
     pub axis: Vec3<'g>,
 }
 
 /// Velocity that a constraint determines if generalized speeds are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pivot {
-    /// Index of the constraint.
+    /// Index of the constraint that supplies the multiplier.
     pub constraint: usize,
-    /// Index of the velocity.
+    /// Index of the velocity that supplies the force.
     pub velocity: InV,
 }
 
-/// Numbers of degrees of freedom.
+/// Numbers of independent coordinates and velocities of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Freedom {
     /// Number of independent coordinates.

@@ -2,14 +2,14 @@
 
 use crate::expr::{Expr, Mat3, Vec3};
 
-/// Piece of the drawing.
+/// Piece of the drawing: a shape with its position, for one declared object.
 #[derive(Clone, Debug)]
 pub struct Piece<'g> {
-    /// Name of the declared object that it shows.
+    /// Name of the declared object that the piece shows.
     pub name: String,
-    /// Kind of declared object that it shows.
+    /// Kind of the declared object that the piece shows.
     pub role: Role,
-    /// Geometric form.
+    /// Geometric form of the piece.
     pub kind: PieceKind,
     /// Indices of the frames in which its first and its second vector are fixed; `None` for the ground.
     pub frames: [Option<usize>; 2],
@@ -38,7 +38,8 @@ pub enum Role {
     Gravity,
 }
 
-/// Geometric forms of pieces. The values of each form begin with a position, then follow those listed for it.
+/// Geometric forms of pieces. The values of a piece are its position, followed by the values that are listed
+/// for its form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PieceKind {
     /// Straight rod, given by axis and length.
@@ -103,7 +104,7 @@ pub enum PieceKind {
     Mesh(String),
 }
 
-/// Returns the entries of vectors one after the other.
+/// Returns the entries of several vectors, concatenated.
 pub fn entries<'g>(vectors: &[Vec3<'g>]) -> Vec<Expr<'g>> {
     vectors.iter().flat_map(|v| v.0).collect()
 }

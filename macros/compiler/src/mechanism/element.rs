@@ -1,25 +1,25 @@
-//! Force elements and inputs.
+//! Force elements and inputs of a mechanism.
 
 use super::link::LinkId;
 use super::motion::Coordinate;
 use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 
-/// A linear spring on a coordinate.
+/// Linear spring on a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Spring<'g> {
-    /// Coordinate on which it acts.
+    /// Coordinate on which the spring acts.
     pub on: Coordinate,
     /// Stiffness, N/m or N·m/rad.
     pub stiffness: Expr<'g>,
-    /// Value of the coordinate at zero force.
+    /// Value of the coordinate at which the spring is relaxed.
     pub free: Expr<'g>,
 }
 
-/// A dashpot on a coordinate.
+/// Linear dashpot on a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Dashpot<'g> {
-    /// Coordinate on which it acts.
+    /// Coordinate on which the dashpot acts.
     pub on: Coordinate,
     /// Damping coefficient, N·s/m or N·m·s/rad.
     pub damping: Expr<'g>,
@@ -28,21 +28,21 @@ pub struct Dashpot<'g> {
 /// Coulomb friction on a coordinate, regularised as `friction × tanh(rate / friction_speed)`.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombFriction<'g> {
-    /// Coordinate on which it acts.
+    /// Coordinate on which the friction acts.
     pub on: Coordinate,
-    /// Force or torque at full slip.
+    /// Force or torque of friction at full slip, N or N·m.
     pub friction: Expr<'g>,
 }
 
-/// Effect of an entry of `u`.
+/// Effect of an entry of `u` on the mechanism.
 #[derive(Clone, Debug)]
 pub enum Input<'g> {
     /// No effect by itself; expressions contain the input.
     Named,
     /// A force or torque on a coordinate.
     Coordinate(Coordinate),
-    /// A force on a sum of coordinates with their ratios, such as that of a motor behind a gear or on a
-    /// tendon, with the unit of the force.
+    /// Force on a weighted sum of coordinates, such as that of a motor behind a gear or on a tendon, with the
+    /// unit of the force.
     Sum(Vec<Coordinate>, &'static str),
     /// A force on a link.
     Force {
@@ -77,15 +77,15 @@ pub struct Load<'g> {
     pub dissipative: bool,
 }
 
-/// Term of a load that is linear in the accelerations: the force `Σ factor v̇ₖ` on the velocity `rate`, where
-/// each pair is `k` and its factor.
+/// Load that is linear in the accelerations: the force `Σ factor v̇ₖ` on the velocity `rate`, where each pair
+/// is `k` and its factor.
 #[derive(Clone, Debug)]
 pub struct AccelerationForce<'g> {
     /// Velocity, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
     /// Indices of velocities, and factors of their time derivatives: expressions of state and time.
     pub factors: Vec<(usize, Expr<'g>)>,
-    /// Place of the force in the source.
+    /// Position of the force in the source.
     pub place: Place,
 }
 

@@ -1,4 +1,4 @@
-//! Declared equilibrium configurations.
+//! Equilibrium configurations that the user declares.
 
 use crate::diag::Place;
 use crate::expr::Expr;
@@ -12,7 +12,7 @@ pub const DRY_FRICTION: &str = "at rest it balances every smaller force: use a `
 pub struct Equilibrium<'g> {
     /// Name of the equilibrium.
     pub name: String,
-    /// Place of the name in the source.
+    /// Position of the name in the source.
     pub place: Place,
     /// Values of all entries of `q`.
     pub configuration: Vec<Expr<'g>>,
@@ -22,12 +22,12 @@ pub struct Equilibrium<'g> {
     pub states: Vec<RestingState<'g>>,
 }
 
-/// A first-order state at equilibrium.
+/// Value of a first-order state at an equilibrium.
 #[derive(Clone, Debug)]
 pub struct RestingState<'g> {
     /// Index of the state among the parameters.
     pub parameter: usize,
-    /// Value at the equilibrium.
+    /// Value of the state at the equilibrium.
     pub value: Expr<'g>,
     /// Time derivative in any state of the mechanism.
     pub rate: Expr<'g>,

@@ -1,5 +1,5 @@
-//! Cache for generalized forces of energies and for derivatives with respect to the velocities: every variant
-//! of a model and every function needs those of the same elements.
+//! Cache for the generalized forces of energies and for derivatives with respect to the velocities, since
+//! every variant of a model and every function needs them for the same elements.
 
 use super::motion::Chart;
 use crate::expr::{Expr, Id};
@@ -14,7 +14,7 @@ pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
 #[derive(Clone, Debug, Default)]
 pub struct Gradients(Rc<RefCell<Found>>);
 
-/// For each expression: indices of velocities, and derivatives.
+/// Indices of velocities and derivatives with respect to them, for each expression.
 type GradientTable = BTreeMap<Id, Vec<(usize, Id)>>;
 
 #[derive(Debug, Default)]

@@ -14,24 +14,24 @@ pub struct InQ(pub usize);
 pub struct InV(pub usize);
 
 impl InQ {
-    /// Returns the coordinate as an expression.
+    /// Returns the expression of the coordinate.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Configuration(self.0).expr(graph)
     }
 
-    /// Returns the range of `count` entries of `q` from this one on.
+    /// Returns the range of `count` entries of `q` that begins with this index.
     pub fn and_next(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }
 }
 
 impl InV {
-    /// Returns the velocity as an expression.
+    /// Returns the expression of the velocity.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Velocity(self.0).expr(graph)
     }
 
-    /// Returns the range of `count` entries of `v` from this one on.
+    /// Returns the range of `count` entries of `v` that begins with this index.
     pub fn and_next(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }

@@ -1,4 +1,4 @@
-//! Mass properties.
+//! Mass properties of links: mass, first moment and inertia tensor.
 
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 

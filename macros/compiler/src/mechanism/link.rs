@@ -16,7 +16,7 @@ pub struct LinkId(pub usize);
 pub struct Space<'a, 'g> {
     /// Graph that owns the expressions.
     pub graph: &'g Graph,
-    /// Coordinate charts of its factors.
+    /// Coordinate charts of the factors of the configuration space.
     pub charts: &'a [Chart],
     /// Generalized speeds that the entries of `v` are; `None` if the entries are joint velocities.
     pub speeds: Option<&'a Speeds<'g>>,
@@ -27,7 +27,7 @@ pub struct Space<'a, 'g> {
 pub struct Link<'g> {
     /// Parent link, whose index is smaller; `None` for the ground.
     pub parent: Option<LinkId>,
-    /// The joint's frame on the parent link.
+    /// Pose of the joint's frame on the parent link.
     pub placement: Pose<'g>,
     /// Motion of the link relative to the joint's frame.
     pub motion: Motion<'g>,
@@ -44,6 +44,6 @@ pub struct NamedFrame<'g> {
     pub massive: bool,
     /// Link in which it is fixed; `None` for the ground.
     pub link: Option<LinkId>,
-    /// Pose in the link's frame.
+    /// Pose of the frame relative to its link.
     pub pose: Pose<'g>,
 }

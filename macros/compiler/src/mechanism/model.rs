@@ -1,4 +1,4 @@
-//! The complete mechanism model.
+//! Model of a whole mechanism, which all later stages read.
 
 use super::constraint::{Constraint, Freedom, Pivot, SolvedSide};
 use super::contact::Contact;
@@ -19,27 +19,27 @@ use crate::diag::Place;
 use crate::expr::{Expr, Graph, Vec3};
 use std::rc::Rc;
 
-/// A checked mechanism.
+/// Mechanism that has been resolved and checked.
 #[derive(Clone)]
 pub struct Model<'g> {
     /// Graph that owns all expressions.
     pub graph: &'g Graph,
     /// Name of the struct.
     pub name: String,
-    /// Place of the name in the source.
+    /// Position of the struct's name in the source.
     pub place: Place,
     /// Names of the parameters.
     pub parameters: Vec<String>,
     /// True if the user requested a mechanism without dynamics, which needs no inertia.
     pub kinematic: bool,
-    /// Uniform gravity, in ground axes.
+    /// Gravitational acceleration, uniform, in ground axes.
     pub gravity: Vec3<'g>,
     /// Velocity that scales the regularisation of dry friction.
     pub friction_speed: Expr<'g>,
     /// Links, parents before children.
     pub links: Vec<Link<'g>>,
-    /// Mass properties of bodies that a pass found to be at rest; they are fixed to the ground but count as
-    /// moving mass.
+    /// Mass properties of bodies that a pass found to be at rest. Such bodies are fixed to the ground but
+    /// count as moving mass.
     pub still: Inertia<'g>,
     /// True if an expression depends on time.
     pub time: bool,
@@ -64,7 +64,7 @@ pub struct Model<'g> {
     pub equilibria: Vec<Equilibrium<'g>>,
     /// Unilateral contacts, including stops.
     pub contacts: Vec<Contact<'g>>,
-    /// Conditions on values that depend on parameters.
+    /// Conditions on values that depend on parameters, which the generated `validate` checks.
     pub requirements: Vec<Requirement<'g>>,
     /// Named frames.
     pub frames: Vec<NamedFrame<'g>>,
@@ -72,24 +72,24 @@ pub struct Model<'g> {
     pub drawing: Vec<Piece<'g>>,
     /// Heights of the terrains, as functions of two arguments.
     pub heights: Vec<Expr<'g>>,
-    /// Springs.
+    /// Linear springs on coordinates.
     pub springs: Vec<Spring<'g>>,
-    /// Dashpots.
+    /// Linear dashpots on coordinates.
     pub dashpots: Vec<Dashpot<'g>>,
-    /// Dry friction.
+    /// Dry friction on coordinates.
     pub frictions: Vec<CoulombFriction<'g>>,
     /// Potential energies other than those of gravity and of springs on coordinates.
     pub potentials: Vec<Expr<'g>>,
     /// Rayleigh dissipation functions.
     pub dissipations: Vec<Expr<'g>>,
-    /// Other forces.
+    /// Forces other than those of springs, dashpots and friction on coordinates.
     pub loads: Vec<Load<'g>>,
     /// Terms of other forces that are linear in the accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
     /// Passive forces of all these elements, if a separate function computes them and the other functions
     /// call it.
     pub passive: Option<Rc<PassiveForces<'g>>>,
-    /// Inertances.
+    /// Inertances of inerters.
     pub inertances: Vec<Inertance<'g>>,
     /// Scalar constraints, holonomic ones first.
     pub constraints: Vec<Constraint<'g>>,
@@ -100,7 +100,7 @@ pub struct Model<'g> {
     pub dependent: Option<Vec<Pivot>>,
     /// Joints for which loops are solved in closed form, two for each loop.
     pub solved: Vec<SolvedSide<'g>>,
-    /// Numbers of degrees of freedom.
+    /// Numbers of independent coordinates and velocities.
     pub freedom: Freedom,
     /// Outputs of the mechanism.
     pub outputs: Vec<OutputValue<'g>>,
@@ -115,7 +115,7 @@ pub struct Model<'g> {
 /// of the joints.
 #[derive(Clone)]
 pub struct Released<'g> {
-    /// Model of the mechanism.
+    /// Model of the mechanism in which the joints are released.
     pub model: Model<'g>,
     /// Indices of the released joints, in the order of their coordinates.
     pub joints: Vec<usize>,
@@ -126,7 +126,7 @@ pub struct Released<'g> {
 pub struct OutputValue<'g> {
     /// Name of the output.
     pub name: String,
-    /// Components: one, three or nine; nine for each action of a free-body diagram.
+    /// Components of the output: one, three or nine; nine for each action of a free-body diagram.
     pub values: Vec<Expr<'g>>,
     /// Free-body diagram to which the values belong, if any.
     pub diagram: Option<Diagram>,
@@ -136,9 +136,9 @@ pub struct OutputValue<'g> {
 /// torque.
 #[derive(Clone, Debug)]
 pub struct Diagram {
-    /// Name of the body.
+    /// Name of the body whose free-body diagram it is.
     pub body: String,
-    /// Name and origin of each action.
+    /// Name and origin of each action in the diagram.
     pub actions: Vec<(String, Origin)>,
     /// Indices of the joints to be released: joints, then positions of bodies and particles, in the order of
     /// the declaration.
@@ -165,16 +165,16 @@ pub enum Origin {
 /// Quantities that a value depends on in addition to the configuration and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uses {
-    /// True if it depends on velocities.
+    /// True if the value depends on velocities.
     pub velocities: bool,
-    /// True if it depends on accelerations.
+    /// True if the value depends on accelerations.
     pub accelerations: bool,
-    /// True if it depends on inputs.
+    /// True if the value depends on inputs.
     pub inputs: bool,
 }
 
 impl<'g> Model<'g> {
-    /// Returns the configuration space.
+    /// Returns the configuration space of the mechanism.
     pub fn space(&self) -> Space<'_, 'g> {
         Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
     }

@@ -7,9 +7,9 @@ use std::ops::Range;
 /// A joint coordinate: `ratio × q[index] + offset`, with velocity `ratio × v[index]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Index in `q`.
+    /// Index of the coordinate in `q`.
     pub q: InQ,
-    /// Index in `v`.
+    /// Index of the coordinate's velocity in `v`.
     pub v: InV,
     /// Ratio of the joint coordinate to the entry of `q`, and of the joint velocity to the entry of `v`.
     pub ratio: f64,
@@ -22,39 +22,40 @@ pub struct Coordinate {
 pub enum Motion<'g> {
     /// Rotation about a fixed unit axis.
     Turn {
-        /// Axis, in joint axes.
+        /// Axis of the rotation, in joint axes.
         axis: Vec3<'g>,
-        /// Angle.
+        /// Coordinate that is the angle.
         coordinate: Coordinate,
     },
     /// Translation along a fixed unit axis.
     Slide {
-        /// Axis, in joint axes.
+        /// Axis of the translation, in joint axes.
         axis: Vec3<'g>,
-        /// Length.
+        /// Coordinate that is the displacement.
         coordinate: Coordinate,
     },
     /// Rotation about an axis with a proportional translation along it.
     Helix {
-        /// Axis, in joint axes.
+        /// Axis of the screw, in joint axes.
         axis: Vec3<'g>,
-        /// Advance per radian.
+        /// Advance of the screw per radian.
         pitch: Expr<'g>,
-        /// Angle.
+        /// Coordinate that is the angle.
         coordinate: Coordinate,
     },
-    /// All rotations: a quaternion in `q`, three angular velocities in link axes in `v`.
+    /// Rotation by a unit quaternion in `q`, with three angular velocities in link axes in `v`.
     Ball {
-        /// First of four entries of `q`.
+        /// Index of the first of four entries of `q`.
         q: InQ,
-        /// First of three entries of `v`.
+        /// Index of the first of three entries of `v`.
         v: InV,
     },
-    /// All rigid motions: position and quaternion in `q`, linear and angular velocity in link axes in `v`.
+    /// Rigid motion in space: position and quaternion in `q`, linear and angular velocity in link axes in
+    /// `v`.
     Free {
-        /// First of seven entries of `q`.
+        /// Index of the first of seven entries of `q`.
         q: InQ,
-        /// First of six entries of `v`.
+        /// Index of the first of six entries of `v`.
         v: InV,
     },
     /// Arbitrary: the link's placement is itself an expression of coordinates and time.
@@ -93,7 +94,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Moves the entries of `v`: `place` maps the first index of the motion to its new value.
+    /// Renumbers the entries of `v`: `place` maps the first index of the motion to its new value.
     pub fn place_velocities(&mut self, place: impl Fn(InV) -> InV) {
         match self {
             Motion::Turn { coordinate, .. }
@@ -129,10 +130,10 @@ impl Motion<'_> {
     }
 }
 
-/// Coordinate chart of a factor of the configuration space: first indices in `q` and `v`.
+/// Coordinate chart of a factor of the configuration space, with its first indices in `q` and `v`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chart {
-    /// A plain coordinate.
+    /// Plain coordinate, whose rate is its velocity.
     Plain(InQ, InV),
     /// Quaternion of a ball joint.
     Ball(InQ, InV),

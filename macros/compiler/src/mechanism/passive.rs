@@ -38,11 +38,11 @@ impl<'g> PassiveForces<'g> {
 
     /// Returns the forces as symbols for the other functions; constant forces as constants.
     pub fn given_forces(&self) -> Vec<Expr<'g>> {
-        let argument = |(k, e): (usize, &Expr<'g>)| match e.value() {
+        let constant_or_passive_force = |(k, e): (usize, &Expr<'g>)| match e.value() {
             Some(_) => *e,
             None => Quantity::PassiveForce(k).expr(e.graph()),
         };
-        self.forces.iter().enumerate().map(argument).collect()
+        self.forces.iter().enumerate().map(constant_or_passive_force).collect()
     }
 
     /// Returns the derivatives of the force symbols with respect to the configuration along the direction of

@@ -1,4 +1,4 @@
-//! Placements of frames.
+//! Placements of frames relative to other frames.
 
 use crate::expr::{Expr, Graph, Rotation, Vec3};
 
@@ -7,7 +7,7 @@ use crate::expr::{Expr, Graph, Rotation, Vec3};
 pub struct Pose<'g> {
     /// Orientation of the child's axes in the parent's.
     pub rotation: Rotation<'g>,
-    /// The child's origin, in parent axes.
+    /// Position of the child's origin, in parent axes.
     pub translation: Vec3<'g>,
 }
 

@@ -31,7 +31,8 @@ pub enum Quantity {
     Stretch,
     /// A component of a displacement of the point at which a gradient is taken.
     Displacement(usize),
-    /// The operand that decides between the pieces of a law while they are read, by their nesting.
+    /// Operand that decides between the pieces of a law while its source is parsed, numbered by nesting
+    /// depth.
     Deciding(usize),
     /// A value that is precomputed from the parameters.
     Prepared(usize),
@@ -49,13 +50,13 @@ pub enum Quantity {
 /// Intermediate results that callers of generated functions supply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supplied {
-    /// Applied forces less bias forces, one for each velocity.
+    /// Applied forces minus bias forces, one for each velocity.
     Force,
-    /// Biases of the constraint accelerations.
+    /// Bias terms of the constraint accelerations.
     Bias,
     /// Signs of the normal forces of slipping surfaces.
     Side,
-    /// Multipliers of constraints.
+    /// Multipliers of the constraints.
     Multiplier,
     /// Factors of forces or results of which a function returns derivatives.
     Factor,
@@ -69,7 +70,7 @@ pub enum Supplied {
     Inertia,
     /// Motion of the link before a frame or a link: placement, twist and acceleration, as far as known.
     Parent,
-    /// Position of a frame.
+    /// Position of a frame's origin.
     Origin,
     /// Position at which the height of a terrain is evaluated.
     Position,

@@ -5,7 +5,7 @@ use crate::expr::Expr;
 /// A condition on values that depend on parameters. Constant values were checked when they were parsed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement<'g> {
-    /// Condition that the values satisfy.
+    /// Condition that the values must satisfy.
     pub rule: Rule,
     /// Description of the values: `` the mass of `cart` ``.
     pub figure: String,
@@ -18,21 +18,21 @@ pub struct Requirement<'g> {
 /// The conditions. Each of them includes that all values are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// One finite value.
+    /// Finite number.
     Finite,
     /// A mass: zero or positive, in the range in which products and reciprocals do not overflow.
     Mass,
     /// A coordinate of a position, in the range of lengths.
     Length,
-    /// Zero or positive.
+    /// Number that is zero or positive.
     NotNegative,
-    /// Positive.
+    /// Positive number.
     Positive,
     /// An angle between zero and a right angle.
     HalfAngle,
-    /// The squared length of a unit vector: one.
+    /// Squared length of a unit vector, which must be one.
     Unit,
-    /// A fraction between zero and one.
+    /// Fraction between zero and one.
     Fraction,
     /// A lower bound, then an upper bound that is not smaller.
     Order,

@@ -10,9 +10,9 @@ use crate::expr::{Expr, Graph};
 /// columns of joint velocities that are retained are those of the identity matrix.
 #[derive(Clone, Debug)]
 pub struct Speeds<'g> {
-    /// Matrix `Y`, row by row.
+    /// Matrix `Y` of the speeds in terms of the joint velocities, row by row.
     pub of_rates: Vec<Vec<Expr<'g>>>,
-    /// Matrix `Z`, row by row.
+    /// Matrix `Z` of the joint velocities in terms of the speeds, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
     /// Indices of the joint velocities that speeds replace.
     pub replaced: Vec<InV>,

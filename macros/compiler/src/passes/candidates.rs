@@ -1,4 +1,4 @@
-//! Candidate frames of a link.
+//! Candidates for the frame of a link, among which a pass chooses.
 
 use super::motions::{Freedom, freedom};
 use super::number::{
@@ -10,13 +10,13 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Data that the choice of a link's frame depends on.
 pub struct Site {
-    /// The parent link.
+    /// Parent link, `None` for the ground.
     pub parent: Option<usize>,
     /// The joint's frame on the parent, if numeric.
     pub place: Option<Frame>,
     /// Degrees of freedom of the choice.
     pub freedom: Freedom,
-    /// Mass properties, if numeric.
+    /// Mass properties of the link, if they are numeric.
     pub mass: Option<Mass>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
     /// The rounding error of moments of inertia about the origin grows as the square of this
@@ -90,11 +90,11 @@ fn children(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
 
 /// Candidate angles about, and shifts along, a link's axis.
 struct Choices {
-    /// Index of the coordinate axis.
+    /// Index of the coordinate axis about which the frame is rotated.
     a: usize,
     angles: Vec<f64>,
     shifts: Vec<f64>,
-    /// Maximum shift.
+    /// Maximum shift of the frame along the axis.
     reach: f64,
 }
 
@@ -144,8 +144,9 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices
         }
     }
     if let Some(mass) = &sites[k].mass {
-        let normal = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
-        let (moment, products) = (normal(mass.moment), normal(column(&mass.tensor, a)));
+        let component_normal_to_axis = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
+        let (moment, products) =
+            (component_normal_to_axis(mass.moment), component_normal_to_axis(column(&mass.tensor, a)));
         list.head(moment);
         list.head(products);
         // The shift at which the product of inertia along the first moment vanishes.
@@ -165,8 +166,8 @@ fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
         // The foot of the common normal, computed from the components of both vectors across the axis,
         // without cancellation. For axes that are parallel up to rounding it is arbitrary, and mostly out of
         // reach.
-        let across = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
-        let (side, away) = (across(u), across(p));
+        let component_normal_to_axis = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
+        let (side, away) = (component_normal_to_axis(u), component_normal_to_axis(p));
         if clean(norm(side), 1.0) != 0.0 {
             list.shift(p[a] - u[a] * dot(away, side) / dot(side, side), scale);
             list.head(cross(axis(a), u));
@@ -201,8 +202,10 @@ fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
         points.push(place.translation);
     }
     // Sliding along a coordinate axis is cheap and is preserved.
-    let entries = |v: Vector| v.iter().filter(|c| clean(**c, 1.0) != 0.0).count();
-    rotations.retain(|rotation| entries(transposed_times(rotation, slide)) <= entries(slide));
+    let count_nonzero_components = |v: Vector| v.iter().filter(|c| clean(**c, 1.0) != 0.0).count();
+    rotations.retain(|rotation| {
+        count_nonzero_components(transposed_times(rotation, slide)) <= count_nonzero_components(slide)
+    });
     rotations.truncate(MAX_CANDIDATES);
     points.truncate(MAX_CANDIDATES);
     let all = rotations.iter().flat_map(|r| points.iter().map(|p| Frame { rotation: *r, translation: *p }));

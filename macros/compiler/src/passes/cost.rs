@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Cost of a rotation about a coordinate axis.
 const TURN: f64 = 150.0;
-/// Cost of a component of a translation.
+/// Cost of a component of a translation, relative to other costs of a frame.
 pub const LENGTH: f64 = 80.0;
 /// Cost of an addition to an angle.
 const OFFSET: f64 = 3.0;

@@ -12,10 +12,10 @@ use super::motions::{Freedom, seen_from};
 use super::number::{Frame, Mass, norm};
 use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
 
-/// Chosen frame of one link.
+/// Frame that was chosen for one link.
 #[derive(Clone, Copy)]
 struct Step {
-    /// The new frame relative to the old one.
+    /// New frame of the link relative to the old one.
     frame: Frame,
     /// The joint's frame relative to the parent's new frame.
     placement: Frame,
@@ -42,20 +42,20 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
 pub fn sizes(model: &Model<'_>) -> Vec<f64> {
     let places: Vec<Option<Frame>> =
         model.links.iter().map(|link| Frame::from_pose(&link.placement)).collect();
-    let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
-    let size = |(k, link): (usize, &Link<'_>)| {
+    let distance_to_link = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
+    let size_of_link = |(k, link): (usize, &Link<'_>)| {
         let children =
             (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
         let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.radius());
-        children.map(length).fold(length(k) + masses, f64::max)
+        children.map(distance_to_link).fold(distance_to_link(k) + masses, f64::max)
     };
-    model.links.iter().enumerate().map(size).collect()
+    model.links.iter().enumerate().map(size_of_link).collect()
 }
 
 /// Returns the data that the choice of frames depends on.
 fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
-    let site = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
-    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site).collect();
+    let site_of_link = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
+    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site_of_link).collect();
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
@@ -65,7 +65,8 @@ fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
     sites
 }
 
-/// Returns the cheapest frame of every link relative to its present one, or `None` if no frame can be chosen.
+/// Returns the cheapest frame of every link relative to its present frame, or `None` if no frame can be
+/// chosen.
 fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
     if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
         return None;

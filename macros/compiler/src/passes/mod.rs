@@ -18,18 +18,18 @@ pub use motions::Gauge;
 pub use parallel::in_common_axes;
 pub use regroup::{Regroup, regroup};
 
-/// Passes to run.
+/// Passes over the model that are to run.
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// Chooses link frames with sparse placements.
+    /// Whether the pass runs that chooses link frames with sparse placements.
     pub frames: bool,
-    /// Moves mass properties towards the base.
+    /// Whether the pass runs that moves mass properties towards the base.
     pub regroup: bool,
-    /// Treats expressions of parameters alone as free, because they are computed in advance.
+    /// Whether expressions of parameters alone are treated as free, because they are computed in advance.
     pub free_parameters: bool,
     /// Resolves links on parallel revolute joints in common axes, where that costs less.
     pub parallel: bool,
-    /// Evaluates identical limbs, and joints of one path to the root, as SIMD lanes.
+    /// Whether identical limbs, and joints of one path to the root, are evaluated in SIMD lanes.
     pub lanes: bool,
 }
 
@@ -40,7 +40,9 @@ impl Default for Passes {
 }
 
 impl Passes {
-    /// Returns the numbers of lanes that are tried for joints of one path, in addition to none.
+    /// Returns the numbers of SIMD lanes that are tried for joints of one path. Code without lanes is tried
+    /// in
+    /// every case.
     pub fn wide(&self, nv: usize) -> &'static [usize] {
         match nv {
             _ if !self.lanes => &[],
@@ -51,12 +53,12 @@ impl Passes {
     }
 }
 
-/// Model that is equivalent to the original one.
+/// Model that is equivalent to the original one, in other frames or with other mass properties.
 #[derive(Clone)]
 pub struct Variant<'g> {
-    /// The model, with mass properties resolved in the axes of its joints.
+    /// Model with mass properties resolved in the axes of its joints.
     pub model: Model<'g>,
-    /// The model's joints.
+    /// Joints of the variant's model.
     pub joints: Vec<Joint<'g>>,
     /// True if masses were also moved to children, which pays for inverse dynamics only.
     pub for_inverse_dynamics: bool,
@@ -108,10 +110,10 @@ const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
     (Gauge::Flat, true, false, true),
 ];
 
-/// Adds a variant unless it is known.
+/// Adds a variant to the list unless an equal one is in it.
 fn add<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
-    let links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
-    if !variants.iter().any(|known| links(known) == links(&variant)) {
+    let inertias_of_links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
+    if !variants.iter().any(|known| inertias_of_links(known) == inertias_of_links(&variant)) {
         variants.push(variant);
     }
 }

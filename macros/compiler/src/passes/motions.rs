@@ -5,21 +5,21 @@ use super::number::{Vector, clean};
 use crate::expr::{Sym3, Vec3};
 use crate::mechanism::{Coordinate, Inertia, Link, Motion, Pose};
 
-/// Freedom to choose a link's frame.
+/// Freedom with which a link's frame can be chosen without a change of the motion.
 #[derive(Clone, Copy, Debug)]
 pub enum Freedom {
-    /// The frame is fixed.
+    /// The frame cannot be changed.
     None,
     /// The frame may be shifted along, and rotated about, coordinate axis `k`.
     Turn {
-        /// The joint's axis.
+        /// Index of the joint's coordinate axis.
         k: usize,
         /// True if the joint's coordinate can take an offset.
         offset: bool,
     },
-    /// The frame is arbitrary.
+    /// The frame may be chosen freely.
     Slide {
-        /// The joint's axis.
+        /// Direction of the sliding axis.
         along: Vector,
     },
 }
@@ -104,7 +104,7 @@ fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
     out
 }
 
-/// Returns the coordinate axis that a vector is parallel to, if there is one.
+/// Returns the index of the coordinate axis to which a vector is parallel, if there is one.
 pub fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
     let k = (0..3).find(|k| !v[*k].is_zero())?;
     let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();

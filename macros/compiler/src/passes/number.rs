@@ -3,12 +3,12 @@
 use crate::expr::{Graph, Mat3, Rotation, Sym3, Vec3};
 use crate::mechanism::{Inertia, Pose};
 
-/// Vector.
+/// Vector of three numbers.
 pub type Vector = [f64; 3];
-/// Matrix by rows.
+/// Matrix of 3×3 numbers, stored by rows.
 pub type Matrix = [[f64; 3]; 3];
 
-/// Relative rounding error of a few operations.
+/// Relative rounding error of a few operations, below which differences are ignored.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Returns a number, or zero if it is the rounding error of terms of magnitude `scale`.
@@ -21,22 +21,22 @@ fn clean_entry(x: f64) -> f64 {
     if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) }
 }
 
-/// Returns the scalar product.
+/// Returns the scalar product of two vectors.
 pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the vector product.
+/// Returns the vector product of two vectors.
 pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Returns the length.
+/// Returns the length of a vector.
 pub fn norm(a: Vector) -> f64 {
     a[0].hypot(a[1]).hypot(a[2])
 }
 
-/// Returns `s a + b`.
+/// Returns the vector `s a + b`.
 pub fn scaled_sum(s: f64, a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| s * a[k] + b[k])
 }
@@ -46,12 +46,12 @@ pub fn axis(k: usize) -> Vector {
     std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
 }
 
-/// Returns column `j`.
+/// Returns column `j` of a matrix.
 pub fn column(m: &Matrix, j: usize) -> Vector {
     [m[0][j], m[1][j], m[2][j]]
 }
 
-/// Returns the product with a vector.
+/// Returns the product of a matrix and a vector.
 pub fn times(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
@@ -61,12 +61,12 @@ pub fn transposed_times(m: &Matrix, v: Vector) -> Vector {
     std::array::from_fn(|j| dot(column(m, j), v))
 }
 
-/// Returns the product.
+/// Returns the product of two matrices.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| dot(a[i], column(b, j))))
 }
 
-/// Returns the transpose.
+/// Returns the transpose of a matrix.
 pub fn transpose(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| column(m, i))
 }
@@ -74,7 +74,7 @@ pub fn transpose(m: &Matrix) -> Matrix {
 /// Identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Returns the rotation about coordinate axis `k`.
+/// Returns the matrix of the rotation by an angle about coordinate axis `k`.
 pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let (sin, cos) = angle.sin_cos();
@@ -84,12 +84,12 @@ pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     m
 }
 
-/// Rounds entries next to 0 and ±1.
+/// Rounds the entries of a rotation matrix that are within rounding errors of 0 or ±1.
 pub fn clean_rotation(m: &Matrix) -> Matrix {
     m.map(|row| row.map(clean_entry))
 }
 
-/// Frame relative to another one.
+/// Numeric frame relative to another frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Axes of the frame, as columns.
@@ -99,15 +99,15 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The identity.
+    /// Frame that coincides with its reference frame.
     pub const IDENTITY: Frame = Frame { rotation: IDENTITY, translation: [0.0; 3] };
 
     /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
     pub fn from_pose(pose: &Pose<'_>) -> Option<Frame> {
         let rotation = clean_rotation(&pose.rotation.matrix().values()?);
         let square = product(&transpose(&rotation), &rotation);
-        let error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
-        if (0..9).any(|k| error(k / 3, k % 3) > 4.0 * ROUNDING) {
+        let orthogonality_error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
+        if (0..9).any(|k| orthogonality_error(k / 3, k % 3) > 4.0 * ROUNDING) {
             return None;
         }
         Some(Frame { rotation, translation: clean_vector(pose.translation.values()?) })
@@ -119,7 +119,7 @@ impl Frame {
         Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::numbers(g, self.translation) }
     }
 
-    /// Returns `other⁻¹ self next`.
+    /// Returns the transformation `other⁻¹ self next`.
     pub fn transform_between(&self, other: &Frame, next: &Frame) -> Frame {
         let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
         let ahead = times(&self.rotation, next.translation);
@@ -131,16 +131,16 @@ impl Frame {
     }
 }
 
-/// Replaces components at rounding level by zero.
+/// Replaces components of a vector that are rounding errors by zero.
 fn clean_vector(v: Vector) -> Vector {
     let scale = norm(v);
     v.map(|c| clean(c, scale))
 }
 
-/// Numeric mass properties.
+/// Mass properties of a link as numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Mass {
-    /// Mass.
+    /// Mass of the link.
     pub mass: f64,
     /// First moment about the origin.
     pub moment: Vector,
@@ -149,7 +149,7 @@ pub struct Mass {
 }
 
 impl Mass {
-    /// Returns mass properties if they are numeric.
+    /// Returns the mass properties as numbers, if all of them are numeric.
     pub fn from_inertia(inertia: &Inertia<'_>) -> Option<Mass> {
         Some(Mass {
             mass: inertia.mass.value()?,
@@ -192,22 +192,25 @@ impl Mass {
     /// Returns the sum with a point mass at `p`.
     pub fn plus_point(&self, mass: f64, p: Vector) -> Mass {
         let square = dot(p, p);
-        let entry = |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
-        let tensor = std::array::from_fn(|i| std::array::from_fn(|j| self.tensor[i][j] + mass * entry(i, j)));
+        let entry_of_point_inertia =
+            |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
+        let tensor = std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.tensor[i][j] + mass * entry_of_point_inertia(i, j))
+        });
         Mass { mass: self.mass + mass, moment: scaled_sum(mass, p, self.moment), tensor }
     }
 
     /// Replaces first moments and products of inertia at rounding level by zero.
     fn cleaned(&self) -> Mass {
         let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let entry = |i: usize, j: usize| match i == j {
+        let cleaned_tensor_entry = |i: usize, j: usize| match i == j {
             true => self.tensor[i][j],
             false => clean(self.tensor[i][j], size),
         };
         Mass {
             mass: self.mass,
             moment: clean_vector(self.moment),
-            tensor: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+            tensor: std::array::from_fn(|i| std::array::from_fn(|j| cleaned_tensor_entry(i, j))),
         }
     }
 }

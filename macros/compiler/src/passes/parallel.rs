@@ -12,8 +12,8 @@ use crate::expr::{Expr, Rotation};
 use crate::kinematics::position_in;
 use crate::mechanism::{Link, Model, Motion};
 
-/// Returns variants in which links on parallel joints are resolved in common axes; none if there are no such
-/// joints.
+/// Returns variants in which links on parallel joints are resolved in common axes; the list is empty if there
+/// are no such joints.
 pub fn in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
     variants.iter().filter_map(with_common_axes).collect()
 }
@@ -26,11 +26,12 @@ const PARALLEL: f64 = 2.5e-13;
 /// Joint about or along a coordinate axis, in a chain of parallel joints.
 #[derive(Clone, Copy)]
 struct Member {
-    /// Index of the coordinate axis.
+    /// Index of the coordinate axis that is common to the chain.
     axis: usize,
-    /// First link of the chain.
+    /// Index of the first link of the chain.
     first: usize,
-    /// Cosine of the angle to the parent's axis, plus or minus one, if the parent belongs to the chain.
+    /// Cosine of the angle to the parent's axis, plus or minus one; `None` if the parent does not belong to
+    /// the chain.
     along: Option<f64>,
 }
 
@@ -72,7 +73,8 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
     Some(variant)
 }
 
-/// Returns for each link its place in a chain of parallel joints, at least two of which are revolute.
+/// Returns for each link its membership in a chain of parallel joints, at least two of which are revolute;
+/// `None` for other links.
 fn members(model: &Model<'_>) -> Vec<Option<Member>> {
     let mut members: Vec<Option<Member>> = Vec::with_capacity(model.links.len());
     let mut turns = vec![0; model.links.len()];

@@ -12,10 +12,10 @@ use super::number::{Frame, Mass};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
-/// Options of the regrouping.
+/// Options of the pass that regroups mass properties towards the base.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Regroup {
-    /// Moment of inertia that becomes zero.
+    /// Moment of inertia that the regrouping makes zero.
     pub gauge: Gauge,
     /// Also moves mass to a child's origin, where that removes a component of the link's first moment.
     pub to_children: bool,

@@ -1,4 +1,4 @@
-//! Shifts of link frames along revolute axes for symbolic placements. As with the frames of Denavit and
+//! Shifting of link frames along revolute axes for symbolic placements. As with the frames of Denavit and
 //! Hartenberg (1955), two lengths along one axis become one. Mass properties in a frame that is shifted by a
 //! parameter cost operations, but fewer than the shift saves.
 
@@ -8,7 +8,7 @@ use super::motions::coordinate_axis;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
 
-/// Shifts the frames, parents before their children.
+/// Shifts the frames of the links along their joint axes, parents before their children.
 pub fn slide_frames(model: &mut Model<'_>) {
     let g = model.graph;
     let mut all = vec![Pose::identity(g); model.links.len()];
@@ -27,7 +27,7 @@ pub fn slide_frames(model: &mut Model<'_>) {
     move_contents(model, &all);
 }
 
-/// Returns the shift of link `k` that saves most, if one saves anything.
+/// Returns the shift of link `k` that saves most operations, if a shift saves any.
 fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let link = &model.links[k];
     let Motion::Turn { axis, .. } = &link.motion else { return None };
@@ -42,7 +42,7 @@ fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
         return None;
     }
     let along = link.placement.rotation.to_parent(Vec3::axis(model.graph, a));
-    let cost = |s: Expr<'g>| {
+    let cost_of_slide = |s: Expr<'g>| {
         let shift = Vec3::axis(model.graph, a) * s;
         let lengths = children.iter().map(|c| nonzero(c.placement.translation - shift)).sum::<usize>();
         // The position of a joint on the ground costs nothing.
@@ -52,10 +52,10 @@ fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
             .map(|i| usize::from(!(link.inertia.tensor.entry(a, i) - h[i] * s).is_zero()));
         LENGTH * lengths as f64 + PRODUCT * products.iter().sum::<usize>() as f64
     };
-    let mut best = (model.graph.zero(), cost(model.graph.zero()));
+    let mut best = (model.graph.zero(), cost_of_slide(model.graph.zero()));
     let ends = children.iter().map(|c| c.placement.translation[a]);
     for s in ends.chain([-link.placement.rotation.to_child(own)[a]]) {
-        let cost = cost(s);
+        let cost = cost_of_slide(s);
         if cost < best.1 {
             best = (s, cost);
         }

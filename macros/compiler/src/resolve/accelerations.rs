@@ -76,7 +76,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Vec<Expr<'g>>> {
         let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
-        let has = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
+        let depends_on_quantity = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
         let is_state = |k: &usize| {
             self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
         };
@@ -89,13 +89,14 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        if has(|q| matches!(q, Quantity::Input(_))) {
+        if depends_on_quantity(|q| matches!(q, Quantity::Input(_))) {
             cx.error(place.clone(), "this depends on inputs, whose rates are not known")
                 .help("a `State` that follows an input with a lag has a rate");
             return None;
         }
-        if has(|q| matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_)))
-        {
+        if depends_on_quantity(|q| {
+            matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_))
+        }) {
             cx.error(place.clone(), "this depends on accelerations or forces, whose rates are not known")
                 .help("`rate` applies to expressions of coordinates, velocities and time");
             return None;
@@ -112,11 +113,11 @@ impl<'g> Scope<'_, 'g> {
         }
         let kinematics = &self.kinematics;
         let space = Space { graph: self.graph, charts: &kinematics.charts, speeds: None };
-        let rate = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
+        let acceleration_of_value = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
             let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
             terms.fold(time_derivative(space, *value), |sum, term| sum + term)
         };
-        Some(values.iter().zip(gradients).map(rate).collect())
+        Some(values.iter().zip(gradients).map(acceleration_of_value).collect())
     }
 
     /// Whether the argument of `rate` is an expression of moving quantities, or the name of a definition,

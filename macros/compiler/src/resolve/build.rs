@@ -123,7 +123,7 @@ fn build<'g>(
     cx.is_empty().then_some(builder.model)
 }
 
-/// Returns a model without contents.
+/// Returns a model of a mechanism without bodies.
 fn empty_model<'g>(
     graph: &'g Graph,
     description: &Description,
@@ -256,8 +256,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Reports unused parameters, which are most likely typing errors. A leading underscore marks an intended
-    /// one.
+    /// Reports unused parameters, which are most likely typing errors. A leading underscore marks a parameter
+    /// that is unused intentionally.
     fn check_unused(&self, cx: &mut Diagnostics) {
         if !cx.is_empty() {
             return;
@@ -287,7 +287,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// Reads gravity, a vector in ground axes.
+/// Reads gravity, which is a vector in ground axes.
 fn read_gravity<'g>(
     e: &crate::syntax::Expr,
     scope: &Scope<'_, 'g>,

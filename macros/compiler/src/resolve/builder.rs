@@ -1,4 +1,4 @@
-//! The mechanism under construction, with queries about its elements.
+//! Mechanism under construction, with queries about its elements.
 
 use super::joint::full_name;
 use super::range::ValueRange;
@@ -14,9 +14,9 @@ use std::collections::BTreeMap;
 
 /// Coordinates of a joint, after numbering.
 pub struct JointCoordinates {
-    /// First index in `q`.
+    /// Index of the joint's first coordinate in `q`.
     pub q: InQ,
-    /// First index in `v`.
+    /// Index of the joint's first velocity in `v`.
     pub v: InV,
     /// Coordinates that force elements can act on: name, coordinate, and whether it is an angle.
     pub plain: Vec<(String, Coordinate, bool)>,
@@ -33,11 +33,11 @@ pub struct ClosedFormLoop {
 /// Index into the list of bodies and jointed particles.
 pub type BodyIndex = usize;
 
-/// The model under construction.
+/// Builder of the model, which resolves all elements of a description.
 pub struct Builder<'a, 'g> {
     /// Scope for the resolution of names.
     pub scope: Scope<'a, 'g>,
-    /// Model built so far.
+    /// Model that has been built so far.
     pub model: Model<'g>,
     /// Description written by the user.
     pub description: &'a Description,
@@ -49,14 +49,14 @@ pub struct Builder<'a, 'g> {
     pub placeable: Vec<String>,
     /// Mass, centre of mass and central inertia by body.
     pub masses: Vec<Option<MassProperties<'g>>>,
-    /// Coordinates by joint.
+    /// Coordinates of each joint.
     pub coordinates: Vec<JointCoordinates>,
     /// Loops that are solved in closed form.
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints to release, and the constraints that the mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
-    /// Frame of each tree joint on its parent before the release, by joint. Bodies placed by `at` and `frame`
-    /// have their own frame here.
+    /// Frame of each tree joint on its parent before the release, by index of the joint. Bodies placed by
+    /// `at` and `frame` have their own frame in this map.
     pub joint_frames: BTreeMap<usize, Placed<'g>>,
     /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
     /// dissipation.
@@ -72,7 +72,7 @@ pub struct Builder<'a, 'g> {
     pub partials: Partials<'g>,
     /// Index of the group of constraints that is being added.
     pub group: usize,
-    /// Errors that depend on the motion; they are reported together with errors of units.
+    /// Errors that depend on the motion, which are reported together with errors of units.
     pub mobility: Diagnostics,
 }
 
@@ -114,8 +114,8 @@ impl<'g> Builder<'_, 'g> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
                 let range = ValueRange::of_scalar(&self.description.scalar);
-                let place = || format!("the position of a joint on `{}`", end.body.text);
-                v.0.iter().for_each(|c| self.scope.require(Rule::Length, place, &[*c]));
+                let describe_joint_position = || format!("the position of a joint on `{}`", end.body.text);
+                v.0.iter().for_each(|c| self.scope.require(Rule::Length, describe_joint_position, &[*c]));
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
             }),
             None => Some(Vec3::zero(self.scope.graph)),
@@ -160,7 +160,7 @@ impl<'g> Builder<'_, 'g> {
         LinkId(self.model.links.len() - 1)
     }
 
-    /// Registers a placement under its name.
+    /// Registers the placement of an element under its name.
     pub fn register(&mut self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
         self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
     }

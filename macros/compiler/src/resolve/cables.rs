@@ -1,4 +1,4 @@
-//! Cables around spheres and cylinders.
+//! Cables that wrap around spheres and cylinders.
 
 use super::call::{Call, flatten};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
@@ -104,8 +104,8 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let frame = self.place(base, cx);
-        let constant = || Context::new(Allowed::Constant, None);
-        let value = self.in_context(constant(), |s| s.scalar(radius, cx))?;
+        let constant_context = || Context::new(Allowed::Constant, None);
+        let value = self.in_context(constant_context(), |s| s.scalar(radius, cx))?;
         if let Some(n) = value.value().filter(|n| *n <= 0.0) {
             cx.error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
                 .help("the direction of the axis selects the side of the cable");
@@ -113,7 +113,7 @@ impl<'g> Scope<'_, 'g> {
         }
         self.require(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);
         let axis = match axis {
-            Some(axis) => Some(self.in_context(constant(), |s| s.unit_vector(axis, false, cx))?),
+            Some(axis) => Some(self.in_context(constant_context(), |s| s.unit_vector(axis, false, cx))?),
             None => None,
         };
         Some((frame?, value, axis))

@@ -7,11 +7,11 @@ use crate::syntax::{self, BinaryOp, ExprKind};
 /// A call of a function of the language.
 #[derive(Clone, Copy)]
 pub struct Call<'a> {
-    /// Function that is called.
+    /// Function of the language that is called.
     pub id: FunctionId,
-    /// Source span of the name.
+    /// Source span of the function's name.
     pub place: &'a Place,
-    /// Arguments as written.
+    /// Arguments of the call as written.
     pub arguments: &'a [syntax::Expr],
 }
 
@@ -21,7 +21,7 @@ impl<'a> Call<'a> {
         self.id.name()
     }
 
-    /// Reports wrong arguments.
+    /// Reports that the arguments of the call are wrong.
     pub fn reject<T>(&self, cx: &mut Diagnostics) -> Option<T> {
         let row = self.id.row();
         cx.error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes)).help(row.usage);

@@ -13,9 +13,9 @@ use crate::syntax;
 /// Motion of a body relative to a frame, in the axes of the body's link.
 struct Relative<'g> {
     link: Option<LinkId>,
-    /// Velocity of the body's origin.
+    /// Velocity of the origin of the body.
     v: Vec3<'g>,
-    /// Angular velocity.
+    /// Angular velocity of the body.
     w: Vec3<'g>,
     /// Acceleration of the body's origin and angular acceleration, if requested.
     rates: Option<[Vec3<'g>; 2]>,
@@ -106,15 +106,20 @@ impl<'g> Scope<'_, 'g> {
         let (link, zero) = (place.link, Vec3::zero(self.graph));
         // Any point fixed in the frame.
         let from = Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
-        let here = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
+        let resolve_at_link = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
             let a = kinematics.acceleration_in(&place, &from, frame_link, self.graph);
-            [here(&a), here(&kinematics.angular_acceleration_in(link, frame_link, frame_link, self.graph))]
+            [
+                resolve_at_link(&a),
+                resolve_at_link(
+                    &kinematics.angular_acceleration_in(link, frame_link, frame_link, self.graph),
+                ),
+            ]
         });
         Some(Relative {
             link,
-            v: here(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
-            w: here(&kinematics.angular_velocity_in(link, frame_link, self.graph)),
+            v: resolve_at_link(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
+            w: resolve_at_link(&kinematics.angular_velocity_in(link, frame_link, self.graph)),
             rates,
         })
     }
@@ -172,7 +177,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Whether a vector is zero for all values of its symbols.
+/// Returns whether a vector is zero for all values of its symbols.
 fn vanishes(v: Vec3<'_>) -> bool {
     v.0.iter().all(|c| always(*c, 0.0))
 }

@@ -1,4 +1,4 @@
-//! Joints as chains of links, one link per elementary motion.
+//! Conversion of joints to chains of links, one link per elementary motion.
 
 use super::builder::Builder;
 use super::elementary::Elementary;
@@ -17,14 +17,14 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Resolves the arguments of a joint only to report their errors.
+    /// Resolves the arguments of a joint, only to report their errors.
     pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
         let _ = self.scope.motions(joint, cx);
         let _ = self.endpoint(&joint.parent, cx);
         let _ = self.endpoint(&joint.child, cx);
     }
 
-    /// Places the child of a joint.
+    /// Places the child body of a joint.
     pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions(joint, cx);
@@ -81,7 +81,7 @@ impl<'g> Builder<'_, 'g> {
         (link, pose)
     }
 
-    /// Adds damping, friction and motor of a joint with one degree of freedom.
+    /// Adds damping, friction and the motor of a joint with one degree of freedom to the model.
     fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
         let [(name, coordinate, _)] = self.coordinates[j].plain.as_slice() else {
             return;
@@ -90,8 +90,10 @@ impl<'g> Builder<'_, 'g> {
         let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
         let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
         for (value, what) in [(damping, "damping"), (friction, "friction")] {
-            let quantity = || format!("the {what} of `{}`", joint.name.text);
-            value.iter().for_each(|value| self.scope.require(Rule::NotNegative, quantity, &[*value]));
+            let describe_quantity = || format!("the {what} of `{}`", joint.name.text);
+            value
+                .iter()
+                .for_each(|value| self.scope.require(Rule::NotNegative, describe_quantity, &[*value]));
         }
         self.model.dashpots.extend(damping.map(|damping| Dashpot { on: coordinate, damping }));
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on: coordinate, friction }));
@@ -100,7 +102,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Whether every body has been placed.
+    /// Returns whether every body has been placed.
     pub fn is_placed(&self) -> bool {
         self.places.iter().all(Option::is_some)
     }

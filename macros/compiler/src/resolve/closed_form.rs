@@ -15,13 +15,13 @@ use crate::kinematics::{change_axes, perpendicular};
 use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
-/// A side of a loop with its joint coordinate at zero, in the axes of the first side's joint.
+/// Side of a loop with its joint coordinate at zero, in the axes of the joint of the first side.
 struct Side<'g> {
     /// Origin of the joint, relative to that of the first joint.
     base: Vec3<'g>,
     /// Closing point of the loop, relative to the joint's origin.
     point: Vec3<'g>,
-    /// Sliding direction; `None` for a Pin.
+    /// Sliding direction of the joint; `None` for a Pin.
     slide: Option<Vec3<'g>>,
 }
 
@@ -42,17 +42,17 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
                 .help("a joint closes a loop if its child has an earlier joint");
             continue;
         }
-        let holder = |end: &Endpoint| {
-            let holds = |(k, other): &(usize, &Joint)| {
+        let joint_holding_body = |end: &Endpoint| {
+            let is_holding_joint = |(k, other): &(usize, &Joint)| {
                 !closing[*k] && other.child.body.text == end.body.text && end.body.text != GROUND
             };
-            d.joints.iter().enumerate().find(holds).map(|(k, _)| k)
+            d.joints.iter().enumerate().find(is_holding_joint).map(|(k, _)| k)
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
         let can_be_solved = |k: &usize| {
             d.joints[*k].kind.rotates().is_some() && d.joints[*k].mimic.is_none() && !is_in_other_loop(*k)
         };
-        let sides = [&joint.parent, &joint.child].map(|end| holder(end).filter(can_be_solved));
+        let sides = [&joint.parent, &joint.child].map(|end| joint_holding_body(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         if let [Some(a), Some(b)] = sides
             && joint.kind == JointKind::Pin
@@ -68,14 +68,15 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Records the joints that are solved for, with their axes.
+    /// Records the joints for which loops are solved in closed form, with their axes.
     pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
-        let side = |j: &usize| {
+        let solved_side_of_joint = |j: &usize| {
             let joint = &self.description.joints[*j];
             let (_, axis) = self.joint_frame(*j, cx)?;
             Some(SolvedSide { joint: *j, turns: joint.kind == JointKind::Pin, axis })
         };
-        self.model.solved = self.solved_loops.iter().flat_map(|e| e.sides.iter()).map_while(side).collect();
+        self.model.solved =
+            self.solved_loops.iter().flat_map(|e| e.sides.iter()).map_while(solved_side_of_joint).collect();
         Solved(())
     }
 
@@ -99,20 +100,20 @@ impl<'g> Builder<'_, 'g> {
         let (second_frame, second_axis) = self.joint_frame(second, cx)?;
         let normal =
             self.in_frame(&frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
-        let vanishes = |e: Expr<'g>| always(e, 0.0);
+        let is_always_zero = |e: Expr<'g>| always(e, 0.0);
         let in_plane = match b.slide {
-            None => normal.cross(axis).0.iter().all(|e| vanishes(*e)),
-            Some(slide) => vanishes(slide.dot(axis)),
+            None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
+            Some(slide) => is_always_zero(slide.dot(axis)),
         };
-        if !in_plane || !vanishes((b.base + b.point - a.point).dot(axis)) {
+        if !in_plane || !is_always_zero((b.base + b.point - a.point).dot(axis)) {
             cx.error(place.clone(), "this loop does not lie in one plane").help(CLOSED_FORM_HELP);
             return None;
         }
         let [(_, e1), (_, e2)] = perpendicular(axis);
-        let planar = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
-        let closing_point = closing_point(&a, &b, branch, &planar);
+        let in_plane_components = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
+        let closing_point = closing_point(&a, &b, branch, &in_plane_components);
         if j == first {
-            let angle = angle_between(planar(a.point), closing_point);
+            let angle = angle_between(in_plane_components(a.point), closing_point);
             return Some(self.rotation_pose(axis, angle));
         }
         let reached = e1 * closing_point[0] + e2 * closing_point[1] - b.base;
@@ -124,7 +125,10 @@ impl<'g> Builder<'_, 'g> {
             }
             None => {
                 let sense = normal.dot(axis);
-                self.rotation_pose(second_axis, angle_between(planar(b.point), planar(reached)) * sense)
+                self.rotation_pose(
+                    second_axis,
+                    angle_between(in_plane_components(b.point), in_plane_components(reached)) * sense,
+                )
             }
         })
     }
@@ -160,39 +164,41 @@ impl<'g> Builder<'_, 'g> {
         Some(Side { base, point: in_first_frame(point), slide })
     }
 
-    /// Transforms a vector from the axes of a link to those of a frame. Released joints count as closed: the
-    /// solution is that of the original mechanism.
+    /// Transforms a vector from the axes of a link to those of a frame. Released joints are treated as
+    /// closed: the solution is that of the original mechanism.
     fn in_frame(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.kinematics.joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
         let first_released = self.model.nq() - RELEASED * joints.len();
-        let open = |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(k) if k >= first_released);
-        let closed = replace_all(&v.0, &|s| open(s).then(|| self.scope.graph.zero()));
+        let is_released_coordinate =
+            |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(k) if k >= first_released);
+        let closed = replace_all(&v.0, &|s| is_released_coordinate(s).then(|| self.scope.graph.zero()));
         closed.try_into().map_or(v, Vec3)
     }
 }
 
-/// Returns the point in the plane at which both sides meet, relative to the origin of the first joint.
+/// Returns the point in the plane of the loop at which both sides meet, relative to the origin of the first
+/// joint.
 fn closing_point<'g>(
     a: &Side<'g>,
     b: &Side<'g>,
     branch: Expr<'g>,
     planar: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
 ) -> [Expr<'g>; 2] {
-    let square = |v: [Expr<'g>; 2]| v[0].square() + v[1].square();
-    let reach = square(planar(a.point));
+    let squared_norm = |v: [Expr<'g>; 2]| v[0].square() + v[1].square();
+    let reach = squared_norm(planar(a.point));
     if let Some(slide) = b.slide {
         // The line w + s x, |w + s x| = |a|.
         let (w, s) = (planar(b.base + b.point), planar(slide));
         let along = w[0] * s[0] + w[1] * s[1];
-        let x = branch * (along.square() - square(w) + reach).sqrt() - along;
+        let x = branch * (along.square() - squared_norm(w) + reach).sqrt() - along;
         return [w[0] + s[0] * x, w[1] + s[1] * x];
     }
     // `part` is the fraction along the line between the origins, `height` the offset perpendicular to it.
     let d = planar(b.base);
-    let distance = square(d);
-    let part = (distance + reach - square(planar(b.point))) * 0.5 / distance;
+    let distance = squared_norm(d);
+    let part = (distance + reach - squared_norm(planar(b.point))) * 0.5 / distance;
     let height = branch * (reach / distance - part.square()).sqrt();
     [d[0] * part - d[1] * height, d[1] * part + d[0] * height]
 }

@@ -9,7 +9,7 @@ use crate::kinematics::jet::{Jet, Moving, Relative};
 use crate::kinematics::{AXES, change_axes, perpendicular, time_derivative, unit};
 use crate::mechanism::{Constraint, Measure, Transmission};
 
-/// The two ends of a joint that closes a loop, with their motions.
+/// Joint that closes a loop: its two ends with their motions.
 struct ClosingJoint<'g> {
     j: usize,
     parent: Placed<'g>,
@@ -129,7 +129,7 @@ impl<'g> Builder<'_, 'g> {
         let ClosingJoint { parent, child, on_parent, on_child, .. } = ends;
         let parent_direction = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
         let child_direction = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
-        let axis = |k| Vec3::axis(self.scope.graph, k);
+        let coordinate_axis = |k| Vec3::axis(self.scope.graph, k);
         // Directions of the parent and of the child that remain orthogonal, or at a constant angle.
         let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
             // Sines of the angles about three axes.
@@ -138,19 +138,19 @@ impl<'g> Builder<'_, 'g> {
                     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
                     (
                         format!("w{}", AXES[k]),
-                        parent_direction(axis(m)),
-                        child_direction(axis(l)),
+                        parent_direction(coordinate_axis(m)),
+                        child_direction(coordinate_axis(l)),
                         self.scope.graph.zero(),
                     )
                 })
                 .collect(),
-            [axis] => perpendicular(*axis)
+            [coordinate_axis] => perpendicular(*coordinate_axis)
                 .into_iter()
                 .map(|(word, e)| {
                     (
                         format!("tilt_{word}"),
                         parent_direction(e),
-                        child_direction(*axis),
+                        child_direction(*coordinate_axis),
                         self.scope.graph.zero(),
                     )
                 })

@@ -1,6 +1,6 @@
-//! Constraints: joints that close loops, expressions that remain zero, rolling and slipping pairs. Each
-//! becomes scalar rows with their rates and the time derivatives of the rates. Motions are relative to the
-//! nearest link that carries both sides, so that their common motion cancels.
+//! Conversion of constraints to scalar rows: joints that close loops, expressions that remain zero, rolling
+//! and slipping pairs. Each row has its rate and the time derivative of the rate. Motions are relative to the
+//! nearest link that carries both ends, so that their common motion cancels.
 
 use super::builder::Builder;
 use super::closed_form::Solved;
@@ -121,7 +121,7 @@ impl<'g> Builder<'_, 'g> {
         Some(ConstraintRows { rows, redundant, contact_point: None })
     }
 
-    /// Resolves a constraint only to report its errors.
+    /// Resolves a constraint, only to report its errors.
     fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {
@@ -148,7 +148,7 @@ impl<'g> Builder<'_, 'g> {
             let place = &constraint.value.place;
             let gradient = velocity_gradient(rate);
             let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
-            let contains = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+            let depends_on_quantity = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
                 symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
             };
             if gradient.is_empty() {
@@ -156,12 +156,12 @@ impl<'g> Builder<'_, 'g> {
                     .help("a constraint on coordinates is a `Holonomic` one");
                 return None;
             }
-            if contains(&[rate], |q| matches!(q, Quantity::Input(_))) {
+            if depends_on_quantity(&[rate], |q| matches!(q, Quantity::Input(_))) {
                 cx.error(place.clone(), "a constraint contains no input")
                     .help("a prescribed motion is an expression of time `t`");
                 return None;
             }
-            let linear = match contains(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+            let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
                 true => linear_form(rate, &gradient),
                 false => Some(rate),
             };
@@ -185,8 +185,8 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Vec<(String, Expr<'g>)> {
         let name = &constraint.name.text;
-        let context = || Context::new(allowed, Some((None, Pose::identity(self.scope.graph))));
-        let turns = |e: &syntax::Expr| match &e.kind {
+        let context_of_difference = || Context::new(allowed, Some((None, Pose::identity(self.scope.graph))));
+        let is_angle_expression = |e: &syntax::Expr| match &e.kind {
             ExprKind::Call(word, _) => word.id == Some(Callable::Function(FunctionId::Angle)),
             _ => self.is_angle(e),
         };
@@ -194,17 +194,17 @@ impl<'g> Builder<'_, 'g> {
         for (side, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
             if let (Some(side), Some(other)) = (side, other)
                 && allowed == Allowed::Placement
-                && turns(side)
+                && is_angle_expression(side)
                 && !corrections::check_angle(other, cx)
             {
                 return Vec::new();
             }
         }
-        let left = self.scope.in_context(context(), |scope| scope.value(&constraint.value, cx));
+        let left = self.scope.in_context(context_of_difference(), |scope| scope.value(&constraint.value, cx));
         if left.is_none() {
             // Report the errors of the other side as well.
             if let Some(other) = &constraint.other {
-                let _ = self.scope.in_context(context(), |scope| scope.value(other, cx));
+                let _ = self.scope.in_context(context_of_difference(), |scope| scope.value(other, cx));
             }
             return Vec::new();
         }
@@ -212,16 +212,20 @@ impl<'g> Builder<'_, 'g> {
         let mut sides = vec![&constraint.value];
         sides.extend(&constraint.other);
         if !vector {
-            let values: Vec<Option<Expr<'g>>> =
-                sides.iter().map(|e| self.scope.in_context(context(), |scope| scope.scalar(e, cx))).collect();
+            let values: Vec<Option<Expr<'g>>> = sides
+                .iter()
+                .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.scalar(e, cx)))
+                .collect();
             return match values.as_slice() {
                 [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
                 [Some(left)] => vec![(name.clone(), *left)],
                 _ => Vec::new(),
             };
         }
-        let terms: Vec<_> =
-            sides.iter().map(|e| self.scope.in_context(context(), |scope| scope.terms(e, cx))).collect();
+        let terms: Vec<_> = sides
+            .iter()
+            .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.terms(e, cx)))
+            .collect();
         let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
         let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
@@ -231,12 +235,13 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// Returns the components of a vector without those that vanish identically, such as the component normal to
-/// the plane of a planar mechanism, and the names of these. If all vanish, all are returned.
+/// Separates the components of a vector that vanish identically, such as the component normal to the plane of
+/// a planar mechanism. Returns the other components and the names of the vanishing ones; if all vanish, all
+/// are returned.
 fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
     let is_vanishing = |e: &Expr<'g>| {
-        let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
-        symbols_in(&[*e]).into_iter().all(|s| constant(Quantity::from_symbol(s))) && always(*e, 0.0)
+        let is_parameter = |q: Quantity| matches!(q, Quantity::Parameter(_));
+        symbols_in(&[*e]).into_iter().all(|s| is_parameter(Quantity::from_symbol(s))) && always(*e, 0.0)
     };
     let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
     if remaining.is_empty() {
@@ -249,7 +254,7 @@ fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g
 /// do not depend on them. Returns `None` if they depend on velocities.
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
     // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
-    let evaluate = |e: Expr<'g>, pattern: u64| {
+    let evaluate_at_pattern = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
             Quantity::Velocity(_) => sample(s, pattern),
@@ -257,22 +262,22 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
         })
     };
     let is_constant = |e: Expr<'g>| {
-        let first = evaluate(e, 0);
+        let first = evaluate_at_pattern(e, 0);
         let is_close = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
         first.is_finite()
-            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate(e, *p)))
+            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate_at_pattern(e, *p)))
     };
-    let substitute = |e: Expr<'g>, value: f64| {
+    let substitute_velocities = |e: Expr<'g>, value: f64| {
         replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| e.num(value)))
     };
-    let remainder = substitute(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate(remainder, 0).is_finite() {
+    let remainder = substitute_velocities(rate, 0.0);
+    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate_at_pattern(remainder, 0).is_finite() {
         return None;
     }
     let g = rate.graph();
     Some(
-        gradient
-            .iter()
-            .fold(remainder, |sum, (k, c)| sum + substitute(*c, 1.0) * Quantity::Velocity(*k).expr(g)),
+        gradient.iter().fold(remainder, |sum, (k, c)| {
+            sum + substitute_velocities(*c, 1.0) * Quantity::Velocity(*k).expr(g)
+        }),
     )
 }

@@ -62,10 +62,10 @@ impl Scope<'_, '_> {
     }
 }
 
-/// Syntax of a vector.
+/// Help text on how to write a vector.
 pub const VECTOR_SYNTAX: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
 
-/// Syntax of a matrix.
+/// Help text on how to write a matrix.
 pub const MATRIX_SYNTAX: &str =
     "a matrix is written by its rows: `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`";
 
@@ -84,8 +84,8 @@ pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
     }
 }
 
-/// Reports a plain number beyond a full revolution as an angle. Returns false then. Numbers of files are
-/// exempt, because they are not written by hand.
+/// Checks an angle, and returns false after it has reported a plain number beyond a full revolution. Numbers
+/// of files are exempt, because they are not written by hand.
 pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
     let Some(n) = e.literal().filter(|n| n.abs() > FULL_TURN && e.place.file.is_none()) else { return true };
     cx.error(e.place.clone(), format!("an angle of {n} rad is more than a full turn")).help(format!(
@@ -124,8 +124,8 @@ pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
         cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX_SYNTAX);
         return;
     };
-    let is_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
-    let what = if items.iter().any(is_row) { "rows" } else { "numbers" };
+    let is_matrix_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
+    let what = if items.iter().any(is_matrix_row) { "rows" } else { "numbers" };
     let count = if items.len() == 3 { "three".to_string() } else { items.len().to_string() };
     let error = cx.error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
     match (what, items.as_slice()) {

@@ -76,11 +76,11 @@ impl<'g> Scope<'_, 'g> {
                 .help("its tangent is `unit(…)` of its direction; curvature and torsion are zero");
             return None;
         }
-        let unit = |v: Vec3<'g>| {
+        let normalised_vector = |v: Vec3<'g>| {
             let length = v.norm();
             v.map(|c| c / length)
         };
-        let (t, b) = (unit(first), unit(binormal));
+        let (t, b) = (normalised_vector(first), normalised_vector(binormal));
         let axes = [t, b.cross(t), b].map(|axis| {
             let here = self.kinematics.resolve(&vec![(link, axis)], start.link, Vec3::zero(self.graph));
             start.pose.rotation.to_child(here)
@@ -135,13 +135,13 @@ impl<'g> Scope<'_, 'g> {
         let terms = in_links(self.vector(curve, cx)?);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
-        let turns = |link: Option<LinkId>| {
+        let link_rotates_with_parameter = |link: Option<LinkId>| {
             let axes =
                 (0..3).map(|k| kinematics.resolve(&vec![(link, Vec3::axis(self.graph, k))], None, zero));
             axes.into_iter().any(|axis| symbols_in(&axis.0).contains(&symbol))
         };
         let link = terms.first().and_then(|(link, _)| *link);
-        let link = if turns(link) { None } else { link };
+        let link = if link_rotates_with_parameter(link) { None } else { link };
         let position = kinematics.resolve(&terms, link, zero);
         let mut derivative = Derivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
@@ -156,7 +156,7 @@ impl<'g> Scope<'_, 'g> {
         Some(([first, second, next(second)], link))
     }
 
-    /// Returns a coordinate by its name.
+    /// Returns the coordinate with this name.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let name = e.to_source();
         let kinematics = &self.kinematics;
@@ -201,9 +201,11 @@ impl<'g> Scope<'_, 'g> {
         self.records.borrow_mut().displaced.pop();
         self.records.borrow_mut().definition_values.clear();
         let value = value?;
-        let back = |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
-        let gradient =
-            Vec3(moves.map(|s| back(Derivative::with_respect_to(s, self.graph).differentiate(value))));
+        let set_coordinates_to_zero =
+            |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
+        let gradient = Vec3(moves.map(|s| {
+            set_coordinates_to_zero(Derivative::with_respect_to(s, self.graph).differentiate(value))
+        }));
         if gradient.is_zero() {
             cx.error(field.place.clone(), format!("this does not depend on the position of `{name}`"))
                 .help(format!("a field is an expression of `r({name} / ground)`"));

@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 pub type Anchor<'g> = (Option<usize>, Pose<'g>);
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the drawing if it is requested.
+    /// Adds the pieces of the drawing to the model if the drawing is requested.
     pub fn add_drawing(&mut self) {
         if !self.description.drawing {
             return;
@@ -91,25 +91,33 @@ impl<'g> Builder<'_, 'g> {
         for Visual { on, shape, mesh } in &self.description.visuals {
             let Some((frame, pose)) = self.joint_end(on) else { continue };
             let z = pose.rotation.to_parent(Vec3::axis(g, 2));
-            let number = |x: f64| g.num(x);
-            let round = |numbers: &[f64]| {
+            let number_expression = |x: f64| g.num(x);
+            let entries_of_round_solid = |numbers: &[f64]| {
                 let axis = entries(&[pose.translation, z]);
                 axis.into_iter().chain(numbers.iter().map(|x| g.num(*x))).collect()
             };
             let along_axes = |lengths: [f64; 3]| {
                 let axes = rows(&pose.rotation.matrix());
-                entries(&[pose.translation]).into_iter().chain(axes).chain(lengths.map(number)).collect()
+                entries(&[pose.translation])
+                    .into_iter()
+                    .chain(axes)
+                    .chain(lengths.map(number_expression))
+                    .collect()
             };
             let (kind, numbers) = match (shape, mesh) {
                 (Shape::Sphere(radius), _) => {
                     let mut numbers = entries(&[pose.translation]);
-                    numbers.push(number(*radius));
+                    numbers.push(number_expression(*radius));
                     (PieceKind::Sphere, numbers)
                 }
                 (Shape::Cuboid(edges), _) => (PieceKind::Cuboid, along_axes(*edges)),
                 (Shape::Ellipsoid(halves), _) => (PieceKind::Ellipsoid, along_axes(*halves)),
-                (Shape::Cylinder(radius, height), _) => (PieceKind::Cylinder, round(&[*radius, *height])),
-                (Shape::Capsule(radius, height), _) => (PieceKind::Capsule, round(&[*radius, *height])),
+                (Shape::Cylinder(radius, height), _) => {
+                    (PieceKind::Cylinder, entries_of_round_solid(&[*radius, *height]))
+                }
+                (Shape::Capsule(radius, height), _) => {
+                    (PieceKind::Capsule, entries_of_round_solid(&[*radius, *height]))
+                }
                 (Shape::Mesh, Some(mesh)) => (PieceKind::Mesh(mesh.path.clone()), along_axes(mesh.scale)),
                 (Shape::Mesh, None) => continue,
             };
@@ -257,13 +265,13 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the symbol of a joint, with its axis on the parent.
     fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
         let (kind, axes) = drawing_symbol(joint)?;
-        let axis = |axes: &[syntax::Expr]| {
+        let unit_axis = |axes: &[syntax::Expr]| {
             self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
         };
-        Some((kind, axes.map_or(Some(None), |axes| axis(axes).map(Some))?))
+        Some((kind, axes.map_or(Some(None), |axes| unit_axis(axes).map(Some))?))
     }
 
-    /// Adds springs, dashpots and inputs.
+    /// Adds the pieces of springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.description.actions {
             let row = action.kind.row();

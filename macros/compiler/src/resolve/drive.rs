@@ -69,10 +69,10 @@ impl<'g> Builder<'_, 'g> {
             (DriveOn::Sum(_), _) => self.sum_stretch(terms),
             (on, _) => self.spatial_stretch(on, cx)?,
         };
-        let number = |value| Expr::number(value, place);
+        let number_expression = |value| Expr::number(value, place);
         match drive.law {
             DriveLaw::Spring { stiffness, free } => {
-                spring_law(self, stretch, &Law::Linear(&number(stiffness)), g.num(free), cx)
+                spring_law(self, stretch, &Law::Linear(&number_expression(stiffness)), g.num(free), cx)
             }
             DriveLaw::Slack { stiffness, range: [low, high] } => {
                 let short = (stretch.value - g.num(low)).extreme(Extreme::Min, g.zero());
@@ -80,13 +80,17 @@ impl<'g> Builder<'_, 'g> {
                 Some(Forces::of_potentials([g.num(stiffness) * 0.5 * (short.square() + long.square())]))
             }
             DriveLaw::Damper(damping) => {
-                let damping = self.scope.scalar(&number(damping), cx)?;
+                let damping = self.scope.scalar(&number_expression(damping), cx)?;
                 Some(Forces::resisting(stretch.rate, damping * stretch.rate))
             }
-            DriveLaw::Friction(force) => {
-                dry_friction(self, stretch.rate, [Some(&number(force)), None, None, None, None], place, cx)
-            }
-            DriveLaw::Inerter(value) => inertance(self, stretch.rate, &number(value), cx),
+            DriveLaw::Friction(force) => dry_friction(
+                self,
+                stretch.rate,
+                [Some(&number_expression(force)), None, None, None, None],
+                place,
+                cx,
+            ),
+            DriveLaw::Inerter(value) => inertance(self, stretch.rate, &number_expression(value), cx),
             DriveLaw::Push(force) => value_load(self, stretch.rate, g.num(force), place, cx),
             DriveLaw::Input(_) => input_load(self, &drive.name.text, stretch.rate),
         }

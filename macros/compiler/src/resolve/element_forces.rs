@@ -1,24 +1,24 @@
-//! Forces of a single element.
+//! Forces of a single force element, before they are added to the model.
 
 use crate::expr::Expr;
 use crate::mechanism::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Model, Spring};
 
-/// Forces of an element, which the builder adds to those of the others.
+/// Forces of a force element, which the builder adds to those of the other elements.
 #[derive(Default)]
 pub struct Forces<'g> {
     /// Springs of constant stiffness that act on one coordinate each.
     pub springs: Vec<Spring<'g>>,
     /// Linear dashpots on coordinates.
     pub dashpots: Vec<Dashpot<'g>>,
-    /// Coulomb friction on coordinates.
+    /// Coulomb friction forces on coordinates.
     pub frictions: Vec<CoulombFriction<'g>>,
-    /// Forces on rates.
+    /// Other forces, each with the velocity on which it acts.
     pub loads: Vec<Load<'g>>,
     /// Potential energies.
     pub potentials: Vec<Expr<'g>>,
     /// Dissipation functions.
     pub dissipations: Vec<Expr<'g>>,
-    /// Inertances on rates.
+    /// Inertances, each with the velocity whose rate they resist.
     pub inertances: Vec<Inertance<'g>>,
     /// Forces that are linear in accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
@@ -27,7 +27,7 @@ pub struct Forces<'g> {
 }
 
 impl<'g> Forces<'g> {
-    /// Returns the forces of potential energies.
+    /// Returns the forces that derive from potential energies.
     pub fn of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
         Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
     }
@@ -45,7 +45,7 @@ impl<'g> Forces<'g> {
         linear + functions + forces == 0 && self.input.is_none()
     }
 
-    /// Adds the forces to those of a model.
+    /// Adds the forces of the element to those of a model.
     pub fn add_to(self, model: &mut Model<'g>) {
         model.springs.extend(self.springs);
         model.dashpots.extend(self.dashpots);

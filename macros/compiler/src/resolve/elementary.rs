@@ -4,7 +4,7 @@ use super::axis::align;
 use crate::expr::{Expr, Graph, Rotation, Vec3};
 use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
-/// An elementary motion of a joint.
+/// Elementary motion of a joint.
 pub enum Elementary<'g> {
     /// Rotation about an axis.
     Turn(Vec3<'g>),
@@ -12,14 +12,14 @@ pub enum Elementary<'g> {
     Slide(Vec3<'g>),
     /// Rotation about an axis with the given advance per radian.
     Helix(Vec3<'g>, Expr<'g>),
-    /// All rotations.
+    /// Rotation in space.
     Ball,
-    /// All motions.
+    /// Rigid motion in space.
     Free,
 }
 
 impl<'g> Elementary<'g> {
-    /// Returns the axis of translation, if there is one.
+    /// Returns the axis of translation, if the motion is a translation or a screw.
     pub fn slide(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
@@ -27,7 +27,7 @@ impl<'g> Elementary<'g> {
         }
     }
 
-    /// Returns the axis of rotation, if there is one.
+    /// Returns the axis of rotation, if the motion is a rotation or a screw.
     pub fn turn(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),

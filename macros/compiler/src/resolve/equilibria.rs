@@ -18,7 +18,7 @@ enum Variable {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all equilibria to the model.
+    /// Adds all declared equilibria to the model.
     pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
         let is_friction = |action: &Action| action.kind == ForceKind::Friction;
         let dry = self.description.actions.iter().any(is_friction);
@@ -75,7 +75,7 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the states of first order with the value zero.
     fn resting_states(&self) -> Vec<RestingState<'g>> {
         let g = self.scope.graph;
-        let rate_of = |name: &str| {
+        let rate_of_state = |name: &str| {
             let rate = format!("{name}{RATE_OF_STATE}");
             let output = self.model.outputs.iter().find(|output| output.name == rate);
             output.and_then(|output| output.values.first().copied()).unwrap_or(g.zero())
@@ -85,7 +85,7 @@ impl<'g> Builder<'_, 'g> {
             .map(|(name, parameter)| RestingState {
                 parameter: *parameter,
                 value: g.zero(),
-                rate: rate_of(&name.text),
+                rate: rate_of_state(&name.text),
             })
             .collect()
     }
@@ -108,10 +108,10 @@ impl<'g> Builder<'_, 'g> {
     fn variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
         let text = place.to_source();
         let coordinate = self.model.configuration.iter().position(|name| *name == text);
-        let input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
+        let find_input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
         let state =
             || self.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
-        let found = coordinate.map(Variable::Coordinate).or_else(input).or_else(state);
+        let found = coordinate.map(Variable::Coordinate).or_else(find_input).or_else(state);
         if found.is_none() {
             self.report_no_variable(place, &text, cx);
         }

@@ -10,7 +10,7 @@ use crate::expr::{Expr, Function, air};
 use crate::language::names::AXES;
 use crate::syntax::{self, ExprKind, GROUND, Name};
 
-/// Standard atmosphere at a height.
+/// State of the standard atmosphere at a height.
 pub struct Air<'g> {
     /// Temperature, K.
     pub temperature: Expr<'g>,
@@ -19,7 +19,7 @@ pub struct Air<'g> {
 }
 
 impl<'g> Air<'g> {
-    /// Returns the density, kg/m³.
+    /// Returns the density of the air, kg/m³.
     pub fn density(&self) -> Expr<'g> {
         self.pressure / (self.temperature * air::GAS)
     }
@@ -39,8 +39,9 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let [height] = self.scalars(call, cx)?;
-        let number = |n: f64| height.num(n);
-        let geopotential = number(air::RADIUS) * height / (number(air::RADIUS) + height);
+        let number_expression = |n: f64| height.num(n);
+        let geopotential =
+            number_expression(air::RADIUS) * height / (number_expression(air::RADIUS) + height);
         let temperature = geopotential.call(Function::IsaTemperature);
         let pressure = geopotential.call(Function::IsaPressure);
         Some(Value::Scalar(value(Air { temperature, pressure })))

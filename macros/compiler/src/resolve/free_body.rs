@@ -32,7 +32,7 @@ struct Wrench<'g> {
     torque: Vec3<'g>,
 }
 
-/// Body of a diagram.
+/// Body whose free-body diagram is derived.
 struct FreedBody<'g> {
     name: String,
     link: Option<LinkId>,
@@ -77,7 +77,7 @@ impl<'g> Builder<'_, 'g> {
                 forces[k - first] += force * d;
             }
         };
-        let a = |k: usize| Quantity::Acceleration(k).expr(m.graph);
+        let acceleration_expression = |k: usize| Quantity::Acceleration(k).expr(m.graph);
         for load in &applied.loads {
             add(load.rate, load.force);
         }
@@ -90,11 +90,14 @@ impl<'g> Builder<'_, 'g> {
         for element in &applied.inertances {
             let gradient = velocity_gradient(element.rate);
             let start = time_derivative(m.space(), element.rate);
-            let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * a(k));
+            let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * acceleration_expression(k));
             add(element.rate, -(element.inertance * change));
         }
         for force in &applied.acceleration_forces {
-            let value = force.factors.iter().fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * a(*k));
+            let value = force
+                .factors
+                .iter()
+                .fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * acceleration_expression(*k));
             add(force.rate, value);
         }
         add(self.power_of_input(name), m.graph.one());
@@ -199,8 +202,9 @@ impl<'g> Builder<'_, 'g> {
         let count = self.releasing?.0.len();
         let v = self.model.nv() - RELEASED * (count - index);
         let links = &self.scope.kinematics;
-        let is_it = |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
-        links.joints.iter().position(is_it).map(LinkId)
+        let has_released_velocity =
+            |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
+        links.joints.iter().position(has_released_velocity).map(LinkId)
     }
 
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
@@ -237,8 +241,10 @@ impl<'g> Builder<'_, 'g> {
         let zero = Vec3::zero(self.scope.graph);
         let mut sum = Wrench { force: zero, torque: zero };
         for (index, holds) in &body.joints {
-            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
-            let Some(w) = self.joint_wrench(body, *index, part(0), part(3)) else { continue };
+            let reaction_vector = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
+            let Some(w) = self.joint_wrench(body, *index, reaction_vector(0), reaction_vector(3)) else {
+                continue;
+            };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
             sum.force += w.force * sign;
             sum.torque += w.torque * sign;
@@ -312,8 +318,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns the reactions of the tree's joints on the body, and those of elements placed by `at` and
-    /// `frame`.
+    /// Returns the reactions on the body of the tree's joints, and of elements placed by `at` and `frame`.
     fn joints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
@@ -441,12 +446,13 @@ impl<'g> Builder<'_, 'g> {
         (0..SAMPLES).any(|seed| {
             // Sampled quaternions have unit length, because terms may cancel only for rotations.
             let q = random_configuration(&self.model, seed);
-            let number = |s: Symbol| match Quantity::from_symbol(s) {
+            let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k],
                 _ => sample(s, seed),
             };
-            let largest = |e: &[Expr<'g>]| eval(e, &number).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            let (residual, size) = (largest(&all), largest(forces));
+            let largest_magnitude =
+                |e: &[Expr<'g>]| eval(e, &value_of_symbol).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+            let (residual, size) = (largest_magnitude(&all), largest_magnitude(forces));
             // Values that are not finite are inconclusive; they count as nonzero.
             !residual.is_finite() || residual > ROUNDING * size
         })

@@ -25,7 +25,7 @@ impl<'g> Builder<'_, 'g> {
         self.choose_speeds(&rows, &samples, cx);
     }
 
-    /// Computes the dependence of velocities on independent ones, if independent velocities are requested.
+    /// Expresses the velocities in independent ones, if independent velocities are requested.
     fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {

@@ -1,4 +1,4 @@
-//! Calls of functions in expressions, and their values: one match arm per function.
+//! Values of function calls in expressions, with one match arm per function.
 
 use super::call::Call;
 use super::corrections::{DOMAIN_HELP, check_angle, degrees};
@@ -195,7 +195,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the value of a table.
+    /// Returns the value of a table at its arguments.
     fn lookup(
         &self,
         k: usize,

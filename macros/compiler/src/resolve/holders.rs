@@ -75,14 +75,14 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
     fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
         let d = self.description;
-        let moves = |name: &str| {
+        let has_moving_placement = |name: &str| {
             let numbers = self.moving_placements.iter().map(|(number, _)| *number);
             numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
         };
         let carrier_name = |name: &str| {
             let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
             let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
-            tree::base_name(point.or(particle.filter(|_| !moves(name)))?)
+            tree::base_name(point.or(particle.filter(|_| !has_moving_placement(name)))?)
         };
         (0..=d.points.len() + d.particles.len())
             .fold(name, |current, _| carrier_name(current).unwrap_or(current))

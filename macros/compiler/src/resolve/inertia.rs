@@ -7,7 +7,7 @@ use crate::language::{Argument, Callable, Method, Solid};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
-/// Moments below this value, kg·m², count as zero: exporters write such values for bodies without inertia.
+/// Maximum moment, kg·m², that counts as zero, since exporters write such values for bodies without inertia.
 const ZERO_MOMENT: f64 = 1e-18;
 
 /// Squared radius of gyration, m², below which the moments of a body with mass also count as zero (a radius
@@ -17,7 +17,7 @@ const MIN_GYRATION_SQUARED: f64 = 1e-16;
 /// Relative tolerance of the checks: published values are rounded.
 const TOLERANCE: f64 = 1e-6;
 
-/// Operation on the inertia that is written to its left.
+/// Operation on the inertia to its left.
 enum Operation<'a> {
     Add(&'a syntax::Expr),
     Rotate(&'a [syntax::Expr]),
@@ -197,7 +197,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Whether an expression is a solid with its arguments.
+/// Returns whether an expression is a solid with its arguments.
 fn is_solid(e: &syntax::Expr) -> bool {
     matches!(&e.kind, ExprKind::Call(Callee { id: Some(Callable::Solid(_)), .. }, _))
 }

@@ -24,7 +24,7 @@ pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     }
 }
 
-/// Returns the symbol of a joint in the drawing, if it has one, and the axes of which the first is drawn.
+/// Returns the symbol of a joint in the drawing, if it has one, and its axes, the first of which is drawn.
 pub fn drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
@@ -103,7 +103,8 @@ impl<'g> Scope<'_, 'g> {
         Some(vec![Elementary::Helix(axis?, pitch?)])
     }
 
-    /// Returns two slides in the plane, followed by a rotation about its normal.
+    /// Returns the motions of a planar joint: two translations in the plane, followed by a rotation about its
+    /// normal.
     fn planar(
         &self,
         about: &[Vec3<'g>],
@@ -151,18 +152,18 @@ impl<'g> Scope<'_, 'g> {
 /// Returns motions that replace those of a joint with an error.
 pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
     use Elementary::{Slide, Turn};
-    let axis = |k: usize| {
+    let default_axis = |k: usize| {
         let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
         n.rotate_left(k);
         Vec3::numbers(graph, n)
     };
     match joint.kind {
-        JointKind::Pin | JointKind::Screw => vec![Turn(axis(0))],
-        JointKind::Sleeve => vec![Slide(axis(0))],
-        JointKind::Collar | JointKind::Slot => vec![Slide(axis(0)), Turn(axis(1))],
-        JointKind::Universal => vec![Turn(axis(0)), Turn(axis(1))],
-        JointKind::Planar => vec![Slide(axis(0)), Slide(axis(1)), Turn(axis(2))],
-        JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(axis(k))).collect(),
+        JointKind::Pin | JointKind::Screw => vec![Turn(default_axis(0))],
+        JointKind::Sleeve => vec![Slide(default_axis(0))],
+        JointKind::Collar | JointKind::Slot => vec![Slide(default_axis(0)), Turn(default_axis(1))],
+        JointKind::Universal => vec![Turn(default_axis(0)), Turn(default_axis(1))],
+        JointKind::Planar => vec![Slide(default_axis(0)), Slide(default_axis(1)), Turn(default_axis(2))],
+        JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(default_axis(k))).collect(),
         JointKind::Ball => vec![Elementary::Ball],
         JointKind::Free => vec![Elementary::Free],
         JointKind::Weld => Vec::new(),
@@ -208,7 +209,7 @@ fn axis_list<'a, 'g>(
     None
 }
 
-/// Reports axes that are parallel, or three coplanar ones: one of the coordinates would be redundant.
+/// Reports two parallel axes or three coplanar ones, for which one of the coordinates would be redundant.
 fn check_independent(
     axes: &[Vec3<'_>],
     what: &str,

@@ -1,4 +1,5 @@
-//! Limits as bounds of the entries of `q` and `v`. All limits of one entry apply simultaneously.
+//! Conversion of limits to bounds of the entries of `q` and `v`. All limits of one entry apply
+//! simultaneously.
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;
@@ -69,12 +70,13 @@ impl<'g> Builder<'_, 'g> {
 
     /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
     fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
-        let num = |x: f64| self.scope.graph.num(x);
-        let to_coordinate = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
+        let number_expression = |x: f64| self.scope.graph.num(x);
+        let to_coordinate =
+            |bound: Value<'g>| (bound - number_expression(c.offset)) / number_expression(c.ratio);
         let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
         let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
-        let speed = speed.map(|speed| speed / num(c.ratio.abs()));
-        let effort = effort.map(|effort| effort * num(c.ratio.abs()));
+        let speed = speed.map(|speed| speed / number_expression(c.ratio.abs()));
+        let effort = effort.map(|effort| effort * number_expression(c.ratio.abs()));
         Limit { q: c.q, v: c.v, lower, upper, speed, effort }
     }
 
@@ -94,10 +96,10 @@ impl<'g> Builder<'_, 'g> {
         let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
         if has_range(known) && has_range(&found) && !has_range(&both) {
             let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
-            let contradicts = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
+            let contradicts_found_limit = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
                 other.v == found.v && !has_range(&tighter_bounds(other, &found))
             };
-            let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
+            let other = earlier.iter().find(contradicts_found_limit).map(|(other, _)| *other);
             // If both limits are from a file, the one that does not belong to the coordinate itself is
             // reported.
             let own = limit.name.text == name;

@@ -125,10 +125,12 @@ impl<'g> Builder<'_, 'g> {
         }
         let entries: Vec<Expr<'g>> =
             inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
-        let quantity = || format!("the inertia of `{name}`");
+        let describe_inertia = || format!("the inertia of `{name}`");
         match self.description.inertias {
-            Inertias::Check => self.scope.require(Rule::Inertia, quantity, &entries),
-            _ => entries.iter().for_each(|entry| self.scope.require(Rule::Finite, quantity, &[*entry])),
+            Inertias::Check => self.scope.require(Rule::Inertia, describe_inertia, &entries),
+            _ => {
+                entries.iter().for_each(|entry| self.scope.require(Rule::Finite, describe_inertia, &[*entry]))
+            }
         }
     }
 
@@ -145,12 +147,12 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         let range = ValueRange::of_scalar(&self.description.scalar);
-        let infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
+        let is_infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
         for (k, body) in self.description.bodies.iter().enumerate() {
             let Some((Some(link), _)) = &self.places[k] else { continue };
             let i = &self.model.links[link.0].inertia;
             let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
-            if all.into_iter().any(infinite) {
+            if all.into_iter().any(is_infinite) {
                 let name = &body.name;
                 cx.error(
                     name.place.clone(),

@@ -74,7 +74,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Resolves `identity()`.
+    /// Resolves a call of `identity()`.
     pub fn identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [] = self.take_matrix(call, cx)?;
         Some(Value::Matrix(ResolvedMatrix { link: None, entries: Mat3::identity(self.graph) }))
@@ -95,28 +95,28 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::skew(a) }))
     }
 
-    /// Resolves `outer(a, b)`: `a bᵀ`.
+    /// Resolves a call of `outer(a, b)`: the matrix `a bᵀ`.
     pub fn outer(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a, b] = self.take_matrix(call, cx)?;
         let (link, [a, b]) = self.vectors([a, b], cx)?;
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
     }
 
-    /// Resolves `transpose(M)`.
+    /// Resolves a call of `transpose(M)`.
     pub fn transpose(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?;
         Some(Value::Matrix(ResolvedMatrix { entries: m.entries.transpose(), ..m }))
     }
 
-    /// Resolves `trace(M)`.
+    /// Resolves a call of `trace(M)`.
     pub fn trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?.entries.0;
         Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
     }
 
-    /// Returns the values of vectors in the axes of one link, with the link.
+    /// Returns the values of several vectors in the axes of one link, with the link.
     fn vectors<const N: usize>(
         &self,
         vectors: [&syntax::Expr; N],
@@ -140,18 +140,19 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
-        let entry = |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
-        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry) }))
+        let entry_of_relative_rotation =
+            |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
+        Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry_of_relative_rotation) }))
     }
 
     /// Returns the axes of a placed body or frame.
     fn axes_of(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
-        let axis = |k: usize| Vec3::axis(self.graph, k);
+        let coordinate_axis = |k: usize| Vec3::axis(self.graph, k);
         match e.name()? {
-            GROUND => Some([0, 1, 2].map(|k| vec![(None, axis(k))])),
+            GROUND => Some([0, 1, 2].map(|k| vec![(None, coordinate_axis(k))])),
             name => {
                 let Placed { link, pose, .. } = self.placed(name)?;
-                Some([0, 1, 2].map(|k| vec![(link, pose.rotation.to_parent(axis(k)))]))
+                Some([0, 1, 2].map(|k| vec![(link, pose.rotation.to_parent(coordinate_axis(k)))]))
             }
         }
     }
@@ -168,11 +169,11 @@ impl<'g> Scope<'_, 'g> {
         let bodies = self.bodies_with_mass(bodies_written, cx)?;
         let about = self.current_place(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
-        let axis = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
+        let axis_terms = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
         let entries = Mat3::from_fn(|i, j| {
             let (i, j) = (i.min(j), i.max(j));
             bodies.iter().fold(self.graph.zero(), |sum, body| {
-                sum + self.inertia_about(body, &about, [&axis(i), &axis(j)])
+                sum + self.inertia_about(body, &about, [&axis_terms(i), &axis_terms(j)])
             })
         });
         Some(Value::Matrix(ResolvedMatrix { link, entries }))

@@ -10,7 +10,7 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, words};
 
-/// A quantity that is summed over bodies.
+/// Quantity that is summed over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// Sum of the momenta.
@@ -143,7 +143,7 @@ impl<'g> Scope<'_, 'g> {
         a.dot(central * b) + shift
     }
 
-    /// Returns bodies and particles: one by its name, or several in parentheses.
+    /// Returns the bodies and particles that an expression names: one name, or several names in parentheses.
     pub fn bodies_with_mass(
         &self,
         e: &syntax::Expr,

@@ -9,18 +9,18 @@ use crate::mechanism::{Pose, Quantity};
 use crate::syntax::{self, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// Returns the kind of a known name, with its article.
+    /// Returns the kind of element with this name, with an article, for messages.
     pub fn kind_of_name(&self, name: &str) -> Option<&'static str> {
-        let is = |list: &[String]| list.iter().any(|known| known == name);
+        let is_in_list = |list: &[String]| list.iter().any(|known| known == name);
         match name {
             _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
             _ if self.tables.iter().any(|table| table.name.text == name) => Some("a table"),
-            _ if is(&self.frames) => Some("a frame"),
-            _ if name == GROUND || is(&self.bodies) => Some("a body"),
-            _ if is(&self.joints) => Some("a joint"),
+            _ if is_in_list(&self.frames) => Some("a frame"),
+            _ if name == GROUND || is_in_list(&self.bodies) => Some("a body"),
+            _ if is_in_list(&self.joints) => Some("a joint"),
             _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
             _ if self.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
-            _ if is(&self.actions) => Some("a force element"),
+            _ if is_in_list(&self.actions) => Some("a force element"),
             _ => match Builtin::of_name(name)? {
                 Builtin::Axis(_) => Some("a direction"),
                 Builtin::Pi => Some("a number"),
@@ -34,7 +34,7 @@ impl<'g> Scope<'_, 'g> {
         !cx.is_read() || self.records.borrow_mut().reported_names.insert(name.to_string())
     }
 
-    /// Returns the value of a name.
+    /// Returns the value of a name in an expression.
     pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         // Expressions of a file refer to its joints even if the language has another meaning for the name.
         if e.place.file.is_some()
@@ -101,7 +101,7 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// Returns the value of a member.
+    /// Returns the value of a member such as `body.x` or `joint.angle`.
     pub fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let ExprKind::Name(joint) = &inner.kind
             && let Some(value) = self.coordinate_member(joint, member, cx)

@@ -9,8 +9,9 @@ use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Coordinate};
 
 impl<'g> Builder<'_, 'g> {
-    /// Numbers `q` and `v` in the order of declaration. Joints that close loops have no coordinates. Joints
-    /// that follow another one (`mimic`) are processed last, because their masters may be declared later.
+    /// Numbers the entries of `q` and `v` in the order of declaration. Joints that close loops have no
+    /// coordinates. Joints that follow another joint (`mimic`) are numbered last, because their leaders may
+    /// be declared later.
     pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
         let closing = tree::loop_closing_joints(self.description);
         self.solved_loops = closed_form::find_solved_loops(self.description, &closing, cx);

@@ -1,6 +1,6 @@
-//! Interface of a mechanism with an error. It suffices for the signatures of the functions that would have
-//! been generated, so that one error is not reported again at every use of the mechanism. The outline depends
-//! only on the description and checks nothing.
+//! Interface of a mechanism with an error: the signatures of the functions that would have been generated, so
+//! that one error is not reported again at every use of the mechanism. The outline depends only on the
+//! description and checks nothing.
 
 use super::carriers::expressions;
 use super::joint::full_name;
@@ -14,7 +14,7 @@ use crate::syntax::{
 };
 use std::collections::BTreeSet;
 
-/// Estimated interface of a mechanism.
+/// Interface of a mechanism with an error, as far as the description determines it.
 pub struct Outline {
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
@@ -40,7 +40,7 @@ pub struct Outline {
     pub outputs: Vec<OutlinedOutput>,
 }
 
-/// Estimated interface of an output.
+/// Interface of an output of a mechanism with an error.
 pub struct OutlinedOutput {
     /// Name of the output.
     pub name: String,
@@ -55,17 +55,17 @@ pub struct OutlinedOutput {
 /// Returns the outline of a description that may contain errors.
 pub fn outline(d: &Description) -> Outline {
     let (configuration, velocities, inputs) = entries(d);
-    let names = |e| names_of(d, e);
+    let names_in_expression = |e| names_of(d, e);
     let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
     // Unused definitions are ignored.
     let used =
         expressions(d).into_iter().filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
-        time: used.chain(rotations).any(|e| names(e).contains(TIME)),
+        time: used.chain(rotations).any(|e| names_in_expression(e).contains(TIME)),
         velocity_inputs: d.actions.iter().any(|action| {
             laws(action).any(|e| {
                 let uses = uses(d, e);
-                uses.inputs && (uses.velocities || names(e).contains("speed"))
+                uses.inputs && (uses.velocities || names_in_expression(e).contains("speed"))
             })
         }),
         constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
@@ -91,8 +91,8 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
         q.extend(free.iter().cloned());
         v.extend(free);
         let own = closing.get(j) == Some(&false) && solved.iter().all(|e| !e.sides.contains(&j));
-        let holds = |joint: &&Joint| joint.mimic.is_none() && own;
-        let Some(joint) = d.joints.get(j).filter(holds) else { continue };
+        let has_own_coordinates = |joint: &&Joint| joint.mimic.is_none() && own;
+        let Some(joint) = d.joints.get(j).filter(has_own_coordinates) else { continue };
         let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
@@ -113,11 +113,11 @@ fn frames(d: &Description) -> Vec<String> {
 /// Returns the names of the bodies and particles that are not welded to others.
 fn bodies(d: &Description) -> Vec<String> {
     let particles = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
-    let welded = |name: &str| {
+    let is_welded_child = |name: &str| {
         d.joints.iter().any(|joint| joint.kind == JointKind::Weld && joint.child.body.text == name)
     };
     let all = d.bodies.iter().map(|b| &b.name).chain(particles).map(|name| name.text.clone());
-    all.filter(|name| !welded(name)).collect()
+    all.filter(|name| !is_welded_child(name)).collect()
 }
 
 fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
@@ -160,7 +160,7 @@ fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
 
 /// Returns the quantities on which an expression depends, according to the table of functions.
 fn uses(d: &Description, e: &Expr) -> Uses {
-    let inputs = || !entries(d).2.is_empty();
+    let has_inputs = || !entries(d).2.is_empty();
     let mut uses = Uses::default();
     for part in with_definitions(d, e) {
         match &part.kind {
@@ -174,11 +174,12 @@ fn uses(d: &Description, e: &Expr) -> Uses {
                 }
                 Dependence::Power => {
                     uses.velocities = true;
-                    uses.inputs |= arguments.iter().any(|argument| is_contact_name(d, argument)) && inputs();
+                    uses.inputs |=
+                        arguments.iter().any(|argument| is_contact_name(d, argument)) && has_inputs();
                 }
                 Dependence::Reaction => {
                     uses.velocities = true;
-                    uses.inputs |= inputs();
+                    uses.inputs |= has_inputs();
                 }
             },
             ExprKind::Name(name) => uses.inputs |= d.inputs.iter().any(|input| input.text == *name),
@@ -188,7 +189,7 @@ fn uses(d: &Description, e: &Expr) -> Uses {
     uses
 }
 
-/// Returns the quantities on which the value of a call depends, in addition to those of its arguments.
+/// Returns the quantities on which the value of a call depends, besides those of its arguments.
 fn dependence(callee: &Callee) -> Dependence {
     match callee.id {
         Some(Callable::Function(function)) => function.row().depends_on,

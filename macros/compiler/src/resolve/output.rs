@@ -9,7 +9,7 @@ use crate::mechanism::{LinkId, OutputValue, Pose};
 use crate::syntax::{Definition, ExprKind, Rank};
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all outputs.
+    /// Adds all declared outputs to the model.
     pub fn add_outputs(&mut self, cx: &mut Diagnostics) {
         for output in &self.description.outputs {
             if output.rank == Rank::FreeBody {

@@ -15,7 +15,7 @@ use crate::language::Callable;
 use crate::mechanism::Quantity;
 use crate::syntax::{self, ExprKind};
 
-/// Maximum difference of the pieces at the border, relative to their magnitude.
+/// Maximum difference of two pieces at their border, relative to their magnitude.
 const ROUNDING: f64 = 1e-9;
 /// Magnitudes of the samples with which continuity is tested.
 const SIZES: [f64; 12] = [1.0, 1.0, 1.0, 1.0, 1e-2, 1e2, 1e-1, 1e1, 1e-4, 1e4, 1e-3, 1e3];
@@ -42,17 +42,18 @@ impl<'g> PiecewiseLaw<'g> {
         self.substitute(0, below) + self.substitute(1, above) - common
     }
 
-    /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise.
-    /// Samples are used only if the `nested_borders` are in order with this border. Returns `Err` if there
-    /// are no such samples.
+    /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise. A
+    /// sample is used only if the `nested_borders` are ordered like this border. Returns `Err` if no sample
+    /// can be used.
     fn gap(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
         let at_border = [0, 1].map(|piece| self.substitute(piece, self.border));
         let mut tried = false;
         for (seed, size) in (0_u64..).zip(SIZES) {
-            let number = |e: Expr<'g>| eval_one(e, &|s| size * sample(s, seed));
-            let border = number(self.border);
-            let in_order = |(is_above, other): &(bool, Expr<'g>)| (number(*other) >= border) == *is_above;
-            let found = at_border.map(number);
+            let value_at_sample_point = |e: Expr<'g>| eval_one(e, &|s| size * sample(s, seed));
+            let border = value_at_sample_point(self.border);
+            let in_order =
+                |(is_above, other): &(bool, Expr<'g>)| (value_at_sample_point(*other) >= border) == *is_above;
+            let found = at_border.map(value_at_sample_point);
             if !nested_borders.iter().all(in_order)
                 || !border.is_finite()
                 || found.iter().any(|x| !x.is_finite())
@@ -60,7 +61,13 @@ impl<'g> PiecewiseLaw<'g> {
                 continue;
             }
             tried = true;
-            let sizes = [found[0], found[1], number(self.pieces[0]), number(self.pieces[1])].map(f64::abs);
+            let sizes = [
+                found[0],
+                found[1],
+                value_at_sample_point(self.pieces[0]),
+                value_at_sample_point(self.pieces[1]),
+            ]
+            .map(f64::abs);
             let largest = sizes.into_iter().filter(|x| x.is_finite()).fold(0.0, f64::max);
             if (found[0] - found[1]).abs() > ROUNDING * largest {
                 return Ok(Some(found));
@@ -83,11 +90,11 @@ impl<'g> Scope<'_, 'g> {
         let [left, right, below, above] = arguments else { return None };
         let compared = (self.scalar(left, cx), self.scalar(right, cx));
         let (x, border) = (compared.0?, compared.1?);
-        let moves = |e: Expr<'g>| {
+        let depends_on_variables = |e: Expr<'g>| {
             symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
         };
         // The border is the constant operand.
-        let is_swapped = !moves(x) && (moves(border) || x.value().is_some());
+        let is_swapped = !depends_on_variables(x) && (depends_on_variables(border) || x.value().is_some());
         let (written, compared, border, pieces) = match is_swapped {
             true => (right, border, x, [above, below]),
             false => (left, x, border, [below, above]),
@@ -119,7 +126,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the borders of nested piecewise laws with the same compared expression. The flag is false for
-    /// those in the piece below.
+    /// the borders in the lower piece.
     fn borders(
         &self,
         written: &syntax::Expr,
@@ -156,8 +163,9 @@ impl<'g> Scope<'_, 'g> {
         match law.gap(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {
-                let plain = |piece: usize| law.substitute(piece, law.border).value().is_some();
-                let values = match plain(0) && plain(1) {
+                let is_constant_at_border =
+                    |piece: usize| law.substitute(piece, law.border).value().is_some();
+                let values = match is_constant_at_border(0) && is_constant_at_border(1) {
                     true => format!(": they are {first} and {second} there"),
                     false => String::new(),
                 };

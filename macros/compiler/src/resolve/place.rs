@@ -13,10 +13,10 @@ use crate::language::{Callable, Method};
 use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
-/// An element to be placed: an index into its list.
+/// Element that is to be placed, by its index in its list.
 #[derive(Clone, Copy)]
 enum Item {
-    /// Index into the joints of the [`Order`].
+    /// Joint, by its index in the [`Order`].
     Joint(usize),
     Frame(usize),
     Point(usize),
@@ -43,8 +43,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Places all elements. Elements wait until those on which they depend are placed; if no progress is
-    /// possible, definitions are circular.
+    /// Places all elements. An element waits until the elements on which it depends are placed; if no
+    /// progress is possible, definitions are circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
         for (j, child) in &order.joints {
@@ -140,12 +140,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             return;
         }
         // From an element to one for which it waits, until the path is a cycle.
-        let next = |index: usize| {
+        let next_waiting_dependency = |index: usize| {
             let needs = self.dependencies(waiting[index], order);
             (0..waiting.len()).find(|k| needs.contains(&self.placed_name(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
-        while let Some(k) = path.last().and_then(|index| next(*index)) {
+        while let Some(k) = path.last().and_then(|index| next_waiting_dependency(*index)) {
             if let Some(begin) = path.iter().position(|seen| *seen == k) {
                 path.drain(..begin);
                 break;
@@ -264,7 +264,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some((start.link, pose))
     }
 
-    /// Returns the placement of a body or a frame by its name.
+    /// Returns the placement of the body or frame with this name.
     fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.error(e.place.clone(), "expected a body or a frame")
@@ -343,9 +343,9 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
     /// `offset` for `free`.
     fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let placeable = |name: &String| name == GROUND || self.placeable.contains(name);
+        let is_placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
-            ExprKind::Name(name) if placeable(name) => {
+            ExprKind::Name(name) if is_placeable(name) => {
                 let place = self.scope.place(e, cx)?;
                 Some((place.link, place.pose))
             }
@@ -390,7 +390,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         Some((frame.link, Pose { rotation: frame.pose.rotation, translation }))
     }
 
-    /// Whether the origin of a link always coincides with that of one of its ancestors.
+    /// Returns whether the origin of a link always coincides with the origin of one of its ancestors.
     fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
         let kinematics = &self.scope.kinematics;
         let mut current = link;

@@ -13,7 +13,7 @@ use crate::syntax::{self, Description, Name};
 
 /// Whether an output or a definition contains the power of an element.
 pub fn is_power_used(d: &Description, element: &Name) -> bool {
-    let names = |e: &syntax::Expr| {
+    let mentions_power_of_element = |e: &syntax::Expr| {
         e.parts().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
                 function.id == Some(Callable::Function(FunctionId::Power))
@@ -22,7 +22,8 @@ pub fn is_power_used(d: &Description, element: &Name) -> bool {
             _ => false,
         })
     };
-    d.outputs.iter().any(|output| names(&output.value)) || d.definitions.iter().any(|d| names(&d.value))
+    d.outputs.iter().any(|output| mentions_power_of_element(&output.value))
+        || d.definitions.iter().any(|d| mentions_power_of_element(&d.value))
 }
 
 impl<'g> Builder<'_, 'g> {

@@ -22,7 +22,7 @@ impl<'g> Scope<'_, 'g> {
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
-    /// Expresses several resolved vectors in common axes.
+    /// Converts several resolved vectors to common axes.
     pub fn in_common_axes(
         &self,
         read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,
@@ -269,7 +269,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl<'g> Kinematics<'g> {
-    /// Returns `v(y / x / frame)`.
+    /// Resolves a call of `v(y / x / frame)`.
     pub fn velocity_in(
         &self,
         y: &Placed<'g>,
@@ -286,7 +286,7 @@ impl<'g> Kinematics<'g> {
         v
     }
 
-    /// Returns `a(y / x / frame)`.
+    /// Resolves a call of `a(y / x / frame)`.
     pub fn acceleration_in(
         &self,
         y: &Placed<'g>,
@@ -307,15 +307,16 @@ impl<'g> Kinematics<'g> {
         a
     }
 
-    /// Returns `omega(body / frame)`.
+    /// Resolves a call of `omega(body / frame)`.
     pub fn angular_velocity_in(
         &self,
         body: Option<LinkId>,
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> Terms<'g> {
-        let w = |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
-        vec![(body, w(body)), (frame, -w(frame))]
+        let angular_velocity_of_link =
+            |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
+        vec![(body, angular_velocity_of_link(body)), (frame, -angular_velocity_of_link(frame))]
     }
 
     /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is
@@ -328,10 +329,15 @@ impl<'g> Kinematics<'g> {
         graph: &'g Graph,
     ) -> Terms<'g> {
         let zero = Vec3::zero(graph);
-        let rate = |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
+        let angular_acceleration_of_link =
+            |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
         let w = self.resolve(&self.angular_velocity_in(b, a, graph), c, zero);
         let turns = c.map_or(zero, |l| self.twists[l.0].angular);
-        vec![(b, rate(b)), (a, -rate(a)), (c, -turns.cross(w))]
+        vec![
+            (b, angular_acceleration_of_link(b)),
+            (a, -angular_acceleration_of_link(a)),
+            (c, -turns.cross(w)),
+        ]
     }
 }
 

@@ -9,11 +9,11 @@ use crate::syntax::ScalarType;
 pub struct ValueRange {
     /// Maximum mass and moment; their squares are finite.
     pub max: f64,
-    /// Maximum length; with a mass of one its moment is within the range.
+    /// Maximum length; with a mass of one, its moment of inertia is in the range of the scalar type.
     pub length: f64,
     /// Minimum nonzero mass and moment; its reciprocal is finite.
     pub min_nonzero: f64,
-    /// Name of the scalar type.
+    /// Name of the scalar type, for messages.
     pub name: &'static str,
 }
 

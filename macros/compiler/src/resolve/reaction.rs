@@ -18,8 +18,8 @@ use crate::syntax::ExprKind;
 pub const RELEASED: usize = 6;
 
 /// Returns the joints to release: those whose reactions are outputs, and all releasable connections of bodies
-/// with free-body diagrams. If there are any, joints solved for in closed form are added, because their
-/// reactions determine those of the loop-closing joints.
+/// with free-body diagrams. If there are any, joints that are solved for in closed form are added, because
+/// their reactions determine those of the joints that close loops.
 pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)

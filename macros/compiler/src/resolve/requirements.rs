@@ -8,13 +8,14 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::{Quantity, Requirement, Rule};
 
 impl<'g> Scope<'_, 'g> {
-    /// Records a condition on values, if they depend on parameters and on nothing else.
+    /// Records a condition on values, if the values depend on parameters and on nothing else.
     pub fn require(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
-        let parameter = |symbol| match Quantity::from_symbol(symbol) {
+        let parameter_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some(k),
             _ => None,
         };
-        let parameters: Option<Vec<usize>> = symbols_in(values).into_iter().map(parameter).collect();
+        let parameters: Option<Vec<usize>> =
+            symbols_in(values).into_iter().map(parameter_of_symbol).collect();
         let Some(parameters) = parameters.filter(|all| !all.is_empty()) else { return };
         let all = &mut self.records.borrow_mut().requirements;
         // A definition may be used several times.
@@ -34,8 +35,10 @@ impl Builder<'_, '_> {
                 self.scope.require(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
             }
             for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
-                let most = || format!("the largest {what} of `{name}`");
-                bound.iter().for_each(|bound| self.scope.require(Rule::NotNegative, most, &[*bound]));
+                let describe_largest_value = || format!("the largest {what} of `{name}`");
+                bound.iter().for_each(|bound| {
+                    self.scope.require(Rule::NotNegative, describe_largest_value, &[*bound])
+                });
             }
         }
         for (k, parameter) in self.description.parameters.iter().enumerate() {

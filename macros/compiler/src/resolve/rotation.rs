@@ -1,4 +1,4 @@
-//! Written rotations and matrices.
+//! Resolution of rotations and matrices that are written in expressions.
 
 use super::corrections::{MATRIX_SYNTAX, check_angle, is_rotation, report_matrix, report_rotation};
 use super::scope::Scope;

@@ -8,12 +8,12 @@ use crate::kinematics::jet::{self, Moving, Relative};
 use crate::kinematics::time_derivative;
 use crate::mechanism::{Constraint, LinkId, Measure};
 
-/// Rows of a declared constraint, which the builder adds to those of the others.
+/// Rows of a declared constraint, which the builder adds to those of the other constraints.
 #[derive(Default)]
 pub struct ConstraintRows<'g> {
-    /// The rows; their groups count from zero.
+    /// Rows of the constraint; their groups count from zero.
     pub rows: Vec<Constraint<'g>>,
-    /// Names of components that vanish identically.
+    /// Names of components of the constraint that vanish identically.
     pub redundant: Vec<String>,
     /// Contact point of touching surfaces, from the ground's origin.
     pub contact_point: Option<Terms<'g>>,
@@ -60,12 +60,12 @@ impl<'g> Builder<'_, 'g> {
         jet::relative(&self.model, &self.scope.kinematics.joints, link, other)
     }
 
-    /// Returns a point of a link, with its rates.
+    /// Returns a point of a link with its first and second time derivatives.
     pub fn point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
         jet::point(&self.scope.kinematics.joints, on, p)
     }
 
-    /// Returns a direction fixed in a link, with its rates.
+    /// Returns a direction that is fixed in a link, with its first and second time derivatives.
     pub fn direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
         jet::direction(&self.scope.kinematics.joints, on, e)
     }

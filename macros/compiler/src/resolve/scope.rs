@@ -31,7 +31,7 @@ pub struct Scope<'a, 'g> {
     pub driven: usize,
     /// States of first order, each with its index among the parameters.
     pub states: &'a [(Name, usize)],
-    /// Named expressions.
+    /// Named expressions that the user defines.
     pub definitions: &'a [syntax::Definition],
     /// Definitions that are generalized speeds.
     pub speeds: &'a [Name],
@@ -41,11 +41,11 @@ pub struct Scope<'a, 'g> {
     pub kinematics: Kinematics<'g>,
     /// Whether numbers are `f32`.
     pub is_f32: bool,
-    /// Facts about the expressions resolved so far.
+    /// Facts that have been found while expressions were resolved.
     pub records: RefCell<Records<'g>>,
 }
 
-/// Facts about the expressions resolved so far.
+/// Facts that were found while expressions were resolved.
 #[derive(Debug, Default)]
 pub struct Records<'g> {
     /// Whether each parameter was used.
@@ -55,7 +55,7 @@ pub struct Records<'g> {
     /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
     /// missing.
     pub reported_names: BTreeSet<String>,
-    /// Definitions whose errors have been reported.
+    /// Names of the definitions whose errors have been reported.
     pub reported_definitions: BTreeSet<String>,
     /// Whether a constraint on configurations is being resolved.
     pub in_holonomic_constraint: bool,
@@ -68,11 +68,11 @@ pub struct Records<'g> {
     pub requirements: Vec<Requirement<'g>>,
 }
 
-/// Values of definitions, by name, allowed quantities, and whether unqualified axes are those of the ground;
-/// `None` for definitions with errors.
+/// Values of definitions, by name, by allowed quantities, and by whether unqualified axes are those of the
+/// ground; `None` for definitions with errors.
 pub type DefinitionValues<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
 
-/// Axes in which a vector is given.
+/// Axes in which the components of a vector are given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// Axes of the frame to which the attribute belongs.
@@ -114,22 +114,22 @@ impl Value<'_> {
     }
 }
 
-/// Quantities on which an expression may depend.
+/// Quantities on which an expression may depend; each kind includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Allowed {
     /// Parameters only.
     Constant,
-    /// Also coordinates and time.
+    /// Coordinates and time, in addition to parameters.
     Placement,
-    /// Also rates, velocities and inputs.
+    /// Velocities and inputs, in addition to coordinates and time.
     Motion,
-    /// Also accelerations.
+    /// Accelerations, in addition to velocities and inputs.
     Acceleration,
-    /// Also reactions of joints and contact forces.
+    /// Reactions of joints and contact forces, in addition to accelerations.
     Reaction,
 }
 
-/// Context of an expression.
+/// Context in which an expression is resolved.
 #[derive(Clone, Debug)]
 pub struct Context<'g> {
     /// Quantities on which the expression may depend.
@@ -141,7 +141,7 @@ pub struct Context<'g> {
     /// Compared expressions of the piecewise laws that are being resolved, as written, with the symbols that
     /// replace them.
     pub compared: Vec<(syntax::Expr, Expr<'g>)>,
-    /// Definitions that are being evaluated.
+    /// Names of the definitions that are being evaluated.
     pub defining: Vec<String>,
 }
 
@@ -163,13 +163,13 @@ impl<'g> Context<'g> {
 pub enum PlacedKind {
     /// Body: axes and origin.
     Body,
-    /// Particle or point: an origin, with the axes of its carrier.
+    /// Particle or point: an origin, with the axes of the element that carries it.
     Point,
     /// Frame: axes.
     Frame,
 }
 
-/// A placed element: the link in which it is fixed, and its pose.
+/// Placed element: the link in which it is fixed, and its pose.
 #[derive(Clone, Debug)]
 pub struct Placed<'g> {
     /// Link in which the element is fixed; `None` for the ground.
@@ -186,11 +186,11 @@ pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 /// Elements placed so far, with their motion.
 #[derive(Debug, Default)]
 pub struct Kinematics<'g> {
-    /// Placements by name.
+    /// Placements of the elements, by name.
     pub places: BTreeMap<String, Placed<'g>>,
     /// Plain coordinates by full name; true for an angle.
     pub coordinates: Vec<(String, Coordinate, bool)>,
-    /// Kinematics of the links.
+    /// Kinematics of the links that joints move.
     pub joints: Vec<Joint<'g>>,
     /// Charts of the configuration space; set after all links are placed.
     pub charts: Vec<Chart>,
@@ -211,7 +211,7 @@ pub struct Kinematics<'g> {
 /// Forces and moments of the second surface of a contact on the first, each in the axes of a link.
 #[derive(Debug, Default)]
 pub struct ContactLoads<'g> {
-    /// Forces at all points.
+    /// Forces of the element at all points of action.
     pub forces: Vec<(Option<LinkId>, Vec3<'g>)>,
     /// Moments of friction against spin and rolling.
     pub moments: Vec<(Option<LinkId>, Vec3<'g>)>,
@@ -220,7 +220,7 @@ pub struct ContactLoads<'g> {
 }
 
 impl<'g> ContactLoads<'g> {
-    /// Adds power.
+    /// Adds a power to that of the element.
     pub fn add_power(&mut self, power: Expr<'g>) {
         self.power = Some(self.power.map_or(power, |sum| sum + power));
     }

@@ -20,7 +20,7 @@ struct DeclaredSpeed<'a, 'g> {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Resolves the speeds, and replaces the velocities that they contain.
+    /// Resolves the declared generalized speeds, and replaces the velocities that they contain.
     pub fn add_speeds(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         if d.speeds.is_empty() || self.releasing.is_some() || !cx.is_empty() {
@@ -47,11 +47,11 @@ impl<'a, 'g> Builder<'a, 'g> {
         let name_expression =
             syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
         let e = self.scope.in_context(context, |scope| scope.scalar(&name_expression, cx))?;
-        let place = || value.place.clone();
+        let place_of_value = || value.place.clone();
         let mut row = vec![g.zero(); self.model.nv()];
         velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
         if row.iter().all(|d| d.is_zero()) {
-            cx.error(place(), "this speed contains no rate").help(
+            cx.error(place_of_value(), "this speed contains no rate").help(
                 "a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), \
                  body.x)`",
             );
@@ -85,14 +85,14 @@ impl<'a, 'g> Builder<'a, 'g> {
                 },
                 _ => continue,
             };
-            cx.error(place(), what).help(help);
+            cx.error(place_of_value(), what).help(help);
             return None;
         }
         let at_rest =
             replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero()));
         let remainder = [vec![at_rest]];
         if !at_rest.is_zero() && !speeds::named_columns(&self.model, &remainder.to_vec()).is_empty() {
-            cx.error(place(), "a speed cannot have a term without rates").help(
+            cx.error(place_of_value(), "a speed cannot have a term without rates").help(
                 "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
                  declare an `#[output(…)]`",
             );
@@ -120,14 +120,14 @@ impl<'a, 'g> Builder<'a, 'g> {
             return;
         };
         let g = self.scope.graph;
-        let identity = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
+        let identity_entry = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
         let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
             let named_index = |k: usize| columns.iter().position(|n| *n == k);
-            let entry = |i: usize, j: usize| match (named_index(i), named_index(j)) {
+            let entry_of_velocity_matrix = |i: usize, j: usize| match (named_index(i), named_index(j)) {
                 (Some(i), Some(j)) => block[i][j],
-                _ => identity(i, j),
+                _ => identity_entry(i, j),
             };
-            (0..nv).map(|i| (0..nv).map(|j| entry(i, j)).collect()).collect()
+            (0..nv).map(|i| (0..nv).map(|j| entry_of_velocity_matrix(i, j)).collect()).collect()
         };
         let velocities = self.model.velocities.clone();
         for (k, speed) in columns.iter().zip(declared) {
@@ -138,8 +138,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
 
-    /// Whether the number of speeds is that of the velocities that they replace, and they are independent;
-    /// reports an error otherwise.
+    /// Returns whether the speeds are independent and as many as the velocities that they replace; reports an
+    /// error otherwise.
     fn check_speeds(
         &self,
         declared: &[DeclaredSpeed<'_, 'g>],
@@ -147,7 +147,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         columns: &[usize],
         cx: &mut Diagnostics,
     ) -> bool {
-        let list = |indices: &[usize]| {
+        let list_velocity_names = |indices: &[usize]| {
             let names: Vec<String> =
                 indices.iter().map(|k| format!("`{}`", self.model.velocities[*k].0)).collect();
             all_of(&names)
@@ -170,7 +170,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             let rate = &self.model.velocities[columns[all - 1]].0;
             cx.error(
                 last.name.place.clone(),
-                format!("{subject} {verb} {all} velocities: {}", list(columns)),
+                format!("{subject} {verb} {all} velocities: {}", list_velocity_names(columns)),
             )
             .help(format!(
                 "speeds replace all velocities that they contain: declare the same number of speeds, for \
@@ -184,8 +184,10 @@ impl<'a, 'g> Builder<'a, 'g> {
             columns.contains(&limit.v.0).then_some((limit.v.0, key))
         });
         if let Some((k, key)) = bounded {
-            let (rate, what) =
-                (list(&[k]), if key == Key::MaxSpeed { "the rate" } else { "the force on the rate" });
+            let (rate, what) = (
+                list_velocity_names(&[k]),
+                if key == Key::MaxSpeed { "the rate" } else { "the force on the rate" },
+            );
             cx.error(
                 declared[0].name.place.clone(),
                 format!("speeds replace the rate of {rate}, which has a `{}`", key.name()),

@@ -8,7 +8,7 @@ use crate::language::Method;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
-/// Target of a force element.
+/// Target on which a force element acts.
 pub enum Target<'g> {
     /// Coordinate. The flag is true for an angle, `None` if it may be an angle or a length.
     Coordinate(Coordinate, Option<bool>),
@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Resolves `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
+    /// Resolves a target written as `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
     pub fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
             ExprKind::Name(name) => self.named_target(on, name, cx),
@@ -105,7 +105,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.place(on, cx).map(Target::Point)
     }
 
-    /// Resolves `joint.coordinate`.
+    /// Resolves a target written as `joint.coordinate`.
     fn coordinate_of_joint(
         &self,
         on: &Expr,
@@ -143,7 +143,7 @@ impl<'g> Builder<'_, 'g> {
         None
     }
 
-    /// Returns a declared coordinate by its name.
+    /// Returns the declared coordinate with this name.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
         let kinematics = &self.scope.kinematics;

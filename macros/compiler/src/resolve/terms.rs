@@ -15,11 +15,11 @@ use crate::syntax::{self, ExprKind};
 
 /// A length or angle on which an element acts.
 pub struct Stretch<'g> {
-    /// Value, m or rad.
+    /// Value of the stretch, m or rad.
     pub value: Expr<'g>,
-    /// Rate, linear in the velocities.
+    /// Rate of the stretch, linear in the velocities.
     pub rate: Expr<'g>,
-    /// Square of the value.
+    /// Square of the stretch.
     pub square: Expr<'g>,
     /// Whether the value is the signed coordinate along a fixed line; the length is then its magnitude.
     pub signed: bool,
@@ -31,7 +31,7 @@ pub struct ActedOn<'g> {
     pub stretch: Option<Stretch<'g>>,
     /// Whether it is an angle; `None` if it may also be a length.
     pub angle: Option<bool>,
-    /// Coordinate, if the element acts on one.
+    /// Coordinate on which the element acts; `None` for a length.
     pub coordinate: Option<Coordinate>,
 }
 
@@ -104,14 +104,14 @@ impl<'g> Builder<'_, 'g> {
     /// Adds potential energies and dissipation functions given as expressions, followed by the outputs.
     pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
-        let ground = || Some((None, Pose::identity(self.scope.graph)));
+        let ground_frame = || Some((None, Pose::identity(self.scope.graph)));
         for (name, e) in &d.energies {
-            let context = Context::new(Allowed::Placement, ground());
+            let context = Context::new(Allowed::Placement, ground_frame());
             let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             self.add_forces(&name.text, Forces::of_potentials(energy));
         }
         for (name, e) in &d.dissipations {
-            let context = Context::new(Allowed::Motion, ground());
+            let context = Context::new(Allowed::Motion, ground_frame());
             let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             // Zero is not an error: the bodies may be welded together.
             if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
@@ -126,7 +126,7 @@ impl<'g> Builder<'_, 'g> {
         self.add_outputs(cx);
         // Unused definitions are checked as well.
         for definition in &d.definitions {
-            let context = Context::new(Allowed::Reaction, ground());
+            let context = Context::new(Allowed::Reaction, ground_frame());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
             let _ = self.scope.in_context(context, |scope| scope.value(&e, cx));
@@ -167,19 +167,19 @@ fn always_zero(r: Vec3<'_>) -> bool {
 
 /// Returns the direction of a vector, if it is the same for all coordinates and parameters.
 fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
-    let evaluate = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
-    let first = evaluate(0);
+    let evaluate_with_seed = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
+    let first = evaluate_with_seed(0);
     let norm = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let e = [first[0] / norm, first[1] / norm, first[2] / norm];
     let parallel = (1..5).all(|seed| {
-        let v = evaluate(seed);
+        let v = evaluate_with_seed(seed);
         let along: f64 = (0..3).map(|k| v[k] * e[k]).sum();
         let size = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         (0..3).all(|k| (v[k] - along * e[k]).abs() <= 1e-12 * size)
     });
     // The first nonzero component of the direction is positive.
     let flip = e.iter().find(|c| c.abs() > 1e-9).is_some_and(|c| *c < 0.0);
-    let snap = |c: f64| {
+    let snap_to_unit = |c: f64| {
         if c.abs() < 1e-12 {
             0.0
         } else if (c.abs() - 1.0).abs() < 1e-12 {
@@ -188,5 +188,5 @@ fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
             c
         }
     };
-    (parallel && norm.is_finite() && norm > 0.0).then(|| e.map(|c| snap(if flip { -c } else { c })))
+    (parallel && norm.is_finite() && norm > 0.0).then(|| e.map(|c| snap_to_unit(if flip { -c } else { c })))
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Tree joints in an order in which every parent is placed before its children, with the bodies that they
 /// place, and the joints that close loops.
 pub struct Order {
-    /// Indices of the joint and of its child.
+    /// Index of the joint and of its child body, for each tree joint.
     pub joints: Vec<(usize, BodyIndex)>,
     /// Joints whose child has already been placed.
     pub closing: Vec<usize>,
@@ -46,7 +46,7 @@ pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
     closing
 }
 
-/// Whether one element is a descendant of another (or the same).
+/// Returns whether an element is a descendant of another element, or is that element.
 fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool {
     let mut current = Some(carried);
     (0..=parents.len()).any(|_| {
@@ -72,7 +72,7 @@ pub fn find_tree(
     scope: &Scope<'_, '_>,
     cx: &mut Diagnostics,
 ) -> Option<Order> {
-    let index = |name: &Name, cx: &mut Diagnostics| -> Result<Option<BodyIndex>, ()> {
+    let index_of_body = |name: &Name, cx: &mut Diagnostics| -> Result<Option<BodyIndex>, ()> {
         let is_point = description.points.iter().any(|p| p.name.text == name.text)
             || description.particles.iter().any(|p| p.at.is_some() && p.name.text == name.text);
         if name.text == GROUND || is_point {
@@ -91,7 +91,7 @@ pub fn find_tree(
     let mut is_valid = true;
     let closing = loop_closing_joints(description);
     for (j, joint) in description.joints.iter().enumerate() {
-        let (parent, child) = (index(&joint.parent.body, cx), index(&joint.child.body, cx));
+        let (parent, child) = (index_of_body(&joint.parent.body, cx), index_of_body(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {
             is_valid = false;
             continue;
@@ -136,11 +136,12 @@ pub fn find_tree(
 /// may be its own ancestor.
 fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
-    let joints = || loops.iter().map(|j| &description.joints[*j]);
-    if let Some(joint) = joints().find(|j| j.child.body.text == *name) {
+    let loop_joints = || loops.iter().map(|j| &description.joints[*j]);
+    if let Some(joint) = loop_joints().find(|j| j.child.body.text == *name) {
         cx.error(joint.name.place.clone(), format!("the joints of `{name}` form a cycle without the ground"))
             .help(format!("start one of them at the ground, as in `ground -> {name}`"));
-    } else if let Some(joint) = joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
+    } else if let Some(joint) =
+        loop_joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
     {
         cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
             .help(format!("reverse the joint, `ground -> {name}`, or connect `{name}` by another one"));

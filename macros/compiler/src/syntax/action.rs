@@ -1,4 +1,4 @@
-//! Force elements with their targets and laws.
+//! Parsing of force elements with their targets and laws.
 
 use super::arguments::Arguments;
 use super::keys::{Keys, check_relations};

@@ -1,4 +1,5 @@
-//! Arguments of an attribute: parsed without knowledge of the attribute, then taken one by one by its reader.
+//! Arguments of an attribute, which are parsed without knowledge of the attribute and then taken one by one
+//! by its reader.
 
 use super::file_parameters::FileParameters;
 use super::{Expr, ExprKind, Name, words};
@@ -26,7 +27,7 @@ pub struct Arguments {
     place: Place,
     /// Name of the element to which the arguments belong.
     owner: String,
-    /// Grammar of the attribute.
+    /// Grammar of the attribute's arguments.
     grammar: Grammar,
 }
 
@@ -37,7 +38,7 @@ enum Grammar {
     Joint,
     /// Equilibrium: any number of equations.
     Equilibrium,
-    /// All other attributes.
+    /// Arguments of any other attribute.
     Other,
 }
 
@@ -52,8 +53,8 @@ impl Arguments {
     /// Parses the arguments of an attribute.
     pub fn of_attribute(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        let is = |word: &str| attribute.path().is_ident(word);
-        let grammar = match (is("joint"), is("equilibrium")) {
+        let is_attribute = |word: &str| attribute.path().is_ident(word);
+        let grammar = match (is_attribute("joint"), is_attribute("equilibrium")) {
             (true, _) => Grammar::Joint,
             (_, true) => Grammar::Equilibrium,
             _ => Grammar::Other,
@@ -69,7 +70,7 @@ impl Arguments {
         }
     }
 
-    /// Parses the tokens between the parentheses.
+    /// Parses the tokens between the parentheses of an attribute.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
         Arguments::parse_with(tokens, span, Grammar::Other, cx)
     }
@@ -122,12 +123,12 @@ impl Arguments {
         self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
-    /// Removes a key.
+    /// Removes a key with its value from the arguments.
     pub fn remove_key(&mut self, key: &str) {
         self.named.retain(|(name, _)| name.text != key);
     }
 
-    /// Removes all keys.
+    /// Removes all keys with their values from the arguments.
     pub fn remove_all(&mut self) {
         self.named.clear();
     }
@@ -142,7 +143,7 @@ impl Arguments {
         &self.plain
     }
 
-    /// Whether no argument remains.
+    /// Returns whether no argument remains.
     pub fn is_empty(&self) -> bool {
         self.named.is_empty() && self.plain.is_empty() && self.equations.is_empty() && self.relation.is_none()
     }
@@ -165,16 +166,16 @@ impl Arguments {
 
     /// Removes an option without a value, and returns its span.
     pub fn take_option(&mut self, word: &str) -> Option<Place> {
-        let is_word = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
-        let index = self.plain.iter().position(is_word)?;
+        let is_option_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
+        let index = self.plain.iter().position(is_option_name)?;
         Some(self.plain.remove(index).place)
     }
 
     /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
     /// true if there are any.
     pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
-        let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
-        let call = self.plain.iter().position(is_call).map(|index| self.plain.remove(index).place);
+        let is_option_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
+        let call = self.plain.iter().position(is_option_call).map(|index| self.plain.remove(index).place);
         let argument = self.take(word);
         let Some(place) = call.or(argument.as_ref().map(|(name, _)| name.place.clone())) else {
             return false;
@@ -238,7 +239,7 @@ impl Arguments {
         self.take_expr(key, cx)
     }
 
-    /// Returns the expressions of a key: one, or several in parentheses.
+    /// Removes a key and returns its expressions: one expression, or several in parentheses.
     pub fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
         match self.take_expr(key, cx) {
             Some(Expr { kind: ExprKind::Tuple(items), .. }) => items,
@@ -247,7 +248,7 @@ impl Arguments {
         }
     }
 
-    /// Returns the value of a key that is one of a few words.
+    /// Removes a key and returns its value, which is one of a few words.
     pub fn take_choice(
         &mut self,
         key: &str,
@@ -284,7 +285,7 @@ impl Arguments {
         }
     }
 
-    /// Returns the string of a key.
+    /// Removes a key and returns its string.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take(key)? {
             (_, ArgumentValue::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
@@ -298,10 +299,10 @@ impl Arguments {
 
     /// Returns the strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
-        let to_name = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
+        let name_of_literal = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take(key) {
             None => Vec::new(),
-            Some((_, ArgumentValue::Texts(texts))) => texts.iter().map(to_name).collect(),
+            Some((_, ArgumentValue::Texts(texts))) => texts.iter().map(name_of_literal).collect(),
             Some((_, ArgumentValue::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
                 Vec::new()
             }
@@ -327,14 +328,15 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// Returns the only equation `a = b`. The left side may be a single name; `b` is `None` for an expression
-    /// without an equals sign.
+    /// Removes and returns the only equation `a = b`. The left side may be a single name; `b` is `None` for
+    /// an expression without an equals sign.
     pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
         }
-        let is_expr = |(_, value): &(Name, ArgumentValue)| matches!(value, ArgumentValue::Expr(_));
-        if let Some(index) = self.named.iter().position(is_expr)
+        let is_expression_argument =
+            |(_, value): &(Name, ArgumentValue)| matches!(value, ArgumentValue::Expr(_));
+        if let Some(index) = self.named.iter().position(is_expression_argument)
             && self.plain.is_empty()
             && let (name, ArgumentValue::Expr(right)) = self.named.remove(index)
         {
@@ -344,7 +346,7 @@ impl Arguments {
         first.map(|e| (e, None))
     }
 
-    /// Returns all equations; those with a single name on the left side are first.
+    /// Removes and returns all equations; equations with a single name on the left side come first.
     pub fn take_values(&mut self) -> Vec<(Expr, Expr)> {
         let mut values = Vec::new();
         let mut rest = Vec::new();

@@ -1,5 +1,4 @@
-//! The struct and its attributes: classification of fields as parameters and elements, and parsing of their
-//! attributes.
+//! Parsing of the struct and its attributes: fields are classified as parameters and elements.
 
 use super::expression::name;
 use super::field::{check_duplicates, is_known, read_field};

@@ -10,7 +10,7 @@ use crate::language::{Callable, Method, OtherKind};
 pub const CONTACT_HELP: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
 
-/// Reads a contact.
+/// Reads the declaration of a unilateral contact.
 pub fn read_contact(
     name: Name,
     arguments: &mut Arguments,

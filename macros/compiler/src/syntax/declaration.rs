@@ -1,5 +1,4 @@
-//! The struct as written by the user, for generated documentation: source text, and doc comments of its
-//! fields.
+//! Source text of the user's declaration, with the doc comments of its fields, for generated documentation.
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -37,26 +36,26 @@ pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
 /// Removes the indentation of the last line, the closing brace, from all lines.
 fn dedent(text: &str) -> String {
     let depth = text.lines().last().map_or(0, |last| last.len() - last.trim_start().len());
-    let line = |line: &str| {
+    let dedent_line = |line: &str| {
         let blank = line.len() - line.trim_start().len();
         line.get(depth.min(blank)..).unwrap_or_default().to_string()
     };
     let mut lines = text.lines();
     let first = lines.next().unwrap_or_default().to_string();
-    [first].into_iter().chain(lines.map(line)).collect::<Vec<_>>().join("\n")
+    [first].into_iter().chain(lines.map(dedent_line)).collect::<Vec<_>>().join("\n")
 }
 
 /// Returns the first paragraph of the doc comment of every field that has one.
 pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
-    let note = |field: &syn::Field| {
+    let note_of_field = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
         let paragraph = first_paragraph(&field.attrs);
         (!paragraph.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), paragraph))
     };
-    item.fields.iter().filter_map(note).collect()
+    item.fields.iter().filter_map(note_of_field).collect()
 }
 
-/// Returns the texts of documentation comments.
+/// Returns the lines of documentation comments.
 pub fn doc_lines(attributes: &[Attribute]) -> impl Iterator<Item = String> {
     attributes.iter().filter_map(|attribute| match &attribute.meta {
         Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {

@@ -1,5 +1,5 @@
-//! Two structs with one name in one module: the Rust compiler reports the name once, but also each function
-//! that both define. The second struct therefore gets no functions.
+//! Detection of two structs with one name in one module. The Rust compiler reports the name once, but also
+//! each function that both structs define; therefore the second struct gets no functions.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -48,7 +48,7 @@ pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<
     None
 }
 
-/// Whether an attribute may remove the struct.
+/// Returns whether an attribute may remove the struct, as `cfg` does.
 fn is_conditional(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") || attribute.path().is_ident("cfg_attr")
 }

@@ -18,7 +18,7 @@ use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
-/// Attributes of the language.
+/// Names of all attributes of the language.
 pub const ATTRIBUTES: [&str; 17] = [
     "body",
     "particle",
@@ -39,7 +39,7 @@ pub const ATTRIBUTES: [&str; 17] = [
     "unit",
 ];
 
-/// Attribute of outputs.
+/// Name of the attribute of outputs.
 const OUTPUT: &str = "output";
 
 /// Numeric types of Rust that parameters cannot have.
@@ -127,7 +127,7 @@ pub fn read_element(
     }
 }
 
-/// Reads the rate of a state.
+/// Reads the rate of a state of first order.
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
@@ -138,7 +138,7 @@ pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut D
     rate
 }
 
-/// Whether an attribute has one of these names.
+/// Returns whether an attribute has one of these names.
 pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
@@ -150,7 +150,7 @@ pub const CONDITION_HELP: &str =
 /// Whether an attribute removes a parameter conditionally, or conditionally adds an attribute of the
 /// language.
 pub fn is_conditional(attribute: &Attribute) -> bool {
-    let conditional = |list: &syn::MetaList| {
+    let is_conditional_list = |list: &syn::MetaList| {
         let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
         let parts = parse.parse2(list.tokens.clone()).unwrap_or_default();
         parts.iter().skip(1).any(|part| {
@@ -160,7 +160,7 @@ pub fn is_conditional(attribute: &Attribute) -> bool {
     };
     match &attribute.meta {
         meta if meta.path().is_ident("cfg") => true,
-        Meta::List(list) if list.path.is_ident("cfg_attr") => conditional(list),
+        Meta::List(list) if list.path.is_ident("cfg_attr") => is_conditional_list(list),
         _ => false,
     }
 }
@@ -175,7 +175,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
             return None;
         }
     };
-    let whole = |input: ParseStream<'_>| {
+    let parse_whole_unit = |input: ParseStream<'_>| {
         if input.peek(LitStr) {
             let text: LitStr = input.parse()?;
             let help = format!("write it without quotes: `#[unit({})]`", text.value());
@@ -191,7 +191,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
         };
         Err(syn_error(input.span(), "expected `*` or `/`", help))
     };
-    whole.parse2(tokens).map_err(|error| cx.syn(error)).ok()
+    parse_whole_unit.parse2(tokens).map_err(|error| cx.syn(error)).ok()
 }
 
 /// Returns the arguments of the only attribute of an element of this kind.
@@ -230,8 +230,8 @@ fn attribute_arguments(
     found.flatten()
 }
 
-/// Reports an attribute of neither the language nor Rust. Returns false after an unknown one, because it is
-/// most likely the required one misspelt.
+/// Checks an attribute, and reports it if it belongs neither to the language nor to Rust. Returns false after
+/// an unknown attribute, because it is most likely the required one misspelt.
 fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut Diagnostics) -> bool {
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
@@ -410,7 +410,7 @@ fn read_other(
     }
 }
 
-/// Reads a named expression or an output.
+/// Reads the declaration of a definition or an output.
 fn read_definition(
     name: Name,
     (kind, rank): (OtherKind, Rank),
@@ -428,7 +428,7 @@ fn read_definition(
     list.push(Definition { name, rank, value, resolved_in });
 }
 
-/// Reads the expression of an element that consists of one, apart from the arguments of its row.
+/// Reads the expression of an element that consists of one expression, and the arguments of its row.
 fn read_expression(
     name: &Name,
     kind: OtherKind,

@@ -15,7 +15,7 @@ const MAX_LENGTH: usize = 400;
 const PIECEWISE_HELP: &str =
     "a piecewise law is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
-/// A parsed expression with its size.
+/// Parsed expression with its size.
 struct Parsed(Expr, Size);
 
 /// Size of an expression, whose bounds limit the recursion of every traversal.
@@ -23,7 +23,7 @@ struct Parsed(Expr, Size);
 struct Size {
     /// Nesting of operands, arguments and pieces; left operands of operators are not nested.
     depth: usize,
-    /// Longest path of operators, members and calls.
+    /// Length of the longest path of operators, members and calls.
     length: usize,
 }
 
@@ -39,7 +39,7 @@ impl Size {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
-    /// Returns the size of a chain that is longer by one, at the same depth.
+    /// Returns the size of a chain with one more link, at the same nesting depth.
     fn extended(self) -> Self {
         Self { length: self.length + 1, ..self }
     }
@@ -289,17 +289,17 @@ fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
     if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected_token_error(&content)) }
 }
 
-/// Parses an expression passed on by a macro of the user: it is one operand without parentheses.
+/// Parses an expression that a macro of the user passes on: one operand without parentheses.
 fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let TokenTree::Group(group) = input.parse()? else { return Err(missing_expression_error(input)) };
-    let whole = |inner: ParseStream<'_>| {
+    let parse_whole_fragment = |inner: ParseStream<'_>| {
         let parsed = parse_sum(inner)?;
         if inner.is_empty() { Ok(parsed) } else { Err(unexpected_token_error(inner)) }
     };
-    whole.parse2(group.stream())
+    parse_whole_fragment.parse2(group.stream())
 }
 
-/// Error for a missing expression.
+/// Returns the error for a missing expression.
 fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected an expression: a number, a name, a call or a vector";
     let help = if input.peek(Token![*]) {

@@ -10,7 +10,7 @@ use crate::diag::{Diagnostics, Place};
 use syn::spanned::Spanned;
 use syn::{Field, Ident};
 
-/// Reads a field.
+/// Reads a field of the struct.
 pub fn read_field(
     mut field: Field,
     generic: Option<&str>,

@@ -8,34 +8,34 @@ use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
 use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
 
-/// Requested parameters of one kind.
+/// Values of a file, of one kind, that become parameters of the mechanism.
 #[derive(Clone, Debug)]
 pub struct FileParameters {
-    /// Kind, as written.
+    /// Kind of the values, as written.
     pub word: Name,
     /// Names of links or joints; all of them if absent.
     pub of: Option<Vec<Name>>,
 }
 
-/// Mass properties of links.
+/// Option value for mass properties of links.
 pub const INERTIAL: &str = "inertial";
-/// Positions and orientations of joints.
+/// Option value for positions and orientations of joints.
 pub const PLACEMENT: &str = "placement";
-/// Viscous friction of joints.
+/// Option value for viscous friction of joints.
 pub const DAMPING: &str = "damping";
-/// Dry friction of joints.
+/// Option value for dry friction of joints.
 pub const FRICTION: &str = "friction";
 
 const WORDS: [&str; 4] = [INERTIAL, PLACEMENT, DAMPING, FRICTION];
 
-/// Type of a field.
+/// Type of a field that holds values of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFieldKind {
     /// `Inertial` of the runtime: the mass properties of a link.
     Inertial,
     /// `Placement` of the runtime: the pose of a joint on its parent.
     Placement,
-    /// Scalar.
+    /// Scalar number.
     Number,
 }
 
@@ -46,13 +46,13 @@ pub struct FileField {
     pub ident: String,
     /// Type of the field.
     pub kind: FileFieldKind,
-    /// Link or joint to which it belongs.
+    /// Name of the link or joint to which the field belongs.
     pub of: String,
     /// Documentation of the field.
     pub about: String,
     /// Values in the file, in the order of [`members`](Self::members).
     pub values: Vec<f64>,
-    /// Units of the values.
+    /// Units of the values, in the same order.
     pub units: Vec<&'static str>,
 }
 
@@ -70,7 +70,7 @@ impl FileField {
     }
 }
 
-/// Parses one kind or a list of kinds.
+/// Parses one kind of file values, or a list of kinds.
 pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileParameters>> {
     if !input.peek(token::Bracket) {
         return Ok(vec![parse_one(input)?]);
@@ -102,7 +102,7 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
         let help = format!("write `{}` alone for all of them", word.text);
         return Err(syn_error(word.place.span, "missing name in these parentheses", &help));
     }
-    let name = |input: ParseStream<'_>| -> syn::Result<Name> {
+    let parse_quoted_name = |input: ParseStream<'_>| -> syn::Result<Name> {
         if !input.peek(LitStr) {
             let help = "names of the file are strings: `inertial(\"trunk\")`";
             return Err(syn_error(input.span(), "expected a name in quotation marks", help));
@@ -110,11 +110,11 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
         let text: LitStr = input.parse()?;
         Ok(Name { text: text.value(), place: text.span().into() })
     };
-    let names = Punctuated::<Name, Token![,]>::parse_terminated_with(&list, name)?;
+    let names = Punctuated::<Name, Token![,]>::parse_terminated_with(&list, parse_quoted_name)?;
     Ok(FileParameters { word, of: Some(names.into_iter().collect()) })
 }
 
-/// Returns the known kinds, each once; reports unknown ones and duplicates.
+/// Returns the known kinds, each once; reports unknown kinds and duplicates.
 pub fn check(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
     let mut good: Vec<FileParameters> = Vec::new();
     for figures in requested {

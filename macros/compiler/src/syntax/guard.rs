@@ -9,7 +9,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 pub const MAX_DEPTH: usize = 48;
 /// Maximum number of tokens since the last separators of all open brackets, outside attributes.
 const MAX_TYPE_TOKENS: usize = 100;
-/// Maximum number of digits of a number.
+/// Maximum number of digits of a number in the source.
 const MAX_DIGITS: usize = 1000;
 /// Maximum number of tokens in one struct.
 const MAX_TOKENS: usize = 400_000;
@@ -20,11 +20,11 @@ pub const MAX_STACK: usize = MAX_DEPTH * (32 << 10) + (512 << 10);
 
 /// An open bracket during the traversal of tokens.
 struct OpenBracket {
-    /// Tokens not yet visited.
+    /// Tokens that have not been visited.
     tokens: proc_macro2::token_stream::IntoIter,
-    /// Number of brackets and prefix operators around its contents.
+    /// Number of brackets and prefix operators that enclose the tokens.
     depth: usize,
-    /// Number of type tokens around its contents.
+    /// Number of type tokens that enclose the tokens.
     outer: usize,
     /// Whether types are possible; false within attributes, whose expressions have a separate parser.
     has_types: bool,

@@ -1,11 +1,11 @@
-//! Joints: their ends, axes and pitch.
+//! Parsing of joints: their ends, axes and pitch.
 
 use super::arguments::Arguments;
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
 use crate::language::{JointKind, Method};
 
-/// Reads a joint.
+/// Reads the declaration of a joint.
 pub fn read_joint(
     name: &Name,
     kind: JointKind,

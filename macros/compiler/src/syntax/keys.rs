@@ -10,7 +10,7 @@ use crate::language::{Callable, Key, OtherKind, Relation};
 pub struct Keys<'a> {
     /// All arguments that the row of the element lists.
     pub all: &'a [Key],
-    /// Alternative laws, of which one is given.
+    /// Arguments that give alternative laws; one of them is given.
     pub laws: &'a [Key],
     /// Arguments that must be given, with an example each.
     pub required: &'a [(Key, &'a str)],
@@ -28,7 +28,8 @@ impl<'a> Keys<'a> {
         Keys { all: row.arguments, laws: &[], required: row.required, attribute, names }
     }
 
-    /// Reads the arguments, laws first. The result is false if a required one is missing.
+    /// Reads the arguments of an element, laws first. The second result is false if a required argument is
+    /// missing.
     pub fn read(&self, arguments: &mut Arguments, cx: &mut Diagnostics) -> (WrittenArguments, bool) {
         let mut given: Vec<(Key, Expr)> = Vec::new();
         let mut is_complete = true;

@@ -9,7 +9,7 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
 
-/// Index of a list's element in its attributes.
+/// Name of the index of a list's element in its attributes.
 const INDEX: &str = "i";
 /// Maximum number of elements of all lists together.
 const MAX_LIST_ELEMENTS: usize = 4096;
@@ -112,7 +112,7 @@ impl Lists {
         }
     }
 
-    /// Replaces `leg[1]` by the element's name, and the index by its value.
+    /// Replaces `leg[1]` by the name of the element, and the index by its value.
     pub fn rewrite(
         &mut self,
         tokens: TokenStream,

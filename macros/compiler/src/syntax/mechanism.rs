@@ -7,31 +7,31 @@ use super::request::Requests;
 use super::{Base, Description, Inertias, Name};
 use syn::{Attribute, Field, Ident, Visibility};
 
-/// A parsed use of `#[mechanism]`.
+/// Parsed struct with the attribute `#[mechanism]`.
 pub struct Mechanism {
     /// Description of the mechanism.
     pub description: Description,
-    /// Struct without its elements.
+    /// Struct without the fields that are elements.
     pub shell: Shell,
     /// File to import, if there is one.
     pub file: Option<FileOptions>,
     /// Optional functions to generate.
     pub requests: Requests,
-    /// Fields that could be read.
+    /// Statement of which fields could be read.
     pub reading: Reading,
 }
 
-/// The struct without its elements.
+/// Struct without the fields that are elements.
 pub struct Shell {
-    /// Documentation and other attributes.
+    /// Documentation and other attributes of the struct.
     pub attributes: Vec<Attribute>,
-    /// Visibility.
+    /// Visibility of the struct.
     pub visibility: Visibility,
-    /// Name.
+    /// Name of the struct.
     pub ident: Ident,
-    /// Generics, with their where clause.
+    /// Generics of the struct, with their where clause.
     pub generics: syn::Generics,
-    /// Fields that remain in the struct.
+    /// Fields that remain in the struct as parameters.
     pub parameters: Vec<Field>,
     /// Fields that are tables, which also remain.
     pub tables: Vec<Field>,
@@ -48,7 +48,7 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// Whether the generated code is not generic.
+    /// Returns whether the generated code is not generic.
     pub fn is_concrete(&self) -> bool {
         self.generics.params.is_empty()
     }
@@ -77,7 +77,7 @@ pub const GROUND: &str = "ground";
 /// Name of the joint of a file's root, which is unnamed in files; a number is appended if the name is taken.
 pub const ROOT_JOINT: &str = "root_joint";
 
-/// Treatment of the limits of a file.
+/// Option for the treatment of the limits of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOption {
     /// Limits of the file are bounds for controllers.
@@ -88,19 +88,19 @@ pub enum LimitOption {
     Stops,
 }
 
-/// A file format of robots.
+/// File format of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
-    /// `urdf = "…"`
+    /// URDF, imported by `urdf = "…"`.
     Urdf,
-    /// `mjcf = "…"`
+    /// MJCF, imported by `mjcf = "…"`.
     Mjcf,
-    /// `sdf = "…"`
+    /// SDF, imported by `sdf = "…"`.
     Sdf,
 }
 
 impl FileFormat {
-    /// All formats.
+    /// All file formats of robots.
     pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
     /// Returns the option of `#[mechanism]` for the format.
@@ -138,7 +138,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns the extensions of such files.
+    /// Returns the file extensions of this format.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
@@ -148,12 +148,12 @@ impl FileFormat {
     }
 }
 
-/// Inputs of a mechanism from a file.
+/// Option for the inputs of a mechanism from a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputOption {
     /// One input per moving joint with one degree of freedom.
     Joints,
-    /// The motors declared in the file.
+    /// One input for each motor that the file declares.
     Actuators,
     /// No inputs.
     None,
@@ -162,27 +162,27 @@ pub enum InputOption {
 /// Options of `#[mechanism(urdf = "…", …)]` and `#[mechanism(mjcf = "…", …)]`.
 #[derive(Clone, Debug)]
 pub struct FileOptions {
-    /// File format.
+    /// Format of the robot file.
     pub format: FileFormat,
-    /// Path as written.
+    /// Path of the robot file as written.
     pub path: Name,
-    /// Attachment of the root link.
+    /// Option for the attachment of the root link.
     pub base: Base,
     /// Whether damping and friction of the file are included.
     pub honour_passive: bool,
-    /// Whether mimic joints follow their masters.
+    /// Whether mimic joints follow their leaders.
     pub follow_mimic: bool,
-    /// Treatment of the limits of the file.
+    /// Option for the treatment of the limits of the file.
     pub limits: LimitOption,
-    /// Treatment of mass properties.
+    /// Option for the treatment of mass properties.
     pub inertias: Inertias,
-    /// Inputs of the mechanism.
+    /// Option for the inputs of the mechanism.
     pub inputs: InputOption,
-    /// Joints fixed at zero.
+    /// Names of joints that are fixed at coordinate zero.
     pub lock: Vec<Name>,
     /// Tolerance within which frames and axes of the file are rounded, rad and m.
     pub snap: Option<f64>,
-    /// Values of the file that are parameters.
+    /// Values of the file that become parameters.
     pub parameters: Vec<FileParameters>,
     /// Whether contacts of the file are included.
     pub contacts: bool,
@@ -190,6 +190,6 @@ pub struct FileOptions {
     pub close_loops: bool,
     /// Whether contacts use the collision geometry of links.
     pub collisions: bool,
-    /// Whether visual geometry is drawn.
+    /// Whether the visual geometry of a robot file is drawn.
     pub visuals: bool,
 }

@@ -45,5 +45,6 @@ pub use mechanism::{
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
 
-/// Suffix of a state's name in the name of the function for its rate.
+/// Suffix that, appended to the name of a state, gives the name of the function that returns the state's time
+/// derivative.
 pub const RATE_OF_STATE: &str = "_rate";

@@ -13,7 +13,7 @@ use proc_macro2::{Span, TokenStream};
 /// Maximum of the tolerance `snap`, rad and m.
 const LARGEST_SNAP: f64 = 0.01;
 
-/// Options with a value.
+/// Options of `#[mechanism(…)]` that take a value.
 const OPTIONS: [&str; 22] = [
     "gravity",
     "friction_speed",
@@ -39,7 +39,7 @@ const OPTIONS: [&str; 22] = [
     "equations",
 ];
 
-/// Reads the arguments. Returns the options of the imported file, if there is one.
+/// Reads the arguments of `#[mechanism(…)]`. Returns the options of the imported robot file, if there is one.
 pub fn read_options(
     arguments: TokenStream,
     description: &mut Description,

@@ -56,7 +56,7 @@ pub fn type_name(ty: &Type) -> Option<Ident> {
     }
 }
 
-/// Reads the `#[unit(…)]` of the next parameter.
+/// Reads the attribute `#[unit(…)]`, which applies to the parameter declared next.
 pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut Diagnostics) {
     let mut units = attributes.iter().filter(|a| element::is_one_of(a, &["unit"]));
     if let Some(first) = units.next() {

@@ -11,11 +11,12 @@ use syn::Field;
 /// Options of `#[mechanism]` with which fields are checked.
 const GLOBAL_OPTIONS: [&str; 2] = ["urdf", "inertia"];
 
-/// Words in the attributes of one field.
+/// Identifiers that occur in the attributes of one field of a mechanism.
 struct FieldWords {
     name: Name,
     words: BTreeSet<String>,
-    /// Whether it is a body placed by joints; its name is then known in spite of errors in its attribute.
+    /// Whether the field is a body placed by joints. The name of such a body is known even if its attribute
+    /// has errors.
     body: bool,
     has_errors: bool,
 }
@@ -28,7 +29,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Records a field.
+    /// Records a field of the mechanism with the identifiers in its attributes.
     pub fn record_field(&mut self, field: &Field) {
         let mut words = BTreeSet::new();
         for attribute in &field.attrs {
@@ -45,7 +46,7 @@ impl Reading {
         self.unreadable = true;
     }
 
-    /// Marks the last field as unreadable.
+    /// Marks the field recorded last as unreadable.
     pub fn mark_last_field(&mut self) {
         if let Some(field) = self.fields.last_mut() {
             field.has_errors = true;
@@ -69,7 +70,7 @@ impl Reading {
             .any(|word| nearest(word, &GLOBAL_OPTIONS).is_some() || GLOBAL_OPTIONS.contains(&word.as_str()));
     }
 
-    /// Returns the description without unreadable fields and without those that depend on them. `None` if
+    /// Returns the description without unreadable fields and without fields that depend on them; `None` if
     /// nothing remains.
     pub fn readable_part(&self, whole: &Description) -> Option<Description> {
         if self.unreadable {
@@ -145,7 +146,7 @@ fn massless(name: &Name) -> Body {
     Body { name: name.clone(), mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }
 
-/// Collects all identifiers among tokens.
+/// Collects all identifiers in a token stream, including nested groups.
 fn collect(tokens: TokenStream, words: &mut BTreeSet<String>) {
     for token in tokens {
         match token {

@@ -3,23 +3,23 @@
 /// Equations printed in the documentation: `equations = word`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Printed {
-    /// Lagrange's, if they are short enough to be readable.
+    /// Prints Lagrange's equations if they are short enough to be readable.
     #[default]
     Readable,
-    /// Lagrange's, even if they are long.
+    /// Prints Lagrange's equations even if they are long.
     Lagrange,
-    /// Hamilton's.
+    /// Prints Hamilton's equations.
     Hamilton,
-    /// Kane's, in independent speeds.
+    /// Prints Kane's equations in independent generalized speeds.
     Kane,
-    /// Routh's.
+    /// Prints Routh's equations.
     Routh,
-    /// Only their structure.
+    /// Prints only the structure of the equations of motion.
     Structure,
 }
 
 impl Printed {
-    /// Options, with the equations that they select.
+    /// Values of the option `equations`, with the equations that they select.
     pub const WORDS: [(&str, Printed); 5] = [
         ("lagrange", Printed::Lagrange),
         ("hamilton", Printed::Hamilton),
@@ -29,30 +29,31 @@ impl Printed {
     ];
 }
 
-/// Skipped passes: `skip_passes = [word, …]`. They affect the cost of functions, but not their results.
+/// Compiler passes skipped by `skip_passes = [word, …]`. Skipping affects the cost of the generated
+/// functions, but not their results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Skipped {
-    /// Whether link frames remain as described.
+    /// Whether the pass that moves link frames is skipped, so that the frames remain as described.
     pub frames: bool,
-    /// Whether mass properties remain with their links.
+    /// Whether the pass that regroups mass properties is skipped, so that they remain with their links.
     pub regroup: bool,
     /// Whether links that rotate about parallel axes are described in their own axes.
     pub parallel: bool,
-    /// Whether SIMD lanes over identical limbs or over the joints of one path are disabled.
+    /// Whether vectorisation is skipped: no SIMD lanes over identical limbs or over the joints of one path.
     pub limbs: bool,
 }
 
-/// One row for each option: the option, its variant, and its meaning.
+/// Defines the options that request functions: each row has the option, its enum variant and its meaning.
 macro_rules! words {
     ($($(#[$doc:meta])* $word:ident: $variant:ident,)+) => {
-        /// An option that requests functions.
+        /// Option of `#[mechanism(…)]` that requests additional functions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Word {
             $($(#[$doc])* $variant,)+
         }
 
         impl Word {
-            /// All options.
+            /// All options that request functions.
             pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
 
             /// Returns the trait of the runtime that reports a missing option.
@@ -63,27 +64,27 @@ macro_rules! words {
             }
         }
 
-        /// Options as written.
+        /// Names of the options that request functions, as written in `#[mechanism(…)]`.
         pub(super) const REQUESTS: [&str; Word::ALL.len()] = [$(stringify!($word)),+];
 
-        /// Functions to generate in addition to those of every mechanism.
+        /// Functions to generate in addition to the functions of every mechanism.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Requests {
             $($(#[$doc])* pub $word: bool,)+
-            /// Whether values of a file are parameters.
+            /// Whether values of an imported robot file become parameters of the mechanism.
             pub file_parameters: bool,
             /// Whether mass properties of links are among these parameters.
             pub file_inertials: bool,
             /// Whether only instructions of the compilation target are used.
             pub target_only: bool,
-            /// Passes over the model to skip.
+            /// Compiler passes over the model that are skipped.
             pub skipped: Skipped,
-            /// Equations to print.
+            /// Equations of motion that are printed in the documentation.
             pub equations: Printed,
         }
 
         impl Requests {
-            /// Whether an option is requested.
+            /// Returns whether an option is requested.
             pub fn has(&self, word: Word) -> bool {
                 match word {
                     $(Word::$variant => self.$word,)+
@@ -101,30 +102,32 @@ macro_rules! words {
 }
 
 words! {
-    /// First derivatives of the dynamics.
+    /// Option that requests the first derivatives of the dynamics.
     derivatives: Derivatives,
-    /// First and second derivatives of the dynamics.
+    /// Option that requests the first and second derivatives of the dynamics.
     second_derivatives: SecondDerivatives,
-    /// First derivatives, and derivatives of momenta and of their rates.
+    /// Option that requests first derivatives of the dynamics, and derivatives of momenta and of their time
+    /// derivatives.
     momentum_derivatives: MomentumDerivatives,
-    /// Centroidal momentum matrix and its bias.
+    /// Option that requests the centroidal momentum matrix and its bias.
     centroidal: Centroidal,
     /// Energy and canonical equations as functions of configuration and momentum.
     hamilton: Hamilton,
-    /// Motion without cyclic coordinates, in terms of their momenta.
+    /// Option that requests Routh's equations: motion without cyclic coordinates, in terms of the momenta of
+    /// those coordinates.
     routh: Routh,
-    /// Conserved quantities.
+    /// Option that requests the conserved quantities of the mechanism.
     conserved: Conserved,
     /// Dynamics as linear functions of the mass properties.
     regressor: Regressor,
-    /// Derivatives of the dynamics by the parameters.
+    /// Option that requests derivatives of the dynamics with respect to the parameters.
     sensitivities: Sensitivities,
-    /// Mass matrix without its structural zeros.
+    /// Option that requests the mass matrix without its structural zeros.
     packed: Packed,
     /// A second struct with precomputed values that depend only on the parameters.
     prepare: Prepare,
     /// Functions of several states at once, in SIMD lanes.
     batch: Batch,
-    /// Drawing of the mechanism.
+    /// Option that requests a drawing of the mechanism.
     drawing: Drawing,
 }

@@ -10,8 +10,8 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Token, Type, Visibility, token};
 
-/// Returns the struct with a comma after every field, and the error at the first missing one. `None` if the
-/// struct remains invalid, or needs no correction.
+/// Returns the struct with a comma after every field, and the error at the first missing comma. Returns
+/// `None` if the struct remains invalid or lacks no comma.
 pub fn separate(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
@@ -78,9 +78,11 @@ fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)>
     Ok((input.parse()?, None))
 }
 
-/// Returns type and name if they are swapped: the name is an element's type.
+/// Returns the type and the name of a field whose type and name are swapped: its name is the type of an
+/// element.
 fn swapped_type_and_name(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
     let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
-    let is_type = |word: &Ident| element::is_element(&word.to_string());
-    (is_type(name) && !is_type(&other)).then(|| (Type::Verbatim(name.to_token_stream()), other))
+    let is_element_type = |word: &Ident| element::is_element(&word.to_string());
+    (is_element_type(name) && !is_element_type(&other))
+        .then(|| (Type::Verbatim(name.to_token_stream()), other))
 }

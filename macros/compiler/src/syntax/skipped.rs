@@ -5,13 +5,13 @@ use super::arguments::Arguments;
 use super::request::Skipped;
 use crate::diag::Diagnostics;
 
-/// Name of the option.
+/// Name of the option that lists the skipped passes.
 const KEY: &str = "skip_passes";
 
-/// Values of the option.
+/// Passes that the option `skip_passes` accepts.
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
 
-/// Takes the option from the arguments.
+/// Takes the option `skip_passes` from the arguments of the attribute.
 pub fn read(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {
     let mut skipped = Skipped::default();
     let Some(e) = arguments.take_expr(KEY, cx) else { return skipped };

@@ -7,7 +7,8 @@ use crate::diag::Diagnostics;
 use proc_macro2::Span;
 use syn::{Field, Ident};
 
-/// Reads a state: a parameter for all functions, and a hidden output for its rate.
+/// Reads a first-order state. Declares it as a parameter of all functions, and declares a hidden output for
+/// its time derivative.
 pub fn read_state(
     field: Field,
     kind: Ident,

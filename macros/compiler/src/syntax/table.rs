@@ -7,7 +7,7 @@ use crate::diag::Diagnostics;
 use syn::spanned::Spanned;
 use syn::{ExprLit, Field, GenericArgument, Lit, PathArguments, Type};
 
-/// Maximum number of tables of a mechanism.
+/// Maximum number of interpolation tables of a mechanism.
 const MAX_TABLES: usize = 256;
 
 /// Returns the number of variables of a table, the only argument of its type; `Some(None)` if it is missing.
@@ -32,7 +32,7 @@ pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
     })
 }
 
-/// Reads a table.
+/// Reads the declaration of an interpolation table.
 pub fn read_table(
     mut field: Field,
     name: &Name,

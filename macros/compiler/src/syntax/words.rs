@@ -9,7 +9,8 @@ mod tables;
 
 pub use tables::*;
 
-/// Returns the synonyms of an element's arguments; `kind` is the name of its type.
+/// Returns the synonyms of an element's arguments with their meanings; `kind` is the type name of the
+/// element.
 fn arguments(kind: &str) -> Words {
     match ElementKind::of_name(kind) {
         Some(element) => element.words(),
@@ -21,7 +22,7 @@ fn arguments(kind: &str) -> Words {
 /// Name of the attribute where an element is expected.
 const ATTRIBUTE: &str = "`#[mechanism]`";
 
-/// Returns the last word of an element's phrase, such as `Pin` of `a Pin`.
+/// Returns the last word of a phrase that names an element, such as `Pin` of `a Pin`.
 fn kind_of(whose: &str) -> &str {
     whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
 }
@@ -31,25 +32,25 @@ pub fn example(whose: &str) -> &'static str {
     ElementKind::of_name(kind_of(whose)).map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::example)
 }
 
-/// Words with their meanings.
+/// List of words that users may write by mistake, with their meanings in the language.
 type Entries<'a> = &'a [(&'static str, &'static str)];
 
-/// Returns the synonyms of functions.
+/// Returns the names that other tools use for functions, with their meanings in the language.
 pub fn functions() -> Vec<(&'static str, &'static str)> {
     FunctionId::synonyms().chain(FUNCTIONS.iter().copied()).collect()
 }
 
-/// Returns the synonyms of solids.
+/// Returns the names that other tools use for solids, with their meanings in the language.
 pub fn solids() -> Vec<(&'static str, &'static str)> {
     Solid::synonyms().chain(SOLIDS.iter().copied()).collect()
 }
 
-/// Returns the synonyms of rotations.
+/// Returns the names that other tools use for rotations, with their meanings in the language.
 pub fn rotations() -> Vec<(&'static str, &'static str)> {
     Rotation::synonyms().chain(ROTATIONS.iter().copied()).collect()
 }
 
-/// Normalises a word for the lookup.
+/// Normalises a word for the lookup of its meaning: in lower case and without underscores.
 fn key(word: &str) -> String {
     word.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
 }
@@ -58,9 +59,11 @@ fn key(word: &str) -> String {
 /// empty.
 pub fn meaning(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = key(word);
-    let fits = |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
-    let synonyms =
-        |(synonyms, meaning): &&(&str, &str)| fits(meaning) && synonyms.split(' ').any(|one| one == key);
+    let is_applicable_meaning =
+        |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
+    let synonyms = |(synonyms, meaning): &&(&str, &str)| {
+        is_applicable_meaning(meaning) && synonyms.split(' ').any(|one| one == key)
+    };
     words.iter().find(synonyms).map(|(_, meaning)| *meaning)
 }
 
@@ -69,7 +72,7 @@ pub fn is_request(word: &str) -> bool {
     super::request::REQUESTS.contains(&word)
 }
 
-/// Adds the meaning of a word to a message, if it is known; returns whether it is.
+/// Adds the meaning of an unknown word as help to an error message. Returns whether the meaning was found.
 pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
     match meaning(words, word, known) {
         Some(meaning) if meaning.contains(' ') => diagnostic.help(meaning),
@@ -86,8 +89,8 @@ pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &s
     }
 }
 
-/// Adds the meaning of a field's type, one of the `known` types, to a message. Returns false if none is
-/// found.
+/// Adds the element meant by an unknown field type, one of the `known` types, as help to a message. Returns
+/// false if none is found.
 pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
     let key = key(word);
     let bare = key.strip_suffix("joint").or(key.strip_suffix("element")).unwrap_or(&key);
@@ -99,7 +102,8 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
     explain(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
 }
 
-/// Returns the help for an argument that an element does not have; `whose` is the element with its article.
+/// Returns the help for an argument that an element does not have; `whose` names the element with its
+/// article, such as `a Pin`.
 pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
     let meaning = meaning(arguments(kind_of(whose)), word, known)?;
     Some(match meaning.contains(' ') {
@@ -114,28 +118,38 @@ pub fn known_spelling<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     for (letter, name) in GREEK {
         letters = letters.replace(letter, name);
     }
-    let same = |a: &str, b: &str| key(a) == key(b);
-    known.iter().find(|name| same(&letters, name)).copied()
+    let has_same_key = |a: &str, b: &str| key(a) == key(b);
+    known.iter().find(|name| has_same_key(&letters, name)).copied()
 }
 
 /// Returns the coordinate of a name that looks like its rate: `hinge_dot`, `hinged`, `dhinge`.
 pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["dot", "dt", "d", "rate", "vel", "velocity", "speed", "p"];
-    let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
-    let begin = |stem: &str| {
+    let ends_with_rate_suffix =
+        |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let begins_with_rate_prefix = |stem: &str| {
         word.strip_suffix(stem).is_some_and(|before| matches!(before, "d" | "d_" | "dot_" | "v_" | "rate_"))
     };
-    coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
+    coordinates
+        .iter()
+        .filter(|name| ends_with_rate_suffix(name) || begins_with_rate_prefix(name))
+        .max_by_key(|name| name.len())
+        .copied()
 }
 
 /// Returns the coordinate of a name that looks like its acceleration: `hinge_ddot`, `ddhinge`.
 pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
-    let end = |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
-    let begin = |stem: &str| {
+    let ends_with_rate_suffix =
+        |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let begins_with_rate_prefix = |stem: &str| {
         word.strip_suffix(stem).is_some_and(|before| matches!(before, "dd" | "dd_" | "ddot_" | "a_" | "acc_"))
     };
-    coordinates.iter().filter(|name| end(name) || begin(name)).max_by_key(|name| name.len()).copied()
+    coordinates
+        .iter()
+        .filter(|name| ends_with_rate_suffix(name) || begins_with_rate_prefix(name))
+        .max_by_key(|name| name.len())
+        .copied()
 }
 
 /// Whether a word looks like a Rust constant. Values of constants are unknown when a macro runs.
@@ -143,7 +157,8 @@ pub fn is_constant(word: &str) -> bool {
     word.chars().any(|c| c.is_ascii_uppercase()) && !word.chars().any(|c| c.is_ascii_lowercase())
 }
 
-/// Adds the likely meaning of a name without a value, one of the `known` names, to a message.
+/// Adds the likely meaning of an unknown name as help to an error message, such as the most similar of the
+/// `known` names.
 pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
     if let Some(coordinate) = rate_of(name, coordinates) {
         diagnostic.help(format!("write `rate({coordinate})` for its rate"));
@@ -175,32 +190,34 @@ impl Expr {
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
 
-    /// Whether another expression has the same text.
+    /// Returns whether another expression has the same source text.
     pub fn has_same_text(&self, other: &Expr) -> bool {
         spell(self) == spell(other)
     }
 }
 
 fn spell(e: &Expr) -> String {
-    let list = |items: &[Expr]| items.iter().map(spell).collect::<Vec<_>>().join(", ");
+    let spell_list = |items: &[Expr]| items.iter().map(spell).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(n) => n.to_string(),
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, member) => format!("{}.{}", spell(base), member.text),
-        ExprKind::Method(base, method, items) => format!("{}.{}({})", spell(base), method.text, list(items)),
+        ExprKind::Method(base, method, items) => {
+            format!("{}.{}({})", spell(base), method.text, spell_list(items))
+        }
         ExprKind::Call(function, items) if function.id == Some(Callable::If) => match items.as_slice() {
             [a, b, below, above] => {
                 format!("if {} < {} {{ {} }} else {{ {} }}", spell(a), spell(b), spell(below), spell(above))
             }
             _ => function.text.clone(),
         },
-        ExprKind::Call(function, items) => format!("{}({})", function.text, list(items)),
+        ExprKind::Call(function, items) => format!("{}({})", function.text, spell_list(items)),
         ExprKind::Neg(inner) => format!("-{}", spell(inner)),
         ExprKind::Binary(op, left, right, _) => {
-            let sum = |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
+            let is_sum = |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
             let product = matches!(op, BinaryOp::Mul | BinaryOp::Div);
-            let operand = |e: &Expr, together: bool| match &e.kind {
-                ExprKind::Binary(..) if together || (product && sum(e)) => format!("({})", spell(e)),
+            let spell_operand = |e: &Expr, together: bool| match &e.kind {
+                ExprKind::Binary(..) if together || (product && is_sum(e)) => format!("({})", spell(e)),
                 _ => spell(e),
             };
             let sign = match op {
@@ -210,10 +227,10 @@ fn spell(e: &Expr) -> String {
                 BinaryOp::Div => "/",
             };
             let together = matches!(op, BinaryOp::Sub | BinaryOp::Div);
-            format!("{} {sign} {}", operand(left, false), operand(right, together))
+            format!("{} {sign} {}", spell_operand(left, false), spell_operand(right, together))
         }
-        ExprKind::Tuple(items) => format!("({})", list(items)),
-        ExprKind::Array(items) => format!("[{}]", list(items)),
+        ExprKind::Tuple(items) => format!("({})", spell_list(items)),
+        ExprKind::Array(items) => format!("[{}]", spell_list(items)),
     }
 }
 

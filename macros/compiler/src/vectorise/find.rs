@@ -6,10 +6,10 @@ use crate::kinematics::Joint;
 use crate::mechanism::Model;
 use std::collections::BTreeMap;
 
-/// A set of isomorphic limbs.
+/// Set of isomorphic limbs that are evaluated in SIMD lanes.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Number of limbs.
+    /// Number of limbs in the group.
     pub limbs: usize,
     /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of
     /// two; the last limb fills the lanes beyond the number of limbs.
@@ -61,7 +61,7 @@ impl Shapes {
         Shapes { children, shape }
     }
 
-    /// Adds the groups among the children of one link.
+    /// Adds the groups of isomorphic limbs that begin at the children of one link.
     fn groups(&self, joints: &[Joint<'_>], children: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
         let mut left: Vec<usize> = children.iter().copied().filter(|k| self.shape[*k] != 0).collect();
         while let Some(&first) = left.first() {
@@ -85,7 +85,8 @@ impl Shapes {
         }
     }
 
-    /// Adds the rows of corresponding links of isomorphic subtrees, parents before their children.
+    /// Adds the rows of corresponding links of isomorphic subtrees, parents before their children. Each row
+    /// has one link per subtree.
     fn rows(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
         let mut todo = vec![roots];
         while let Some(row) = todo.pop() {
@@ -111,10 +112,10 @@ fn is_uncoupled(joints: &[Joint<'_>], root: usize) -> bool {
     for k in root + 1..joints.len() {
         inside[k] = joints[k].parent.is_some_and(|p| inside[p.0]);
     }
-    let velocities = |is: bool| {
+    let velocities_by_location = |is: bool| {
         let some = joints.iter().zip(&inside).filter(move |(_, inside)| **inside == is);
         some.flat_map(|(joint, _)| joint.dofs.iter().map(|d| d.index))
     };
-    let own: Vec<usize> = velocities(true).collect();
-    !velocities(false).any(|index| own.contains(&index))
+    let own: Vec<usize> = velocities_by_location(true).collect();
+    !velocities_by_location(false).any(|index| own.contains(&index))
 }

@@ -12,42 +12,43 @@ use std::collections::BTreeMap;
 
 /// Vectorised mechanism with one limb for each group of identical limbs.
 pub struct Limbs<'g> {
-    /// The vectorised mechanism without passive forces; its `v` are velocities of the vectorised mechanism.
+    /// Vectorised mechanism without passive forces. Its velocity vector `v` has one entry per velocity of the
+    /// vectorised mechanism.
     pub model: Model<'g>,
     /// Joints of the vectorised mechanism.
     pub joints: Vec<Joint<'g>>,
     velocities: Vec<Velocity>,
     /// Location of each velocity of the whole mechanism.
     places: Vec<Location>,
-    /// Passive force of each velocity of the vectorised mechanism, in which identical limbs are SIMD lanes.
+    /// Passive force for each velocity of the vectorised mechanism, in which identical limbs are SIMD lanes.
     passive_forces: Vec<Expr<'g>>,
 }
 
-/// One limb of a group.
+/// One limb of a group of identical limbs, given by its SIMD lane.
 #[derive(Clone, Copy, Debug)]
 pub struct LimbLane {
-    /// The first velocity of the group.
+    /// Index of the first velocity of the limb group, which identifies the group.
     pub group: usize,
-    /// Lane of the limb.
+    /// SIMD lane of the limb.
     pub lane: usize,
-    /// Number of lanes.
+    /// Number of SIMD lanes of the limb group.
     pub width: usize,
 }
 
 /// Corresponding matrix rows of the limbs of one group.
 pub struct LimbRows {
-    /// The first velocity of the group.
+    /// Index of the first velocity of the limb group, which identifies the group.
     pub group: usize,
-    /// Number of limbs.
+    /// Number of limbs in the group.
     pub width: usize,
-    /// Indices of corresponding rows, one per lane.
+    /// Indices of the matrix rows that correspond to each other, one per SIMD lane.
     pub rows: Vec<Vec<usize>>,
 }
 
 impl<'g> Limbs<'g> {
-    /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces
-    /// of the whole mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape
-    /// cannot be merged.
+    /// Returns the mechanism with its identical limbs as SIMD lanes. `passive_forces` returns one passive
+    /// force per velocity of the whole mechanism. Returns `None` if there are no groups, or if limbs of one
+    /// shape cannot be merged.
     pub fn new(
         model: &Model<'g>,
         joints: &[Joint<'g>],
@@ -132,36 +133,37 @@ impl<'g> Limbs<'g> {
         })
     }
 
-    /// Merges expressions by velocity of the whole mechanism into expressions by velocity of the vectorised
-    /// mechanism.
+    /// Merges one expression per velocity of the whole mechanism into one expression per velocity of the
+    /// vectorised mechanism.
     fn lane_groups(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
-        let gather = |velocity: &Velocity| {
+        let gather_lane_values = |velocity: &Velocity| {
             let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
             Some(g.lane_constants(&velocity.signs) * merge.lanes(&lanes)?)
         };
-        self.velocities.iter().map(gather).collect()
+        self.velocities.iter().map(gather_lane_values).collect()
     }
 
-    /// Returns symbols of one quantity, by velocity of the vectorised mechanism.
+    /// Returns the symbols of a quantity, such as the velocities, one entry per velocity of the vectorised
+    /// mechanism.
     pub fn symbols(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let gather = |velocity: &Velocity| {
+        let gather_lane_symbols = |velocity: &Velocity| {
             let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
             g.lane_constants(&velocity.signs) * g.lane_symbols(&symbols)
         };
-        self.velocities.iter().map(gather).collect()
+        self.velocities.iter().map(gather_lane_symbols).collect()
     }
 
-    /// Returns the group of each velocity of the vectorised mechanism, identified by its first velocity;
-    /// `None` outside limbs.
+    /// Returns the limb group of each velocity of the vectorised mechanism, identified by the first velocity
+    /// of the group; `None` outside limbs.
     pub fn groups(&self) -> Vec<Option<usize>> {
         let mut groups = vec![None; self.velocities.len()];
         let mut of_links: Vec<Option<usize>> = Vec::new();
         for joint in &self.joints {
             let above = joint.parent.and_then(|p| of_links[p.0]);
-            let first = || joint.dofs.first().map(|dof| dof.index);
-            let group = above.or_else(|| if joint.limbs > 1 { first() } else { None });
+            let first_velocity_of_joint = || joint.dofs.first().map(|dof| dof.index);
+            let group = above.or_else(|| if joint.limbs > 1 { first_velocity_of_joint() } else { None });
             joint.dofs.iter().for_each(|dof| groups[dof.index] = group);
             of_links.push(group);
         }
@@ -173,8 +175,8 @@ impl<'g> Limbs<'g> {
         self.velocities[index].lanes.len()
     }
 
-    /// Returns the limb whose velocities have nonzero entries in a row over the whole mechanism, if it is a
-    /// single limb that occupies one lane.
+    /// Returns the limb whose velocities have nonzero entries in a matrix row of the whole mechanism. Returns
+    /// `None` unless this is a single limb in one SIMD lane.
     pub fn lane_of(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
         let entries = row.iter().zip(&self.places).filter(|(entry, _)| !entry.is_zero());
         let mut found: Option<LimbLane> = None;
@@ -193,8 +195,8 @@ impl<'g> Limbs<'g> {
         found
     }
 
-    /// Groups rows over the whole mechanism by limbs: the first rows of all limbs of a group correspond, then
-    /// the second ones, and so on. Returns `None` unless each row belongs to one limb of a group and all
+    /// Groups matrix rows of the whole mechanism by limb: the first rows of all limbs of a group correspond,
+    /// then the second rows, and so on. Returns `None` unless each row belongs to one limb of a group and all
     /// limbs have the same number of rows.
     pub fn limb_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
         let groups = self.groups();
@@ -205,34 +207,39 @@ impl<'g> Limbs<'g> {
         }
         let limb_rows = |(group, lanes): (usize, Vec<Vec<usize>>)| {
             let count = lanes.first()?.len();
-            let row = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
+            let row_of_limb_lanes = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
             let is_even = lanes.iter().all(|numbers| numbers.len() == count);
-            is_even.then(|| LimbRows { group, width: lanes.len(), rows: (0..count).map(row).collect() })
+            is_even.then(|| LimbRows {
+                group,
+                width: lanes.len(),
+                rows: (0..count).map(row_of_limb_lanes).collect(),
+            })
         };
         found.into_iter().map(limb_rows).collect()
     }
 
-    /// Merges corresponding rows over the whole mechanism into one row over the vectorised mechanism, without
-    /// its signs. Returns `None` if the rows have different structures.
+    /// Merges corresponding matrix rows of the whole mechanism, one per SIMD lane, into one row of the
+    /// vectorised mechanism. The signs of the lanes are not applied. Returns `None` if the rows have
+    /// different structures.
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
-        let entry = |velocity: &Velocity| {
+        let merged_entry = |velocity: &Velocity| {
             let lane_entry =
                 |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
             let lanes =
                 rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
             merge.lanes(&lanes.collect::<Vec<_>>())
         };
-        self.velocities.iter().map(entry).collect()
+        self.velocities.iter().map(merged_entry).collect()
     }
 
-    /// Merges square matrices over the whole mechanism, one per lane, as [`merged_rows`](Self::merged_rows)
-    /// does.
+    /// Merges square matrices of the whole mechanism, one per SIMD lane, into one of the vectorised
+    /// mechanism, like [`merged_rows`](Self::merged_rows).
     pub fn merged_squares(
         &self,
         lanes: &[Vec<Vec<Expr<'g>>>],
         merge: &mut Merge<'g>,
     ) -> Option<Vec<Vec<Expr<'g>>>> {
-        let row = |velocity: &Velocity| {
+        let merged_row = |velocity: &Velocity| {
             let lane_row = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
                 self.velocity_in(velocity, lane).map(|k| matrix[k].clone())
             };
@@ -242,7 +249,7 @@ impl<'g> Limbs<'g> {
                 None => Some(vec![self.model.graph.zero(); self.velocities.len()]),
             }
         };
-        self.velocities.iter().map(row).collect()
+        self.velocities.iter().map(merged_row).collect()
     }
 
     /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes
@@ -252,18 +259,18 @@ impl<'g> Limbs<'g> {
         velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
     }
 
-    /// Returns for each velocity of the whole mechanism its index in the vectorised mechanism and its lane,
-    /// if it has one.
+    /// Returns, for each velocity of the whole mechanism, its index in the vectorised mechanism and its SIMD
+    /// lane, if it has one.
     pub fn places(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         self.places.iter().map(|place| (place.index, place.lane))
     }
 
-    /// Joins rows over the whole mechanism, one for each limb of a group, into one row over the vectorised
-    /// mechanism.
+    /// Combines matrix rows of the whole mechanism, one for each limb of a group, as SIMD lanes of one row of
+    /// the vectorised mechanism.
     pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let merge = &mut Merge::new(g);
-        let entry = |velocity: &Velocity| {
+        let entry_in_lanes = |velocity: &Velocity| {
             // Velocities outside the limbs are common to all rows; those of other groups are absent.
             let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
                 Some(k) => row[k],
@@ -273,46 +280,46 @@ impl<'g> Limbs<'g> {
             let all = merge.lanes(&lanes).unwrap_or_else(|| joined(&lanes));
             if velocity.lanes.len() == 1 { all } else { g.lane_constants(&velocity.signs) * all }
         };
-        self.velocities.iter().map(entry).collect()
+        self.velocities.iter().map(entry_in_lanes).collect()
     }
 
-    /// Returns an expression for each velocity of the whole mechanism; `of` takes its index in the vectorised
-    /// mechanism and its lane.
+    /// Returns an expression for each velocity of the whole mechanism. `of` receives the index of that
+    /// velocity in the vectorised mechanism, and its lane.
     pub fn scattered_from(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let scatter = |place: &Location| match place.lane {
+        let scatter_to_location = |place: &Location| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k),
             None => of(place.index, 0),
         };
-        self.places.iter().map(scatter).collect()
+        self.places.iter().map(scatter_to_location).collect()
     }
 
-    /// Returns the passive forces, by velocity of the vectorised mechanism.
+    /// Returns the passive forces, one entry per velocity of the vectorised mechanism.
     pub fn passive_forces(&self) -> &[Expr<'g>] {
         &self.passive_forces
     }
 
-    /// Splits expressions by velocity of the vectorised mechanism into expressions by velocity of the whole
-    /// mechanism.
+    /// Splits one expression per velocity of the vectorised mechanism into one expression per velocity of the
+    /// whole mechanism.
     pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let scatter = |place: &Location| match place.lane {
+        let scatter_to_location = |place: &Location| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
             None => values[place.index],
         };
-        self.places.iter().map(scatter).collect()
+        self.places.iter().map(scatter_to_location).collect()
     }
 
-    /// Returns for each velocity of the whole mechanism whether it is outside the limbs and marked in the
-    /// vectorised mechanism.
+    /// Returns, for each velocity of the whole mechanism, whether it is outside the limbs and `marked` is
+    /// true for it in the vectorised mechanism.
     pub fn marked_outside_limbs(&self, marked: &[bool]) -> Vec<bool> {
         self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
     }
 
-    /// Splits a matrix over the vectorised mechanism into that over the whole mechanism, row by row.
+    /// Splits a matrix of the vectorised mechanism into the matrix of the whole mechanism, row by row.
     pub fn scattered_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
+        let lane_signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
         let mut whole = Vec::with_capacity(self.places.len() * self.places.len());
         for &Location { index: i, lane: row } in &self.places {
             for &Location { index: j, lane: column } in &self.places {
@@ -320,9 +327,9 @@ impl<'g> Limbs<'g> {
                 whole.push(match (row, column) {
                     (None, None) => entry,
                     (Some(a), Some(b)) if a != b => g.zero(),
-                    (Some(k), None) => (signs(i) * entry).lane(k),
-                    (None, Some(k)) => (signs(j) * entry).lane(k),
-                    (Some(k), Some(_)) => (signs(i) * signs(j) * entry).lane(k),
+                    (Some(k), None) => (lane_signs(i) * entry).lane(k),
+                    (None, Some(k)) => (lane_signs(j) * entry).lane(k),
+                    (Some(k), Some(_)) => (lane_signs(i) * lane_signs(j) * entry).lane(k),
                 });
             }
         }
@@ -330,7 +337,7 @@ impl<'g> Limbs<'g> {
     }
 }
 
-/// Joins expressions into the lanes of one; their number is a power of two.
+/// Joins expressions into the SIMD lanes of one expression. The number of expressions is a power of two.
 pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     match lanes.split_at(lanes.len() / 2) {
         ([], _) => lanes[0],
@@ -352,15 +359,16 @@ fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
 /// Declares to the merger which entries of `q` correspond.
 fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
     for row in rows.iter().filter(|row| row.len() > 1) {
-        let entries = |k: &usize| model.links[*k].motion.configuration();
-        for i in 0..entries(&row[0]).len() {
-            let symbol = |k: &usize| entries(k).nth(i).map(|q| Quantity::Configuration(q).symbol());
-            merge.pair_symbols(row.iter().filter_map(symbol).collect());
+        let configuration_indices = |k: &usize| model.links[*k].motion.configuration();
+        for i in 0..configuration_indices(&row[0]).len() {
+            let configuration_symbol =
+                |k: &usize| configuration_indices(k).nth(i).map(|q| Quantity::Configuration(q).symbol());
+            merge.pair_symbols(row.iter().filter_map(configuration_symbol).collect());
         }
     }
 }
 
-/// Returns the mechanism without passive forces.
+/// Returns a copy of the mechanism without passive forces.
 fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
     let mut model = model.clone();
     model.springs.clear();

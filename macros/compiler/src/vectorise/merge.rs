@@ -8,7 +8,7 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::Quantity;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Depth to which operands are compared when they are paired.
+/// Depth to which operands are compared when the operands of commutative operations are paired across lanes.
 const DEPTH: u8 = 8;
 
 /// Maximum nesting of operations. Each level takes stack, of which compiler plug-ins have little.
@@ -23,11 +23,12 @@ pub struct Merge<'g> {
     known: BTreeMap<Vec<Id>, Option<Id>>,
     /// Results for expressions with signs, true for minus.
     signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
-    /// Corresponding symbols, one per lane.
+    /// Symbols that correspond to each other in different limbs, one list per quantity with one symbol per
+    /// lane.
     partners: Vec<Vec<Symbol>>,
-    /// Depth of the current expression.
+    /// Nesting depth of the expression that is being merged.
     depth: usize,
-    /// Number of remaining steps.
+    /// Number of steps that merging may still take.
     steps: usize,
 }
 
@@ -44,7 +45,7 @@ impl<'g> Merge<'g> {
         }
     }
 
-    /// Declares corresponding symbols, one per lane.
+    /// Declares that symbols of different limbs correspond to each other, one symbol per lane.
     pub fn pair_symbols(&mut self, lanes: Vec<Symbol>) {
         self.partners.push(lanes);
     }
@@ -54,12 +55,12 @@ impl<'g> Merge<'g> {
     /// filler if it has symbols of other lanes too, or may be infinite, since zero times infinity is not
     /// zero.
     fn filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
-        let partners = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
-        let is_own = |s: &Symbol| partners(*s).is_none_or(|list| list.get(from) == Some(s));
-        if !symbols_in(&[e]).iter().all(is_own) || !is_finite(e) {
+        let partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
+        let is_own_symbol = |s: &Symbol| partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
+        if !symbols_in(&[e]).iter().all(is_own_symbol) || !is_finite(e) {
             return e;
         }
-        replace(e, &|s| partners(s)?.get(to).map(|s| self.graph.symbol(*s)))
+        replace(e, &|s| partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
     }
 
     /// Uses up steps; returns `None` when too few remain.
@@ -68,7 +69,7 @@ impl<'g> Merge<'g> {
         Some(())
     }
 
-    /// Builds an expression one level deeper; returns `None` if that is too deep.
+    /// Builds an expression at the next nesting depth; returns `None` if the maximum depth is exceeded.
     fn nest(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
         if self.depth == MAX_DEPTH {
             return None;
@@ -112,22 +113,22 @@ impl<'g> Merge<'g> {
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
             return self.affine(&parts);
         }
-        let expr = |id: Id| self.graph.expr(id);
+        let expression_of_id = |id: Id| self.graph.expr(id);
         match lanes.first()?.node() {
             Node::Symbol(_) => {
-                let symbol = |e: &Expr<'g>| match e.node() {
+                let symbol_of_expression = |e: &Expr<'g>| match e.node() {
                     Node::Symbol(s) => Some(s),
                     _ => None,
                 };
-                let symbols: Option<Vec<_>> = lanes.iter().map(symbol).collect();
+                let symbols: Option<Vec<_>> = lanes.iter().map(symbol_of_expression).collect();
                 Some(self.graph.lane_symbols(&symbols?))
             }
             Node::Call(f, _) => {
-                let argument = |e: &Expr<'g>| match e.node() {
-                    Node::Call(g, a) if g == f => Some(expr(a)),
+                let argument_of_call = |e: &Expr<'g>| match e.node() {
+                    Node::Call(g, a) if g == f => Some(expression_of_id(a)),
                     _ => None,
                 };
-                let arguments: Option<Vec<_>> = lanes.iter().map(argument).collect();
+                let arguments: Option<Vec<_>> = lanes.iter().map(argument_of_call).collect();
                 Some(self.lanes(&arguments?)?.call(f))
             }
             Node::Add(..) | Node::Sub(..) => {
@@ -141,12 +142,16 @@ impl<'g> Merge<'g> {
                 Some(self.lanes(&a)? * self.lanes(&b)?)
             }
             Node::Div(..) => {
-                let parts = |e: &Expr<'g>| match e.node() {
-                    Node::Div(a, b) => Some((expr(a), expr(b))),
+                let numerator_and_denominator = |e: &Expr<'g>| match e.node() {
+                    Node::Div(a, b) => Some((expression_of_id(a), expression_of_id(b))),
                     _ => None,
                 };
-                let (a, b): (Vec<_>, Vec<_>) =
-                    lanes.iter().map(parts).collect::<Option<Vec<_>>>()?.into_iter().unzip();
+                let (a, b): (Vec<_>, Vec<_>) = lanes
+                    .iter()
+                    .map(numerator_and_denominator)
+                    .collect::<Option<Vec<_>>>()?
+                    .into_iter()
+                    .unzip();
                 Some(self.lanes(&a)? / self.lanes(&b)?)
             }
             _ => None,
@@ -193,14 +198,14 @@ impl<'g> Merge<'g> {
             return self.affine(&parts);
         }
         if absorbs(first, DEPTH) {
-            let all = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
+            let operands_of_all_lanes = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
                 lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>()
             };
-            if let Some(operands) = all(terms) {
+            if let Some(operands) = operands_of_all_lanes(terms) {
                 let (a, b) = self.pair_operands(operands)?;
                 return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
             }
-            if let Some(operands) = all(factors) {
+            if let Some(operands) = operands_of_all_lanes(factors) {
                 let (a, b) = self.pair_operands(operands)?;
                 return match absorbs(*a.first()?, DEPTH) {
                     true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
@@ -211,8 +216,8 @@ impl<'g> Merge<'g> {
         Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
     }
 
-    /// Returns the first and second operands of a commutative operation in all lanes, exchanged where that
-    /// pairs similar ones.
+    /// Returns the first and the second operands of a commutative operation in all lanes. Operands are
+    /// exchanged in lanes where that pairs similar expressions.
     fn pair_operands(
         &mut self,
         mut operands: Vec<(Expr<'g>, Expr<'g>)>,
@@ -255,19 +260,19 @@ impl<'g> Merge<'g> {
 
 /// Returns the terms of a sum or difference.
 fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
-    let expr = |id: Id| e.graph().expr(id);
+    let expression_of_id = |id: Id| e.graph().expr(id);
     match e.node() {
-        Node::Add(a, b) => Some((expr(a), expr(b))),
-        Node::Sub(a, b) => Some((expr(a), -expr(b))),
+        Node::Add(a, b) => Some((expression_of_id(a), expression_of_id(b))),
+        Node::Sub(a, b) => Some((expression_of_id(a), -expression_of_id(b))),
         _ => None,
     }
 }
 
-/// Returns the factors of a product.
+/// Returns the two factors if the expression is a product.
 fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
-    let expr = |id: Id| e.graph().expr(id);
+    let expression_of_id = |id: Id| e.graph().expr(id);
     match e.node() {
-        Node::Mul(a, b) => Some((expr(a), expr(b))),
+        Node::Mul(a, b) => Some((expression_of_id(a), expression_of_id(b))),
         _ => None,
     }
 }
@@ -288,22 +293,22 @@ fn absorbs(e: Expr<'_>, depth: u8) -> bool {
 
 /// Splits an expression into constants and a remainder, `offset + factor × remainder`.
 fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
-    let expr = |id: Id| e.graph().expr(id);
+    let expression_of_id = |id: Id| e.graph().expr(id);
     let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
     loop {
-        let value = |id: Id| expr(id).value();
+        let constant_value = |id: Id| expression_of_id(id).value();
         match rest.node() {
             Node::Const(c) => return (offset + factor * c, 0.0, rest),
-            Node::Neg(a) => (factor, rest) = (-factor, expr(a)),
-            Node::Mul(a, b) => match value(a) {
-                Some(c) => (factor, rest) = (factor * c, expr(b)),
+            Node::Neg(a) => (factor, rest) = (-factor, expression_of_id(a)),
+            Node::Mul(a, b) => match constant_value(a) {
+                Some(c) => (factor, rest) = (factor * c, expression_of_id(b)),
                 None => return (offset, factor, rest),
             },
             Node::Add(a, b) | Node::Sub(a, b) => {
                 let sign = if matches!(rest.node(), Node::Sub(..)) { -1.0 } else { 1.0 };
-                (offset, factor, rest) = match (value(a), value(b)) {
-                    (Some(c), _) => (offset + factor * c, factor * sign, expr(b)),
-                    (_, Some(c)) => (offset + factor * sign * c, factor, expr(a)),
+                (offset, factor, rest) = match (constant_value(a), constant_value(b)) {
+                    (Some(c), _) => (offset + factor * c, factor * sign, expression_of_id(b)),
+                    (_, Some(c)) => (offset + factor * sign * c, factor, expression_of_id(a)),
                     _ => return (offset, factor, rest),
                 };
             }

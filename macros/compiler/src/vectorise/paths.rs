@@ -12,9 +12,9 @@ pub trait Propagated<'g>: Sized {
     fn to_parent(&self, joint: &Joint<'g>) -> Self;
 }
 
-/// Algorithm that runs during the propagation.
+/// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
 pub trait Visitor<'g> {
-    /// Propagated quantity.
+    /// Quantity that is propagated to the root.
     type Item: Propagated<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
     fn start(&mut self, dof: usize) -> Self::Item;
@@ -30,7 +30,7 @@ pub struct LaneGroup<T> {
     pub item: T,
     /// Degree of freedom of each quantity; `None` for a filler.
     members: Vec<Option<usize>>,
-    /// Number of limbs in each quantity.
+    /// Number of limbs that each propagated quantity covers as SIMD lanes.
     width: usize,
     /// Number of limbs in the expressions of the link.
     link_width: usize,
@@ -48,8 +48,8 @@ pub struct Paths<'a, 'g> {
 }
 
 impl<'a, 'g> Paths<'a, 'g> {
-    /// Returns the paths of all degrees of freedom, joint by joint, in at most `max_lanes` lanes; one for no
-    /// lanes.
+    /// Returns the propagation paths of all degrees of freedom, in groups of at most `max_lanes` SIMD lanes;
+    /// one lane disables grouping.
     pub fn new(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
         let mut widths: Vec<usize> = Vec::with_capacity(joints.len());
         for joint in joints {
@@ -105,7 +105,7 @@ impl<'a, 'g> Paths<'a, 'g> {
         runs
     }
 
-    /// Propagates everything to the root.
+    /// Propagates the quantities of all degrees of freedom to the root.
     pub fn propagate<V: Visitor<'g>>(&self, visitor: &mut V) {
         for group in &self.groups {
             let lanes = self.gather(group, visitor);
@@ -174,7 +174,7 @@ impl<T> LaneGroup<T> {
         }
     }
 
-    /// Concatenates the lanes of two groups.
+    /// Concatenates the SIMD lanes of two groups.
     fn joined<'g>(&self, other: &LaneGroup<T>) -> T
     where
         T: Propagated<'g>,
@@ -186,8 +186,8 @@ impl<T> LaneGroup<T> {
     /// Returns the degree of freedom of each member with its lanes of an expression.
     pub fn parts<'g>(&self, e: Expr<'g>) -> impl Iterator<Item = (usize, Expr<'g>)> {
         let (alone, width) = (self.members.len() == 1, self.width);
-        let part = move |k: usize| if alone { e } else { lanes(e, k * width, width) };
-        self.members.iter().enumerate().filter_map(move |(k, member)| Some(((*member)?, part(k))))
+        let lanes_of_member = move |k: usize| if alone { e } else { lanes(e, k * width, width) };
+        self.members.iter().enumerate().filter_map(move |(k, member)| Some(((*member)?, lanes_of_member(k))))
     }
 }
 

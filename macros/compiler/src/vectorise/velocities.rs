@@ -1,5 +1,5 @@
-//! Correspondence between the velocities of a mechanism and those of its vectorised form, where identical
-//! limbs are lanes.
+//! Correspondence between the velocities of a mechanism and those of its vectorised form, in which identical
+//! limbs are SIMD lanes.
 
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::Model;
@@ -10,21 +10,21 @@ pub struct Velocity {
     /// Index in the whole mechanism of the velocity in each lane; a single index for a velocity outside the
     /// limbs.
     pub lanes: Vec<usize>,
-    /// Sign of each lane: minus one if the limb's joint moves in the opposite direction.
+    /// Sign of each SIMD lane: minus one if the limb's joint moves in the opposite direction.
     pub signs: Vec<f64>,
 }
 
 /// Position of a velocity of the whole mechanism in the vectorised mechanism.
 #[derive(Clone, Copy, Debug)]
 pub struct Location {
-    /// Index of the velocity of the vectorised mechanism.
+    /// Index of the velocity in the vectorised mechanism.
     pub index: usize,
     /// Lane of that velocity, if it has several.
     pub lane: Option<usize>,
 }
 
-/// Returns the velocities of the vectorised mechanism, and the location in it of each velocity of the whole
-/// mechanism. Each row holds corresponding links. Returns `None` if the joints of the limbs are coupled
+/// Returns the velocities of the vectorised mechanism, and the location of each velocity of the whole
+/// mechanism in it. Each row holds corresponding links. Returns `None` if the joints of the limbs are coupled
 /// differently.
 pub fn pair_velocities(
     model: &Model<'_>,
@@ -35,10 +35,10 @@ pub fn pair_velocities(
     let mut left: Vec<Option<Velocity>> = (0..model.nv()).map(single_lane).collect();
     for row in rows.iter().filter(|row| row.len() > 1) {
         for (d, dof) in joints[row[0]].dofs.iter().enumerate() {
-            let index = |k: &usize| joints[*k].dofs.get(d).map(|dof| dof.index);
-            let lanes: Vec<usize> = row.iter().map(index).collect::<Option<_>>()?;
-            let sign = |k: &usize| sign_between(&dof.subspace, &joints[*k].dofs[d].subspace);
-            let velocity = Velocity { signs: row.iter().map(sign).collect(), lanes };
+            let velocity_index = |k: &usize| joints[*k].dofs.get(d).map(|dof| dof.index);
+            let lanes: Vec<usize> = row.iter().map(velocity_index).collect::<Option<_>>()?;
+            let sign_of_lane = |k: &usize| sign_between(&dof.subspace, &joints[*k].dofs[d].subspace);
+            let velocity = Velocity { signs: row.iter().map(sign_of_lane).collect(), lanes };
             match &left[dof.index] {
                 Some(known) if known.lanes.len() == 1 => {}
                 Some(known) if known.lanes == velocity.lanes => continue,
@@ -58,8 +58,8 @@ pub fn pair_velocities(
     Some((velocities, places))
 }
 
-/// Returns minus one if two motion subspaces have opposite signs in the first component that is a nonzero
-/// number in both.
+/// Returns minus one if two joint motion subspaces have opposite signs in the first component that is a
+/// nonzero number in both.
 fn sign_between(a: &Spatial<'_>, b: &Spatial<'_>) -> f64 {
     let pairs = a.linear.0.iter().chain(&a.angular.0).zip(b.linear.0.iter().chain(&b.angular.0));
     let mut products = pairs.filter_map(|(x, y)| Some(x.value()? * y.value()?));

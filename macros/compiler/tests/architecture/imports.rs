@@ -9,26 +9,26 @@ use std::path::{Path, PathBuf};
 /// Path of a module from the crate's root.
 type Module = Vec<String>;
 
-/// Source file.
+/// Source file of the compiler with its imports, for checks of the architecture.
 struct File {
     path: PathBuf,
     module: Module,
     /// Tokens of the code, without comments, strings, unit tests and imports.
     tokens: Vec<String>,
-    /// Names that the file defines.
+    /// Names that the source file defines.
     items: BTreeSet<String>,
     /// Imports: local name (`*` for all names), path as written, and whether the name is re-exported.
     imports: Vec<(String, Vec<String>, bool)>,
 }
 
-/// Files of the crate with their dependencies.
+/// Source files of the crate, with the dependencies between them.
 pub struct Imports {
     files: Vec<File>,
     by_module: BTreeMap<Module, usize>,
 }
 
 impl Imports {
-    /// Reads all files below a folder.
+    /// Reads all source files below a folder, except tests.
     pub fn read(source: &Path) -> Imports {
         let mut files = Vec::new();
         let mut todo = vec![source.to_path_buf()];
@@ -47,7 +47,7 @@ impl Imports {
         Imports { files, by_module }
     }
 
-    /// Returns a file's path below the folder.
+    /// Returns the path of a source file relative to the folder of the crate's sources.
     pub fn name(&self, file: usize) -> String {
         self.files[file].path.to_string_lossy().into_owned()
     }
@@ -108,7 +108,7 @@ impl Imports {
         if depth > 8 {
             return None;
         }
-        let follow = |target: &[String], rest: &[String]| {
+        let follow_import = |target: &[String], rest: &[String]| {
             let whole: Vec<String> = target.iter().chain(rest).cloned().collect();
             let outside = !matches!(whole[0].as_str(), "crate" | "super" | "self")
                 && !self.by_module.contains_key(&[module, &whole[..1]].concat());
@@ -116,9 +116,12 @@ impl Imports {
         };
         let named = file.imports.iter().find(|(name, ..)| name == first);
         if let Some((_, target, _)) = named {
-            return follow(target, rest);
+            return follow_import(target, rest);
         }
-        file.imports.iter().filter(|(name, ..)| name == "*").find_map(|(_, target, _)| follow(target, path))
+        file.imports
+            .iter()
+            .filter(|(name, ..)| name == "*")
+            .find_map(|(_, target, _)| follow_import(target, path))
     }
 }
 
@@ -164,7 +167,7 @@ impl File {
         file
     }
 
-    /// Parses the text of a file.
+    /// Parses the text of a source file into its tokens, definitions and imports.
     fn parse(text: &str) -> File {
         let all = words(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
         let mut file = File {

@@ -42,11 +42,11 @@ fn sources() -> Vec<(String, PathBuf)> {
         }
     }
     files.sort();
-    let module = |path: &Path| {
+    let module_of_path = |path: &Path| {
         let first = path.strip_prefix(&source).unwrap().components().next().unwrap();
         Path::new(first.as_os_str()).file_stem().unwrap().to_string_lossy().into_owned()
     };
-    files.into_iter().map(|path| (module(&path), path)).collect()
+    files.into_iter().map(|path| (module_of_path(&path), path)).collect()
 }
 
 /// Returns the code without comments and unit tests. Unit tests may use any module.
@@ -59,18 +59,19 @@ fn code(path: &Path) -> String {
 
 /// Returns the modules that a piece of code names: `crate::a::…`, `crate::{a, b::…}`.
 fn modules(code: &str) -> Vec<String> {
-    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let leading_word =
+        |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     let mut found = Vec::new();
     for rest in code.split("crate::").skip(1) {
         let Some(group) = rest.strip_prefix('{') else {
-            found.push(word(rest));
+            found.push(leading_word(rest));
             continue;
         };
         let mut depth = 0;
         let mut start = true;
         for (at, c) in group.char_indices() {
             if start && depth == 0 && c.is_alphabetic() {
-                found.push(word(&group[at..]));
+                found.push(leading_word(&group[at..]));
                 start = false;
             }
             match c {
@@ -131,12 +132,12 @@ const MOST_IN_A_CIRCLE: usize = 3;
 #[test]
 fn circles_of_imports_are_small() {
     let imports = Imports::read(&Path::new(ROOT).join("src"));
-    let shown = |circle: &Vec<usize>| {
+    let format_import_cycle = |circle: &Vec<usize>| {
         let names: Vec<String> = circle.iter().map(|file| imports.name(*file)).collect();
         format!("{}: {}", circle.len(), names.join(" "))
     };
     let all = circles(&imports.graph());
-    let list: Vec<String> = all.iter().map(shown).collect();
+    let list: Vec<String> = all.iter().map(format_import_cycle).collect();
     println!("{}", list.join("\n"));
     assert!(all.iter().all(|circle| circle.len() <= MOST_IN_A_CIRCLE), "{}", list.join("\n"));
 }

@@ -10,7 +10,7 @@ use sizes::with_mass;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Maximum time of one expansion in a debug build, on a busy machine.
+/// Maximum time of one macro expansion in a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Initial mechanisms, which cover the whole language and planned extensions.
@@ -107,7 +107,7 @@ const MECHANISMS: [&str; 12] = [
     }",
 ];
 
-/// Tokens to insert at random places.
+/// Tokens that the fuzzer inserts at random places.
 const WORDS: &str = "f64 f32 T self crate super Self ground x y z t pi q v 0 1 2 1e999 1e-999 -1 0.5 99999999999999999999 \
     1u8 2.5f32 'a' \"text\" b\"x\" Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring \
     Dashpot Force Torque Inerter Coordinate Vec mass com inertia about along on at rotated pitch lead damping stiffness \
@@ -138,7 +138,7 @@ fn split(text: &str) -> (TokenStream, TokenStream) {
     (arguments.parse().unwrap(), item.parse().unwrap())
 }
 
-/// Applies one random change to a token stream.
+/// Applies one random mutation to a token stream.
 fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> TokenStream {
     let mut list: Vec<TokenTree> = tokens.into_iter().collect();
     let groups: Vec<usize> = (0..list.len()).filter(|k| matches!(list[*k], TokenTree::Group(_))).collect();
@@ -188,8 +188,9 @@ fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
     let file = file.and_then(|tokens| syn::parse2::<syn::File>(tokens).map_err(|e| e.to_string()));
     assert!(file.is_ok(), "{} of {text}\ngave {output}", file.err().unwrap_or_default());
     if !output.contains("compile_error") {
-        let odd = |word: &str| matches!(word.trim_matches(['(', ')', ',', '-']), "inf" | "NaN");
-        assert!(!output.split_whitespace().any(odd), "a number that is none, of {text}");
+        let is_infinite_or_nan =
+            |word: &str| matches!(word.trim_matches(['(', ')', ',', '-']), "inf" | "NaN");
+        assert!(!output.split_whitespace().any(is_infinite_or_nan), "a number that is none, of {text}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Mechanisms with many elements, deep nesting and coefficients near the limits of their range.
+//! Tests of mechanisms with many elements, deep nesting, and coefficients near the limits of their range.
 
 use super::{try_expand, with_little_stack};
 use linkwork_compiler::expand;
@@ -161,7 +161,7 @@ fn too_many_loops_are_refused_with_a_reason() {
     }
 }
 
-/// Returns a mechanism whose mass depends on `n` nested definitions, each of which refers to the previous one
+/// Returns a mechanism whose mass depends on a chain of `n` definitions, each of which uses the previous one
 /// twice.
 fn definitions(start: &str, n: usize) -> String {
     let chain = (0..n).fold(format!("#[define({start})] d0: Scalar,"), |text, k| {
@@ -176,7 +176,7 @@ fn definitions(start: &str, n: usize) -> String {
 /// Returns a mechanism with identical carts, each driven by a chain of `n` definitions of its own coordinate.
 /// The first two carts are coupled.
 fn carts(n: usize) -> String {
-    let cart = |name: &str| {
+    let cart_declarations = |name: &str| {
         let laws =
             list(n, |k| format!("#[define(2 * sin({name}{k} + 0.3) - 0.1)] {name}{}: Scalar, ", k + 1));
         format!(
@@ -185,7 +185,7 @@ fn carts(n: usize) -> String {
              #[acts(on = at_{name}, value = {name}{n})] drive_{name}: Force, "
         )
     };
-    let all: String = ["a", "b", "c"].map(cart).concat();
+    let all: String = ["a", "b", "c"].map(cart_declarations).concat();
     format!("struct S {{ {all} #[acts(between = (a, b.at(x)), stiffness = 2)] tie: Spring }}")
 }
 
@@ -270,12 +270,14 @@ fn sharing_does_not_explode() {
 
 /// Returns a mechanism whose mass is a sum of sums of parameters.
 fn sum_of_parameters(sums: usize, terms: usize) -> String {
-    let name = |k: usize, i: usize| format!("m{k}_{i}");
-    let sum = |k: usize| (0..terms).map(|i| name(k, i)).collect::<Vec<_>>().join(" + ");
-    let declared = |k: usize| (0..terms).map(|i| name(k, i) + ": f64, ").collect::<String>();
-    let defined = |k: usize| format!("{} #[define({})] sum{k}: Scalar, ", declared(k), sum(k));
+    let name_of_parameter = |k: usize, i: usize| format!("m{k}_{i}");
+    let sum_source = |k: usize| (0..terms).map(|i| name_of_parameter(k, i)).collect::<Vec<_>>().join(" + ");
+    let parameter_declarations =
+        |k: usize| (0..terms).map(|i| name_of_parameter(k, i) + ": f64, ").collect::<String>();
+    let sum_definition =
+        |k: usize| format!("{} #[define({})] sum{k}: Scalar, ", parameter_declarations(k), sum_source(k));
     let all = (0..sums).map(|k| format!("sum{k}")).collect::<Vec<_>>().join(" + ");
-    let fields: String = (0..sums).map(defined).collect();
+    let fields: String = (0..sums).map(sum_definition).collect();
     with_mass(&all).replace("m: f64, ", &fields)
 }
 
@@ -347,12 +349,12 @@ fn nesting_of_every_kind_fits_the_stack() {
 
 fn run_cases(cases: Vec<(&'static str, String)>) {
     for (name, item) in cases {
-        let run = move || {
+        let expand_and_print_time = move || {
             let start = Instant::now();
             let tokens = item.parse().unwrap_or_else(|_| panic!("{name} are no tokens"));
             try_expand(TokenStream::new(), tokens, name);
             println!("{:>8.2?} {name}", start.elapsed());
         };
-        with_little_stack(run);
+        with_little_stack(expand_and_print_time);
     }
 }

@@ -1,10 +1,10 @@
-//! Parsing of generated code.
+//! Parsing of the Rust code that the compiler generates, for tests.
 
 use syn::{Expr, Item, Stmt};
 
-/// Returns the items of generated code. Blocks `const _: () = { … };` are replaced by their items.
+/// Returns the items of generated code. A block `const _: () = { … };` is replaced by the items in it.
 pub fn items(file: syn::File) -> Vec<Item> {
-    let inner = |item: Item| match item {
+    let inner_items = |item: Item| match item {
         Item::Const(block) if block.ident == "_" => match *block.expr {
             Expr::Block(block) => {
                 let items = block.block.stmts.into_iter().filter_map(|statement| match statement {
@@ -17,5 +17,5 @@ pub fn items(file: syn::File) -> Vec<Item> {
         },
         item => vec![item],
     };
-    file.items.into_iter().flat_map(inner).collect()
+    file.items.into_iter().flat_map(inner_items).collect()
 }

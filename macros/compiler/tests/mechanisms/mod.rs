@@ -1,6 +1,6 @@
-//! Mechanisms that cover all generated functions together.
+//! Test mechanisms that together have all generated functions.
 
-/// Attribute, name and fields.
+/// Test mechanisms: arguments of the attribute, name, and fields of the struct.
 pub const MECHANISMS: [(&str, &str, &str); 11] = [
     (
         "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \

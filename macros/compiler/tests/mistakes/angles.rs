@@ -1,4 +1,4 @@
-//! Angles in degrees.
+//! Tests of messages about angles that are probably meant in degrees.
 
 use super::{ARM, Row, answers, messages};
 
@@ -70,7 +70,7 @@ fn degrees_are_asked_for() {
     );
 }
 
-/// Angles that are accepted as written.
+/// Checks that plausible angles, such as `2 * pi` and `degrees(90)`, are accepted without an error.
 #[test]
 fn angles_that_are_meant_pass() {
     for angle in [
@@ -99,7 +99,7 @@ fn angles_that_are_meant_pass() {
 /// Right angles in degrees are exact: the generated code is identical to that with radians.
 #[test]
 fn right_angles_are_exact() {
-    let code = |angle: &str| {
+    let expand_with_angle = |angle: &str| {
         let arm = "#[body(mass = 1, com = x + y, inertia = diagonal(1, 2, 3))] arm: Body";
         let hinge = format!(
             "#[joint(ground.at(x).rotated(x({angle})) -> arm.rotated(z({angle})), about = z)] hinge: Pin"
@@ -115,6 +115,9 @@ fn right_angles_are_exact() {
         ("45", "pi / 4"),
         ("0", "0"),
     ] {
-        assert!(code(&format!("degrees({degrees})")) == code(radians), "{degrees}°");
+        assert!(
+            expand_with_angle(&format!("degrees({degrees})")) == expand_with_angle(radians),
+            "{degrees}°"
+        );
     }
 }

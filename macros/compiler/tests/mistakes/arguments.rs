@@ -2,7 +2,7 @@
 
 use super::{ARM, CART, Row, answers};
 
-/// Arguments of bodies.
+/// Wrong arguments of bodies, with the expected messages.
 const BODIES: &[Row] = &[
     ("m = 1", "a Body has no argument `m`", "did you mean `mass`?"),
     ("weight = 1", "a Body has no argument `weight`", "did you mean `mass`?"),
@@ -41,7 +41,7 @@ fn bodies() {
     );
 }
 
-/// Elements that act on a hinge.
+/// Wrong arguments of elements that act on a hinge, with the expected messages.
 const ACTIONS: &[Row] = &[
     ("#[acts(on = hinge, k = 1)] coil: Spring", "a Spring has no argument `k`", "did you mean `stiffness`?"),
     (
@@ -214,7 +214,7 @@ fn actions() {
     answers(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
 }
 
-/// Arguments of other elements.
+/// Wrong arguments of other elements, with the expected messages.
 const OTHERS: &[Row] = &[
     (
         "theta: Coordinate, #[particle(m = 1, at = theta * x)] bead: Particle",

@@ -2,7 +2,7 @@
 
 use super::{ARM, CART, Row, answers};
 
-/// Types with the corresponding element.
+/// Type names of other tools, with the element of the language that corresponds to each.
 const ONE: &[(&str, &str)] = &[
     ("RevoluteJoint", "Pin"),
     ("Revolute", "Pin"),

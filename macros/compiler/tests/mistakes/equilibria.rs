@@ -2,7 +2,7 @@
 
 use super::{Row, answers, messages};
 
-/// Returns a pendulum with a motor and one equilibrium.
+/// Returns the source of a pendulum with a motor and one declared equilibrium, for tests of error messages.
 fn pendulum(said: &str) -> (String, String) {
     let fields = "m: f64, l: f64,
         #[body(mass = m, com = -l * y, inertia = sphere(m, l))] arm: Body,
@@ -43,7 +43,7 @@ fn what_is_no_equilibrium_is_said() {
     answers(pendulum, ROWS);
 }
 
-/// Returns a carriage on a rail.
+/// Returns the source of a cart on a rail with further fields, for tests of error messages.
 fn carriage(said: &str) -> (String, String) {
     let fields = "m: f64, k: f64,
         #[body(mass = m, inertia = sphere(m, 1))] cart: Body,
@@ -97,16 +97,16 @@ fn what_has_no_linear_equations_is_said() {
 
 #[test]
 fn orientations_are_unit() {
-    let fields = |q: &str| {
+    let fields_with_equilibrium = |q: &str| {
         format!(
             "#[body(mass = 1, inertia = sphere(1, 1))] ball: Body, #[joint(ground -> ball)] tip: Ball,
             #[equilibrium({q})] rest: Equilibrium"
         )
     };
-    let found = messages("", &fields("tip.qx = 1"));
+    let found = messages("", &fields_with_equilibrium("tip.qx = 1"));
     assert!(found.len() == 1 && found[0].contains("the quaternion of `tip.qx` in `rest`"), "{found:?}");
-    assert_eq!(messages("", &fields("tip.qx = 1, tip.qw = 0")), [""; 0]);
-    let found = messages("", &fields("tip = 1"));
+    assert_eq!(messages("", &fields_with_equilibrium("tip.qx = 1, tip.qw = 0")), [""; 0]);
+    let found = messages("", &fields_with_equilibrium("tip = 1"));
     assert!(found.len() == 1 && found[0].contains("write `tip.qx = …`"), "{found:?}");
 }
 

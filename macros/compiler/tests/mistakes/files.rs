@@ -1,4 +1,4 @@
-//! Robots in files: an error that occurs in many places is reported once, and a missing file causes no
+//! Tests of errors in robot files: an error in many places is reported once, and a missing file causes no
 //! further error.
 
 use super::messages;
@@ -7,13 +7,13 @@ use std::path::Path;
 
 /// Returns the messages of a robot whose joints have these origins and axes.
 fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
-    let inertial = |com: &str| {
+    let inertial_element = |com: &str| {
         format!(
             "<inertial><origin xyz=\"{com}\"/><mass value=\"1\"/>
             <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>"
         )
     };
-    let joint = |k: u8, parent: &str, child: &str| {
+    let joint_element = |k: u8, parent: &str, child: &str| {
         format!(
             "<joint name=\"j{k}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>
             <origin xyz=\"{xyz}\"/><axis xyz=\"{axis}\"/></joint>"
@@ -22,10 +22,10 @@ fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
     let text = format!(
         "<robot name=\"r\"><link name=\"base\"/><link name=\"a\">{}</link>\
          <link name=\"b\">{}</link>{}{}</robot>",
-        inertial(xyz),
-        inertial(xyz),
-        joint(1, "base", "a"),
-        joint(2, "a", "b"),
+        inertial_element(xyz),
+        inertial_element(xyz),
+        joint_element(1, "base", "a"),
+        joint_element(2, "a", "b"),
     );
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::write(path, text).unwrap();

@@ -65,7 +65,7 @@ fn mechanisms_without_a_form_say_which_they_have() {
     answers(setting, ROWS);
 }
 
-/// Four coupled cyclic coordinates.
+/// Checks that Routh's equations of four coupled cyclic coordinates are rejected as too long to print.
 #[test]
 fn equations_of_routh_that_are_too_long_are_not_printed() {
     fn setting(words: &str) -> (String, String) {
@@ -111,7 +111,7 @@ fn contacts_that_slip_have_no_equations_of_kane() {
 #[test]
 fn equations_of_kane_that_are_too_long_are_not_printed() {
     fn pins(words: &str) -> (String, String) {
-        let link = |k: usize| {
+        let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.4 * x)", k - 1) };
             format!(
                 "#[body(mass = 1, com = [0.1, 0.2, 0.05], inertia = diagonal(0.3, 0.4, 0.5))] link{k}: Body,
@@ -121,7 +121,7 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
         };
         let blade =
             "#[constraint(dot(v(link4.at(0.4 * x) / ground / ground), link4.y) = 0)] blade: Nonholonomic,";
-        (format!("gravity = -9.81 * z, {words}"), (0..5).map(link).collect::<String>() + blade)
+        (format!("gravity = -9.81 * z, {words}"), (0..5).map(link_declarations).collect::<String>() + blade)
     }
     const ROWS: &[Row] = &[(
         "equations = kane",
@@ -185,14 +185,14 @@ fn forces_of_accelerations_leave_no_momenta() {
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.
 fn carts(count: usize, forces: usize) -> String {
-    let cart = |k: usize| {
+    let cart_declarations = |k: usize| {
         format!(
             "m{k}: f64, #[body(mass = m{k})] cart{k}: Body, \
              #[joint(ground -> cart{k}, along = x)] rail{k}: Sleeve,"
         )
     };
-    let push = |k: usize| format!("#[acts(on = rail{k}, value = -3 * rail{k})] push{k}: Force,");
-    (0..count).map(cart).chain((0..forces).map(push)).collect()
+    let force_declaration = |k: usize| format!("#[acts(on = rail{k}, value = -3 * rail{k})] push{k}: Force,");
+    (0..count).map(cart_declarations).chain((0..forces).map(force_declaration)).collect()
 }
 
 #[test]
@@ -213,18 +213,18 @@ fn what_would_be_too_long_is_not_written() {
 
 #[test]
 fn equations_of_thousands_of_terms_are_not_printed() {
-    let setting = |words: &str| {
-        let link = |k: usize| {
+    let chain_with_options = |words: &str| {
+        let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(x)", k - 1) };
             format!(
                 "#[body(mass = 1, com = y, inertia = diagonal(1, 2, 2.5))] link{k}: Body,
                 #[joint({parent} -> link{k}, about = unit([1, {k}, 2]))] pin{k}: Pin,"
             )
         };
-        (words.to_string(), (0..5).map(link).collect::<String>())
+        (words.to_string(), (0..5).map(link_declarations).collect::<String>())
     };
     answers(
-        setting,
+        chain_with_options,
         &[(
             "equations = lagrange",
             "the equations of this mechanism have thousands of terms, or more symbols and functions than are \

@@ -1,16 +1,16 @@
-//! Constraints whose components restrict nothing.
+//! Tests that constraints whose components restrict no motion are rejected.
 
 use super::{answers, counts};
 
-/// Two carts on a table.
+/// Test mechanism: two carts that move independently in parallel planes.
 const CARTS: &str = "h: f64, #[body(mass = 1)] first: Body, #[body(mass = 3)] second: Body,
     #[joint(ground -> first, along = (x, y))] one: Stage, #[joint(ground.at(h * z) -> second, along = (x, y))] two: Stage,";
 
 #[test]
 fn what_restricts_nothing_is_refused() {
-    let carts = |constraint: &str| (String::new(), format!("{CARTS} {constraint}"));
+    let carts_with_constraint = |constraint: &str| (String::new(), format!("{CARTS} {constraint}"));
     answers(
-        carts,
+        carts_with_constraint,
         &[
             (
                 "#[constraint(dot(v(first / ground / ground), z) * z)] none: Nonholonomic",
@@ -34,12 +34,12 @@ fn what_restricts_nothing_is_refused() {
 
 #[test]
 fn what_restricts_some_components_is_not() {
-    let fields = |constraint: &str| format!("{CARTS} {constraint}");
+    let carts_with_constraint = |constraint: &str| format!("{CARTS} {constraint}");
     for constraint in [
         "#[constraint(v(first / ground / ground) = v(second / ground / ground))] same: Nonholonomic",
         "#[constraint(r(first / ground) = r(second / ground) - h * z)] same: Holonomic",
     ] {
-        counts(&[("", &fields(constraint), 0)]);
+        counts(&[("", &carts_with_constraint(constraint), 0)]);
     }
 }
 

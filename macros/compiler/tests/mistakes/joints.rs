@@ -1,4 +1,4 @@
-//! Joints: their endpoints and axes.
+//! Tests of error messages about the endpoints and axes of joints.
 
 use super::{Row, answers};
 

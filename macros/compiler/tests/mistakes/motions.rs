@@ -254,16 +254,16 @@ fn frames_elements_and_inertias() {
 /// Units of curvature and of cable lengths are inferred from the expressions around them.
 #[test]
 fn units_are_inferred() {
-    let fits = |fields: &str| {
+    let assert_no_messages = |fields: &str| {
         let found = messages("", &format!("{ARM} {fields}"));
         assert_eq!(found, Vec::<String>::new(), "{fields}");
     };
-    fits(
+    assert_no_messages(
         "a: f64, k: f64, s: Coordinate, #[define(a * cos(s) * x + a * sin(s) * y)] wire: Vector,
         #[particle(mass = 1, at = wire)] bead: Particle,
         #[acts(on = hinge, value = k * (curvature(wire, s) + 1 / a))] law: Torque",
     );
-    fits("r: f64, k: f64, l: f64,
+    assert_no_messages("r: f64, k: f64, l: f64,
         #[acts(on = cable(arm.at(-y) / ground.at(2 * x), ground.cylinder(r, z)), stiffness = k, free_length = l + r)] band: Spring");
     let wrong = [
         "a: f64, s: Coordinate, #[define(a * cos(s) * x + a * sin(s) * y)] wire: Vector,
@@ -276,7 +276,8 @@ fn units_are_inferred() {
     ];
     for fields in wrong {
         let found = messages("", &format!("{ARM} {fields}"));
-        let clash = |message: &String| message.contains("a length (m)") || message.contains("a mass (kg)");
-        assert!(found.len() == 1 && found.iter().all(clash), "{fields}: {found:?}");
+        let is_unit_message =
+            |message: &String| message.contains("a length (m)") || message.contains("a mass (kg)");
+        assert!(found.len() == 1 && found.iter().all(is_unit_message), "{fields}: {found:?}");
     }
 }

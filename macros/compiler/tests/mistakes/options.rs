@@ -1,4 +1,4 @@
-//! Options of `#[mechanism]`.
+//! Tests of error messages about options of `#[mechanism]`.
 
 use super::{ARM, Row, answers};
 

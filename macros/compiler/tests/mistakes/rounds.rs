@@ -3,7 +3,7 @@
 
 use super::{ARM, counts, messages};
 
-/// Fields of an arm with a tool.
+/// Fields of a test mechanism: an arm with a tool, a spring, a motor and an output.
 const PARTS: [&str; 12] = [
     "k: f64",
     "l: f64",
@@ -19,10 +19,11 @@ const PARTS: [&str; 12] = [
     "#[output(s * v(tip / ground / ground))] seen: Vector",
 ];
 
-/// Returns the fields, some of them replaced.
+/// Returns the fields of the test mechanism, some of them replaced by the given texts.
 fn fields_with(changed: &[(usize, &str)]) -> String {
-    let part = |k: usize| changed.iter().find(|(at, _)| *at == k).map_or(PARTS[k], |(_, text)| text);
-    (0..PARTS.len()).map(part).collect::<Vec<_>>().join(", ")
+    let part_or_replacement =
+        |k: usize| changed.iter().find(|(at, _)| *at == k).map_or(PARTS[k], |(_, text)| text);
+    (0..PARTS.len()).map(part_or_replacement).collect::<Vec<_>>().join(", ")
 }
 
 #[test]
@@ -94,7 +95,7 @@ fn both_are_told() {
     ]);
 }
 
-/// A syntax error in one field causes no errors in the other, valid fields.
+/// Checks that a syntax error in one field causes no errors in the valid fields.
 #[test]
 fn nothing_follows_from_a_mistake_of_grammar() {
     for (k, part) in PARTS.iter().enumerate() {

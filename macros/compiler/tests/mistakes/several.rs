@@ -1,4 +1,4 @@
-//! Several errors at once: each is reported, and no error that only follows from another one is.
+//! Tests of several errors at once: each is reported, but no error that is only a consequence of another one.
 
 use super::{ARM, counts, messages};
 
@@ -71,7 +71,7 @@ fn independent_mistakes_are_said_at_once() {
     counts(&rows);
 }
 
-/// The second position of a conflict is a note of one error.
+/// Checks that a conflict between two positions is one error, with the second position as a note.
 #[test]
 fn conflicts_are_one_error_with_a_note() {
     for (fields, note) in [

@@ -1,10 +1,10 @@
-//! Errors of users who know Rust, other tools or mechanics, but not yet the language. Each causes one error
-//! with help.
+//! Tests of errors by users who know Rust, other tools or mechanics, but not yet the language. Each causes
+//! one error with help.
 
 use super::{ARM, Row, messages};
 use std::path::Path;
 
-/// Arguments of the attribute, and fields in addition to those of an arm on a hinge.
+/// Erroneous sources: arguments of the attribute, and fields added to an arm on a hinge.
 const SLIPS: &[(&str, &str)] = &[
     ("", "#[acts(on = hinge, stiffness = 3, damping = 1)] k: Spring"),
     ("", "#[acts(on = hinge, k = 3)] k: Spring"),
@@ -115,8 +115,7 @@ fn each_is_one_error_with_help() {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), SLIPS.len(), wrong.join("\n\n"));
 }
 
-/// Fields in addition to those of an arm on a hinge, with the first line of the message and a part of the
-/// help.
+/// Erroneous fields added to an arm on a hinge, with the first line of the message and a part of the help.
 const POINTERS: &[Row] = &[
     (
         "#[acts(on = hinge, value = 3 * hinge_ddot)] k: Torque",
@@ -147,7 +146,7 @@ fn each_points_at_what_was_meant() {
     super::answers(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
 }
 
-/// Options for a robot's file.
+/// Invalid options for an imported robot file, with the expected messages.
 const OPTIONS: &[Row] = &[
     ("lock = [hand_joint]", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
@@ -161,8 +160,9 @@ const OPTIONS: &[Row] = &[
 fn options_of_a_file_are_written_as_they_are_meant() {
     let robot = "<robot name=\"arm\"><link name=\"arm\"/></robot>";
     std::fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("options.urdf"), robot).unwrap();
-    let setting = |options: &str| (format!("urdf = \"options.urdf\", {options}"), String::new());
-    super::answers(setting, OPTIONS);
+    let options_without_fields =
+        |options: &str| (format!("urdf = \"options.urdf\", {options}"), String::new());
+    super::answers(options_without_fields, OPTIONS);
 }
 
 #[test]

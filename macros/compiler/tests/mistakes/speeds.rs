@@ -1,4 +1,4 @@
-//! Invalid generalized speeds.
+//! Tests of error messages about invalid generalized speeds.
 
 use super::{Row, answers};
 

@@ -27,7 +27,7 @@ struct Said {
     text: String,
 }
 
-/// Returns the messages of `#[mechanism(…)] item`, in the order of their positions.
+/// Returns the error messages of the compiler for the source `#[mechanism(…)] item`, ordered by position.
 fn said(source: &str) -> Vec<Said> {
     let mut tokens = source.parse::<TokenStream>().expect("these are tokens").into_iter().skip(1);
     let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{source} has no attribute") };
@@ -65,10 +65,11 @@ fn row(before: &str, row: &str, after: &str) -> String {
         if k < before.len() || k > before.len() + row.len() {
             continue;
         }
-        let is_mark = |one: &&Said| one.from < one.to;
-        let ends = found.iter().filter(is_mark).filter(|one| one.to == k && one.from >= before.len());
+        let is_marked_range = |one: &&Said| one.from < one.to;
+        let ends = found.iter().filter(is_marked_range).filter(|one| one.to == k && one.from >= before.len());
         marked.extend(ends.map(|_| MARKS[1]));
-        let starts = found.iter().filter(is_mark).filter(|one| one.from == k && k < before.len() + row.len());
+        let starts =
+            found.iter().filter(is_marked_range).filter(|one| one.from == k && k < before.len() + row.len());
         marked.extend(starts.map(|_| MARKS[0]));
         if k < before.len() + row.len() {
             marked.push(letter);
@@ -118,8 +119,8 @@ fn messages_and_their_tokens() {
         if std::env::var_os("LINKWORK_WRITE").is_some() {
             fs::write(&path, &found).unwrap();
         }
-        let rows = |text: &str| text.split("\n\n").map(String::from).collect::<Vec<_>>();
-        for (is, was) in rows(&found).into_iter().zip(rows(&expected)) {
+        let split_paragraphs = |text: &str| text.split("\n\n").map(String::from).collect::<Vec<_>>();
+        for (is, was) in split_paragraphs(&found).into_iter().zip(split_paragraphs(&expected)) {
             count += usize::from(is.contains("\n    error"));
             if is != was {
                 wrong.push(format!("{}\nexpected\n{was}\nfound\n{is}", path.display()));

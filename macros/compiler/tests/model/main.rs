@@ -23,10 +23,10 @@ fn check_urdf(inside: &str, expected: &str) {
 }
 
 fn compare(actual: &str, expected: &str) {
-    let trim = |text: &str| -> Vec<String> {
+    let trimmed_lines = |text: &str| -> Vec<String> {
         text.lines().map(|line| line.trim().to_string()).filter(|line| !line.is_empty()).collect()
     };
-    assert!(trim(actual) == trim(expected), "expected\n{expected}\nfound\n{actual}");
+    assert!(trimmed_lines(actual) == trimmed_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
 fn facts(fields: &str, urdf: Option<&str>) -> String {
@@ -319,25 +319,31 @@ fn joints_of_several_motions_are_chains() {
 
 #[test]
 fn followers_share_their_masters_coordinate() {
-    let link = |name: &str| {
+    let link_element = |name: &str| {
         format!(
             "<link name='{name}'><inertial><mass value='1'/>\
              <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>"
         )
     };
-    let joint = |name: &str, kind: &str, parent: &str, child: &str, more: &str| {
+    let joint_element = |name: &str, kind: &str, parent: &str, child: &str, more: &str| {
         format!(
             "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>\
              <axis xyz='0 0 1'/>{more}</joint>"
         )
     };
-    let text = link("base")
-        + &link("a")
-        + &link("b")
-        + &link("c")
-        + &joint("a_joint", "revolute", "base", "a", "<mimic joint='c_joint' multiplier='-2' offset='0.5'/>")
-        + &joint("b_joint", "prismatic", "base", "b", "<mimic joint='a_joint' multiplier='3'/>")
-        + &joint("c_joint", "revolute", "base", "c", "");
+    let text = link_element("base")
+        + &link_element("a")
+        + &link_element("b")
+        + &link_element("c")
+        + &joint_element(
+            "a_joint",
+            "revolute",
+            "base",
+            "a",
+            "<mimic joint='c_joint' multiplier='-2' offset='0.5'/>",
+        )
+        + &joint_element("b_joint", "prismatic", "base", "b", "<mimic joint='a_joint' multiplier='3'/>")
+        + &joint_element("c_joint", "revolute", "base", "c", "");
     check_urdf(
         &text,
         "q: c_joint
@@ -353,7 +359,7 @@ fn followers_share_their_masters_coordinate() {
 
 #[test]
 fn a_link_with_inertia_has_mass() {
-    let robot = |kind: &str| {
+    let robot_with_joint_type = |kind: &str| {
         format!(
             "<link name='a'><inertial><mass value='0'/>
              <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
@@ -361,27 +367,28 @@ fn a_link_with_inertia_has_mass() {
         )
     };
     check_urdf(
-        &robot("revolute"),
+        &robot_with_joint_type("revolute"),
         "r.urdf:2:14: `a` has an inertia and no mass
          = help: no real body has an inertia without mass: give it a mass, or an inertia of zero
          = help: correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the inertia unchanged",
     );
     // Bodies that are fixed to the ground appear in no equation.
-    let fixed = format!("<robot>{}</robot>", robot("fixed"));
+    let fixed = format!("<robot>{}</robot>", robot_with_joint_type("fixed"));
     assert!(!facts("", Some(&fixed)).contains("no mass"));
 }
 
-/// Exporters write such values for bodies without inertia. They are too small for a body with mass.
+/// Checks that inconsistent moments of inertia of rounding-error magnitude, which exporters write for bodies
+/// without inertia, are accepted, and that larger ones are rejected.
 #[test]
 fn noise_is_no_inertia() {
-    let link = |mass: &str, moment: &str| {
+    let robot_with_inertia = |mass: &str, moment: &str| {
         format!(
             "<link name='a'><inertial><mass value='{mass}'/>
              <inertia ixx='0' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='0'/></inertial></link>
              <link name='b'/><joint name='j' type='JOINT'><parent link='b'/><child link='a'/></joint>"
         )
     };
-    let mistake = |moment: &str| {
+    let inconsistent_inertia_message = |moment: &str| {
         format!(
             "r.urdf:2:14: the inertia of `a` is not physically consistent
              = help: its principal moments are 0, 0, {moment}: the largest exceeds the sum of the others
@@ -391,11 +398,11 @@ fn noise_is_no_inertia() {
     for (mass, moment, real) in
         [("0", "1e-18", true), ("0", "2e-18", false), ("2", "1e-16", true), ("2", "3e-16", false)]
     {
-        let text = link(mass, moment);
+        let text = robot_with_inertia(mass, moment);
         let moving = text.replace("JOINT", "revolute");
         match real {
             true => assert!(facts("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
-            false => check_urdf(&moving, &mistake(moment)),
+            false => check_urdf(&moving, &inconsistent_inertia_message(moment)),
         }
         // Bodies that are fixed to the ground appear in no equation.
         check_urdf(&text.replace("JOINT", "fixed"), "q:\nframe b on ground\nframe a on ground");

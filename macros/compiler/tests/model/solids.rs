@@ -51,23 +51,23 @@ fn of_revolution(from: f64, to: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(
 
 #[test]
 fn solids_of_revolution_agree_with_quadrature() {
-    let none = |_: f64| 0.0;
-    let ball = |r: f64| move |z: f64| (r * r - z * z).max(0.0).sqrt();
+    let zero_radius = |_: f64| 0.0;
+    let radius_of_ball = |r: f64| move |z: f64| (r * r - z * z).max(0.0).sqrt();
     let thin = 1e-5;
     let table = [
-        ("rod(3, 2, z)", of_revolution(0.0, 2.0, |_| thin, none), 1e-8),
+        ("rod(3, 2, z)", of_revolution(0.0, 2.0, |_| thin, zero_radius), 1e-8),
         ("ring(3, 0.5, z)", of_revolution(0.0, thin, |_| 0.5, |_| 0.5 - thin), 1e-4),
-        ("disk(3, 0.5, z)", of_revolution(0.0, thin, |_| 0.5, none), 1e-8),
-        ("cylinder(3, 0.5, 2, z)", of_revolution(-1.0, 1.0, |_| 0.5, none), 1e-8),
+        ("disk(3, 0.5, z)", of_revolution(0.0, thin, |_| 0.5, zero_radius), 1e-8),
+        ("cylinder(3, 0.5, 2, z)", of_revolution(-1.0, 1.0, |_| 0.5, zero_radius), 1e-8),
         ("tube(3, 0.3, 0.5, 2, z)", of_revolution(-1.0, 1.0, |_| 0.5, |_| 0.3), 1e-8),
-        ("cone(3, 0.5, 2, z)", of_revolution(0.0, 2.0, |z| z / 4.0, none), 1e-8),
+        ("cone(3, 0.5, 2, z)", of_revolution(0.0, 2.0, |z| z / 4.0, zero_radius), 1e-8),
         (
             "capsule(3, 0.5, 2, z)",
-            of_revolution(-1.5, 1.5, |z| ball(0.5)((z.abs() - 1.0).max(0.0)), none),
+            of_revolution(-1.5, 1.5, |z| radius_of_ball(0.5)((z.abs() - 1.0).max(0.0)), zero_radius),
             1e-8,
         ),
-        ("sphere(3, 0.5)", of_revolution(-0.5, 0.5, ball(0.5), none), 1e-8),
-        ("shell(3, 0.5)", of_revolution(-0.5, 0.5, ball(0.5), ball(0.5 - thin)), 1e-4),
+        ("sphere(3, 0.5)", of_revolution(-0.5, 0.5, radius_of_ball(0.5), zero_radius), 1e-8),
+        ("shell(3, 0.5)", of_revolution(-0.5, 0.5, radius_of_ball(0.5), radius_of_ball(0.5 - thin)), 1e-4),
     ];
     for (solid, (axial, transverse), tolerance) in table {
         assert_near(solid, diagonal([transverse, transverse, axial]), tolerance);
@@ -89,13 +89,13 @@ fn solids_of_revolution_agree_with_quadrature() {
 #[test]
 fn solids_of_three_lengths_agree_with_quadrature() {
     // Second moments of a box by the two-point rule, which is exact for them.
-    let second = |a: f64| (a / 2.0 / 3.0_f64.sqrt()).powi(2);
+    let second_moment = |a: f64| (a / 2.0 / 3.0_f64.sqrt()).powi(2);
     let from_second =
         |m: f64, s: [f64; 3]| diagonal([m * (s[1] + s[2]), m * (s[0] + s[2]), m * (s[0] + s[1])]);
-    let cuboid = from_second(3.0, [0.5, 1.0, 2.0].map(second));
+    let cuboid = from_second(3.0, [0.5, 1.0, 2.0].map(second_moment));
     assert_near("cuboid(3, 0.5, 1, 2)", cuboid, 1e-12);
     assert_near("box(3, 0.5, 1, 2)", cuboid, 1e-12);
-    assert_near("plate(3, 0.5, 1)", from_second(3.0, [second(0.5), second(1.0), 0.0]), 1e-12);
+    assert_near("plate(3, 0.5, 1)", from_second(3.0, [second_moment(0.5), second_moment(1.0), 0.0]), 1e-12);
     // A ball of radius one has I = 2 ∫ z² dm about every axis. Each length scales only its own second moment.
     let (moment, _) = of_revolution(-1.0, 1.0, |z| (1.0 - z * z).max(0.0).sqrt(), |_| 0.0);
     let second = [0.5_f64, 1.0, 2.0].map(|a| a * a * moment / 2.0 / 3.0);

@@ -1,6 +1,6 @@
 //! Operation counts of generated functions. Twenty-four counts are exact: those of a small chain with
-//! parameters, of a robot, and of a robot whose limbs are SIMD lanes. All other counts are bounds with a
-//! margin of two per cent for changes of the cost model; a change that saves more than that may lower them.
+//! parameters, of a robot, and of a robot whose limbs are SIMD lanes. All other counts are upper bounds with
+//! a margin of two per cent for changes of the cost model.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -8,7 +8,7 @@ use linkwork_compiler::lower::{Op, Program};
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
-/// Returns the programs of these functions.
+/// Compiles a mechanism and returns the programs of the named functions.
 fn programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
     programs_and_nodes(arguments, item, functions).0
 }
@@ -16,18 +16,18 @@ fn programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
 /// Returns the programs of these functions, and the number of expressions in the graph.
 fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(tokens(arguments), tokens(item), folder, &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens(item), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let find = |name: &&str| {
+    let find_program = |name: &&str| {
         let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
         f.program.clone()
     };
-    (functions.iter().map(find).collect(), graph.len())
+    (functions.iter().map(find_program).collect(), graph.len())
 }
 
 fn chain(n: usize, symbolic: bool) -> String {
@@ -61,7 +61,7 @@ fn totals(arguments: &str, item: &str) -> [usize; 4] {
     std::array::from_fn(|k| all[k].counts.total())
 }
 
-/// Checks that no count exceeds its bound.
+/// Checks that no operation count exceeds its bound.
 fn at_most(found: &[usize], bounds: &[usize], what: &str) {
     assert!(found.iter().zip(bounds).all(|(n, most)| n <= most), "{what}: {found:?}, at most {bounds:?}");
 }
@@ -170,24 +170,24 @@ fn chains() {
     }
 }
 
-/// From sixteen to sixty-four joints, the costs of inverse and forward dynamics are linear functions, and the
-/// costs of the mass matrix and of derivatives are quadratic functions: three lengths determine all others up
-/// to a few operations. The number of expressions for all functions grows at most quadratically.
+/// Checks how operation counts grow from sixteen to sixty-four joints: linearly for inverse and forward
+/// dynamics, quadratically for the mass matrix and derivatives. The number of expressions for all functions
+/// grows at most quadratically.
 #[test]
 fn curves_of_growth() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
-    let operations = |n: usize| {
+    let count_operations = |n: usize| {
         let (programs, nodes) =
             programs_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
         let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total() as f64).collect();
         totals.push(nodes as f64);
         totals
     };
-    let [a, b, c] = [16, 20, 24].map(operations);
+    let [a, b, c] = [16, 20, 24].map(count_operations);
     for n in [32, 48, 64] {
-        let (found, s) = (operations(n), (n as f64 - 16.0) / 4.0);
+        let (found, s) = (count_operations(n), (n as f64 - 16.0) / 4.0);
         for (k, name) in all.iter().enumerate() {
             let bend = c[k] - 2.0 * b[k] + a[k];
             assert!(k >= lines.len() || bend == 0.0, "{name} is a line");
@@ -243,11 +243,11 @@ fn chains_placed_by_expressions() {
     }
 }
 
-/// A mechanism just below the size limit for comparing candidates takes fewer expressions to compile than one
-/// of twice the size.
+/// Checks that a mechanism just below the size limit for comparing candidates takes fewer expressions to
+/// compile than one of twice the size.
 #[test]
 fn comparing_stays_cheaper_than_growing() {
-    let chain = |n: usize| {
+    let chain_declaration = |n: usize| {
         let mut item = String::from("pub struct Chain {");
         for k in 0..n {
             let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.4 * z)", k - 1) };
@@ -260,7 +260,8 @@ fn comparing_stays_cheaper_than_growing() {
         item.push('}');
         item
     };
-    let [one, two] = [16, 32].map(|n| programs_and_nodes("gravity = -9.81 * z", &chain(n), &MAIN).1);
+    let [one, two] =
+        [16, 32].map(|n| programs_and_nodes("gravity = -9.81 * z", &chain_declaration(n), &MAIN).1);
     assert!(4 * one < 3 * two, "16 spatial pins take {one} expressions, 32 take {two}");
 }
 

@@ -7,7 +7,7 @@ use crate::combined::Row;
 const NONE: [f64; 3] = [0.0; 3];
 const DOWN: [f64; 3] = [0.3, -0.2, -9.81];
 
-/// Mechanisms.
+/// Test mechanisms with rare combinations of features, each with a model for the oracle.
 pub const ROWS: &[Row] = &[
     Row {
         name: "a loop on a driven frame with central gravity",

@@ -14,7 +14,7 @@ use linkwork_compiler::{compile, read};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Step of differences.
+/// Time step of the finite differences.
 const H: f64 = 4e-3;
 /// Maximum difference, relative to the magnitude of the compared values.
 const TOLERANCE: f64 = 1e-7;
@@ -29,13 +29,13 @@ pub enum Law {
     Dashpot(f64),
     Inerter(f64),
     Push(f64),
-    /// Potential `−c / s`.
+    /// Central force with the potential `−c / s`.
     Central(f64),
     /// Potential `½ k s²` times the square of time.
     Growing(f64),
 }
 
-/// Mechanism and its model for the oracle.
+/// Source of a test mechanism, and the model of it that the oracle evaluates.
 pub struct Row {
     pub name: &'static str,
     pub gravity: [f64; 3],
@@ -89,8 +89,8 @@ fn check(row: &Row, more: &str) {
     item.push('}');
     let arguments = format!("gravity = {:?}{more}", row.gravity);
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let tokens = |text: &str| text.parse().expect("Rust");
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let parse_tokens = |text: &str| text.parse().expect("Rust");
+    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         panic!("{}: {}", row.name, cx.messages().join("\n"));
@@ -139,7 +139,7 @@ fn rotated(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| u[i] + 2.0 * (w * first[i] + second[i]))
 }
 
-/// Rotates a quaternion: `q ⊗ exp(φ)`.
+/// Rotates a quaternion by a rotation vector `φ` in body axes: `q ⊗ exp(φ)`.
 fn turn(q: &mut [f64], phi: [f64; 3]) {
     let angle = phi.iter().map(|x| x * x).sum::<f64>().sqrt();
     let part = if angle < 1e-12 { 0.5 } else { (angle / 2.0).sin() / angle };
@@ -155,14 +155,15 @@ fn turn(q: &mut [f64], phi: [f64; 3]) {
 /// Returns the first derivative `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`.
 fn first(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0].map(|k| f(k * H));
-    let derivative = |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
-    (0..a.len()).map(derivative).collect()
+    let finite_difference =
+        |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
+    (0..a.len()).map(finite_difference).collect()
 }
 
 fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * H));
-    let outer = |i: usize| 2.0 * (a[i] + g[i]) - 27.0 * (b[i] + e[i]) + 270.0 * (c[i] + d[i]);
-    (0..a.len()).map(|i| (outer(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
+    let weighted_outer_sum = |i: usize| 2.0 * (a[i] + g[i]) - 27.0 * (b[i] + e[i]) + 270.0 * (c[i] + d[i]);
+    (0..a.len()).map(|i| (weighted_outer_sum(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
 }
 
 impl Case<'_> {
@@ -170,19 +171,34 @@ impl Case<'_> {
     fn displaced(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
-        let step = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
+        let displacement_of_coordinate = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
         for chart in self.row.charts.chars() {
             match chart {
-                's' => out.q[q0] += step(v0),
-                'b' => turn(&mut out.q[q0..q0 + 4], [step(v0), step(v0 + 1), step(v0 + 2)]),
+                's' => out.q[q0] += displacement_of_coordinate(v0),
+                'b' => turn(
+                    &mut out.q[q0..q0 + 4],
+                    [
+                        displacement_of_coordinate(v0),
+                        displacement_of_coordinate(v0 + 1),
+                        displacement_of_coordinate(v0 + 2),
+                    ],
+                ),
                 _ => {
                     let (v, w) = (&s.v[v0..v0 + 3], &s.v[v0 + 3..v0 + 6]);
                     let spin =
                         [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]];
-                    let body = std::array::from_fn(|i| step(v0 + i) + spin[i] * h * h / 2.0);
+                    let body =
+                        std::array::from_fn(|i| displacement_of_coordinate(v0 + i) + spin[i] * h * h / 2.0);
                     let d = rotated(&s.q[q0 + 3..q0 + 7], body);
                     (0..3).for_each(|i| out.q[q0 + i] += d[i]);
-                    turn(&mut out.q[q0 + 3..q0 + 7], [step(v0 + 3), step(v0 + 4), step(v0 + 5)]);
+                    turn(
+                        &mut out.q[q0 + 3..q0 + 7],
+                        [
+                            displacement_of_coordinate(v0 + 3),
+                            displacement_of_coordinate(v0 + 4),
+                            displacement_of_coordinate(v0 + 5),
+                        ],
+                    );
                 }
             }
             let (nq, nv) = match chart {
@@ -197,7 +213,8 @@ impl Case<'_> {
         out
     }
 
-    /// Returns the state after a step along one velocity at the same time.
+    /// Returns the state after a step of the configuration along one velocity. Time, velocities and
+    /// accelerations are unchanged.
     fn stepped(&self, s: &State, k: usize, h: f64) -> State {
         let mut unit = s.clone();
         unit.v.fill(0.0);
@@ -252,24 +269,25 @@ impl Case<'_> {
                 continue;
             }
             let axes = ["x", "y", "z"].map(|axis| self.run(&format!("{axis}_{name}"), s));
-            let position = |p: [f64; 3]| {
-                let entry = |i: usize| o[i] + (0..3).map(|k| (axes[k][i] - o[i]) * p[k]).sum::<f64>();
-                [entry(0), entry(1), entry(2)]
+            let position_in_frame = |p: [f64; 3]| {
+                let coordinate_in_frame =
+                    |i: usize| o[i] + (0..3).map(|k| (axes[k][i] - o[i]) * p[k]).sum::<f64>();
+                [coordinate_in_frame(0), coordinate_in_frame(1), coordinate_in_frame(2)]
             };
-            all.extend(position(*com));
+            all.extend(position_in_frame(*com));
             for k in (0..3).filter(|_| *moments != [0.0; 3]) {
                 for side in [-1.0, 1.0] {
                     let mut p = *com;
                     p[k] += side;
-                    all.extend(position(p));
+                    all.extend(position_in_frame(p));
                 }
             }
         }
         all
     }
 
-    /// Returns the masses of all particles. Masses at a distance of 1 m from the centre may be negative; only
-    /// the sum over a body is its mass.
+    /// Returns the masses of the particles that replace the bodies. Masses at a distance of 1 m from the
+    /// centre may be negative; only their sum over a body is its mass.
     fn weights(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for (_, mass, _, moments) in self.row.masses {
@@ -285,25 +303,25 @@ impl Case<'_> {
         all
     }
 
-    /// Returns `τ` by d'Alembert's principle.
+    /// Returns the generalized forces `τ` of a motion, computed by d'Alembert's principle.
     fn forces(&self, s: &State) -> Vec<f64> {
-        let lengths = |s: &State| -> Vec<f64> {
+        let lengths_of_elements = |s: &State| -> Vec<f64> {
             (0..self.row.elements.len()).map(|k| self.run(&format!("s{k}"), s)[0]).collect()
         };
         let accelerations = second(|h| self.places(&self.displaced(s, h)));
         let (now, rate, bend) = (
-            lengths(s),
-            first(|h| lengths(&self.displaced(s, h))),
-            second(|h| lengths(&self.displaced(s, h))),
+            lengths_of_elements(s),
+            first(|h| lengths_of_elements(&self.displaced(s, h))),
+            second(|h| lengths_of_elements(&self.displaced(s, h))),
         );
         let weights = self.weights();
-        let force = |k: usize| {
+        let generalized_force = |k: usize| {
             let partial = first(|h| self.places(&self.stepped(s, k, h)));
             let mut sum = 0.0;
             for (i, (a, p)) in accelerations.iter().zip(&partial).enumerate() {
                 sum += weights[i / 3] * (a - self.row.gravity[i % 3]) * p;
             }
-            let partial = first(|h| lengths(&self.stepped(s, k, h)));
+            let partial = first(|h| lengths_of_elements(&self.stepped(s, k, h)));
             for (e, (law, _)) in self.row.elements.iter().enumerate() {
                 sum += partial[e]
                     * match *law {
@@ -317,7 +335,7 @@ impl Case<'_> {
             }
             sum
         };
-        (0..s.v.len()).map(force).collect()
+        (0..s.v.len()).map(generalized_force).collect()
     }
 
     fn check_forces(&self, s: &State) {

@@ -45,13 +45,13 @@ pub fn check(seed: u64) -> bool {
         return false;
     }
     let zero = vec![0.0; nv];
-    let partial = |k: usize| -> Vec<f64> {
+    let partial_velocities = |k: usize| -> Vec<f64> {
         let unit: Vec<f64> = (0..nv).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
         let state = State::new(&q, &unit, &zero);
         drives.iter().map(|drive| kane::measured(&spec, &state, &drive.measure).rate().re).collect()
     };
     // Stored by rows.
-    let columns: Vec<Vec<f64>> = (0..nv).map(partial).collect();
+    let columns: Vec<Vec<f64>> = (0..nv).map(partial_velocities).collect();
     let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let state = State::new(&q, &v, &zero);
     let missing = drives
@@ -160,20 +160,22 @@ fn compare(
     let (arguments, item) = words::source(spec, "Driven", more);
     let mut item = item.trim_end().trim_end_matches('}').to_string();
     for (k, drive) in drives.iter().enumerate() {
-        let coordinate = |(_, body, k): &(f64, usize, usize)| {
+        let coordinate_name = |(_, body, k): &(f64, usize, usize)| {
             format!("joint{body}{}", spec.bodies[*body].kind.coordinates()[*k])
         };
         let [start, speed, growth] = drive.path;
         let (kind, left, right) = match &drive.measure {
             Measure::Coordinates(list) if drive.by_rate => {
-                let terms = list.iter().map(|term| format!("({:?}) * rate({})", term.0, coordinate(term)));
+                let terms =
+                    list.iter().map(|term| format!("({:?}) * rate({})", term.0, coordinate_name(term)));
                 ("Nonholonomic", terms.collect::<Vec<_>>(), format!("{speed:?} + ({growth:?}) * 2 * t"))
             }
             measure => {
                 let terms = match measure {
-                    Measure::Coordinates(list) => {
-                        list.iter().map(|term| format!("({:?}) * {}", term.0, coordinate(term))).collect()
-                    }
+                    Measure::Coordinates(list) => list
+                        .iter()
+                        .map(|term| format!("({:?}) * {}", term.0, coordinate_name(term)))
+                        .collect(),
                     Measure::Way(a, b, axis) => {
                         let axis = ["x", "y", "z"][*axis];
                         vec![format!("dot(r({} / {}), ground.{axis})", words::point(a), words::point(b))]
@@ -188,8 +190,8 @@ fn compare(
     item.push('}');
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         let told = cx.messages();
@@ -202,7 +204,7 @@ fn compare(
         return;
     };
     assert_eq!((model.freedom.velocities, model.constraints.len()), (0, v.len()), "seed {seed}\n{item}");
-    let symbol = |symbol| match Quantity::from_symbol(symbol) {
+    let value_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Force(k) => tau[k],
@@ -211,13 +213,13 @@ fn compare(
         other => panic!("seed {seed}: {other:?}"),
     };
     let passive = output.functions.iter().find(|f| f.name == "__passive_forces");
-    let passive = passive.map_or(Vec::new(), |f| f.program.run(&symbol));
-    let all = |s| match Quantity::from_symbol(s) {
+    let passive = passive.map_or(Vec::new(), |f| f.program.run(&value_of_symbol));
+    let value_with_passive_forces = |s| match Quantity::from_symbol(s) {
         Quantity::PassiveForce(k) => passive[k],
-        _ => symbol(s),
+        _ => value_of_symbol(s),
     };
     let f = output.functions.iter().find(|f| f.name == "__constrained_dynamics").expect("it is constrained");
-    let found = f.program.run(&all);
+    let found = f.program.run(&value_with_passive_forces);
     close(&format!("seed {seed}{more}: accelerations\n{item}"), &found[..v.len()], a);
     close(&format!("seed {seed}{more}: multipliers\n{item}"), &found[v.len()..2 * v.len()], lambda);
 }

@@ -5,10 +5,10 @@ use linkwork_compiler::expr::Function;
 use std::collections::BTreeMap;
 use syn::{Block, Expr, ExprCall, ExprField, Lit, Member, Pat, Stmt, UnOp};
 
-/// Reason why a body has no result.
+/// Reason why a generated function body cannot be interpreted.
 #[derive(Debug)]
 pub enum Stop {
-    /// The body calls an unsupported function.
+    /// The generated function body calls an unsupported function.
     Foreign,
     /// The body is invalid Rust, or it does not end with a value.
     Wrong(String),
@@ -28,9 +28,9 @@ fn wrong<T>(what: impl Into<String>) -> Result<T> {
 pub enum Value {
     Number(f64),
     Lanes(Vec<f64>),
-    /// Array or tuple; for a matrix its columns.
+    /// Array or tuple of values; a matrix is a list of its columns.
     List(Vec<Value>),
-    /// Operation by its name, with the number of lanes of its result.
+    /// Name of an operation, with the number of lanes of its result.
     Operation(String, Option<usize>),
 }
 
@@ -208,8 +208,9 @@ impl Machine {
             Expr::Call(call) => self.call(call),
             Expr::MethodCall(call) => {
                 let value = self.value(&call.receiver)?;
-                let number = || call.turbofish.as_ref().and_then(|types| constants(types).first().copied());
-                match (call.method.to_string().as_str(), value, number()) {
+                let first_turbofish_constant =
+                    || call.turbofish.as_ref().and_then(|types| constants(types).first().copied());
+                match (call.method.to_string().as_str(), value, first_turbofish_constant()) {
                     ("lanes", value, None) => Ok(value),
                     ("sum", Value::Lanes(lanes), None) => Ok(Value::Number(lanes.iter().sum())),
                     ("lane", Value::Lanes(lanes), Some(k)) if k < lanes.len() => Ok(Value::Number(lanes[k])),
@@ -332,30 +333,31 @@ impl Machine {
         applied(&name, lanes, &values).unwrap_or_else(foreign)
     }
 
-    /// Stores lanes to rows of a matrix.
+    /// Interprets a generated call that stores SIMD lanes to rows of a matrix.
     fn store(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
         let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign() };
         let constants = constants(types);
         let vectors: Vec<Value> = call.args.iter().skip(1).map(|e| self.value(e)).collect::<Result<_>>()?;
-        let lane = |vector: usize, k: usize| match &vectors[vector] {
+        let lane_of_vector = |vector: usize, k: usize| match &vectors[vector] {
             Value::Lanes(lanes) if k < lanes.len() => Ok(Value::Number(lanes[k])),
             other => wrong(format!("lane {k} of {other:?}")),
         };
-        let count = |vector: usize| if let Value::Lanes(lanes) = &vectors[vector] { lanes.len() } else { 0 };
+        let lanes_in_vector =
+            |vector: usize| if let Value::Lanes(lanes) = &vectors[vector] { lanes.len() } else { 0 };
         match (name, constants.as_slice()) {
             ("store_two", [i, j, row]) => {
-                self.assign(&call.args[0], &[*row], lane(0, *i)?)?;
-                self.assign(&call.args[0], &[row + 1], lane(1, *j)?)?;
+                self.assign(&call.args[0], &[*row], lane_of_vector(0, *i)?)?;
+                self.assign(&call.args[0], &[row + 1], lane_of_vector(1, *j)?)?;
             }
             ("store_rows", [row]) => {
-                for k in 0..count(0) {
-                    self.assign(&call.args[0], &[row + k], lane(0, k)?)?;
+                for k in 0..lanes_in_vector(0) {
+                    self.assign(&call.args[0], &[row + k], lane_of_vector(0, k)?)?;
                 }
             }
             ("store_columns", [row, column]) => {
-                for k in 0..count(0) {
-                    self.assign(&call.args[0], &[column + k, *row], lane(0, k)?)?;
-                    self.assign(&call.args[0], &[column + k, row + 1], lane(1, k)?)?;
+                for k in 0..lanes_in_vector(0) {
+                    self.assign(&call.args[0], &[column + k, *row], lane_of_vector(0, k)?)?;
+                    self.assign(&call.args[0], &[column + k, row + 1], lane_of_vector(1, k)?)?;
                 }
             }
             _ => return foreign(),
@@ -367,7 +369,7 @@ impl Machine {
 /// Returns the result of an operation; `None` for an unknown operation.
 fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
     // In a product of a number and lanes, the number is not broadcast in the code.
-    let scaled = |rest: &str| -> Option<Result<Value>> {
+    let apply_scaled_function = |rest: &str| -> Option<Result<Value>> {
         let (Value::Number(x), Value::Lanes(own)) = (values.first()?, values.get(1)?) else {
             return Some(wrong(format!("{name} of {values:?}")));
         };
@@ -377,20 +379,20 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
             rest => applied(rest, lanes, &all),
         }
     };
-    let by_name = |name: &str| Function::ALL.iter().find(|(known, _)| *known == name);
+    let function_by_name = |name: &str| Function::ALL.iter().find(|(known, _)| *known == name);
     Some(match (name, values) {
         ("mul_add", [_, _, _]) => each(values, &|x| x[0] * x[1] + x[2]),
         ("mul_sub", [_, _, _]) => each(values, &|x| x[0] * x[1] - x[2]),
         ("neg_mul_add", [_, _, _]) => each(values, &|x| x[2] - x[0] * x[1]),
-        ("scale", [_, _]) => scaled("")?,
-        ("scale_add", [_, _, _]) => scaled("mul_add")?,
-        ("scale_sub", [_, _, _]) => scaled("mul_sub")?,
-        ("neg_scale_add", [_, _, _]) => scaled("neg_mul_add")?,
+        ("scale", [_, _]) => apply_scaled_function("")?,
+        ("scale_add", [_, _, _]) => apply_scaled_function("mul_add")?,
+        ("scale_sub", [_, _, _]) => apply_scaled_function("mul_sub")?,
+        ("neg_scale_add", [_, _, _]) => apply_scaled_function("neg_mul_add")?,
         ("splat", [Value::Number(x)]) => Ok(Value::Lanes(vec![*x; lanes?])),
         ("each", [all]) => Ok(all.clone()),
         ("lanes", [Value::List(list)]) => {
-            let numbers = |value: &Value| if let Value::Number(x) = value { Some(*x) } else { None };
-            match list.iter().map(numbers).collect::<Option<Vec<f64>>>() {
+            let number_of_value = |value: &Value| if let Value::Number(x) = value { Some(*x) } else { None };
+            match list.iter().map(number_of_value).collect::<Option<Vec<f64>>>() {
                 Some(lanes) => Ok(Value::Lanes(lanes)),
                 None => wrong(format!("lanes of {list:?}")),
             }
@@ -404,12 +406,12 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
         ("sin_cos_all", [Value::List(angles)]) => {
             let all: Result<Vec<Value>> = angles.iter().map(both).collect();
             all.and_then(|all| {
-                let part = |k: usize| -> Result<Value> {
+                let part_of_pairs = |k: usize| -> Result<Value> {
                     Ok(Value::List(
                         all.iter().map(|pair| Ok(pair.elements()?[k].clone())).collect::<Result<_>>()?,
                     ))
                 };
-                Ok(Value::List(vec![part(0)?, part(1)?]))
+                Ok(Value::List(vec![part_of_pairs(0)?, part_of_pairs(1)?]))
             })
         }
         ("atan2", [_, _]) => each(values, &|x| x[0].atan2(x[1])),
@@ -417,14 +419,14 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
         ("min", [_, _]) => each(values, &|x| x[0].min(x[1])),
         ("max", [_, _]) => each(values, &|x| x[0].max(x[1])),
         (name, [_]) => {
-            let (_, function) = by_name(name)?;
+            let (_, function) = function_by_name(name)?;
             each(values, &|x| function.apply(x[0]))
         }
         _ => return None,
     })
 }
 
-/// Returns sine and cosine.
+/// Returns sine and cosine of a value, lane by lane.
 fn both(x: &Value) -> Result<Value> {
     let x = std::slice::from_ref(x);
     Ok(Value::List(vec![each(x, &|x| x[0].sin())?, each(x, &|x| x[0].cos())?]))
@@ -438,11 +440,11 @@ fn index(expr: &Expr) -> Result<usize> {
     }
 }
 
-/// Returns the numbers among generic arguments.
+/// Returns the integers among generic arguments.
 fn constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
-    let constant = |argument: &syn::GenericArgument| match argument {
+    let constant_argument = |argument: &syn::GenericArgument| match argument {
         syn::GenericArgument::Const(expr) => index(expr).ok(),
         _ => None,
     };
-    types.args.iter().filter_map(constant).collect()
+    types.args.iter().filter_map(constant_argument).collect()
 }

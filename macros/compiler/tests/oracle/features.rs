@@ -18,8 +18,8 @@ use std::path::Path;
 
 /// Returns the values `t0`, `t1`, … in a function's text.
 fn values(text: &str) -> BTreeSet<&str> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    text.split(|c| !is_word(c))
+    let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.split(|c| !is_word_character(c))
         .filter(|word| {
             word.strip_prefix('t').is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
         })
@@ -50,8 +50,8 @@ fn unbound(text: &str) -> Vec<String> {
 
 /// Returns the generated code or the messages as text.
 fn expanded(arguments: &str, item: &str) -> String {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
-    let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
+    let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
@@ -59,8 +59,8 @@ fn expanded(arguments: &str, item: &str) -> String {
 fn answers(seeds: std::ops::Range<u64>) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (arguments, item) in seeds.map(source::source) {
-        let tokens = |text: &str| text.parse().expect("the source is Rust");
-        for message in check(tokens(&arguments), tokens(&item), Path::new("")) {
+        let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
+        for message in check(parse_tokens(&arguments), parse_tokens(&item), Path::new("")) {
             *counts.entry(message.lines().next().unwrap_or_default().to_string()).or_default() += 1;
         }
     }
@@ -69,8 +69,9 @@ fn answers(seeds: std::ops::Range<u64>) -> String {
     lines.iter().map(|(n, message)| format!("{n} {message}\n")).collect()
 }
 
-/// If the variable `LINKWORK_SOURCES` names a file, the compilable mechanisms are written to it, one module
-/// each, for a check with rustc.
+/// Checks that random mechanisms either compile or are rejected with an error. If the variable
+/// `LINKWORK_SOURCES` names a file, the compilable ones are written to it, one module each, for a check with
+/// rustc.
 #[test]
 fn combinations_compile_or_are_answered() {
     let (mut compiled, mut modules) = (0, String::new());
@@ -100,12 +101,14 @@ fn combinations_compile_or_are_answered() {
 /// long, for any capacity.
 #[test]
 fn what_is_too_long_is_answered() {
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut long, all) = (0, seeds(60));
     for seed in all.clone() {
         let (arguments, item) = source::source(seed);
         let mut cx = Diagnostics::new();
-        let Some(source) = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx) else { continue };
+        let Some(source) = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx) else {
+            continue;
+        };
         for room in [40, 300 + 40 * (seed as usize % 100)] {
             let (graph, mut cx) = (Graph::with_room_for(room), Diagnostics::new());
             let compiled = compile(&source, &graph, &mut cx);
@@ -140,7 +143,8 @@ fn chosen_mechanisms_agree_with_themselves() {
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
 }
 
-/// Forces of many springs are computed by one function, which other functions call.
+/// Checks a mechanism with many springs, whose passive forces are computed by one function that other
+/// functions call.
 #[test]
 fn long_passive_forces_agree() {
     let fields = chosen::springs(SPRINGS);

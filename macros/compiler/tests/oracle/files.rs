@@ -17,23 +17,23 @@ use std::path::Path;
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// Returns the names of the coordinates of a file, and its functions.
+/// Imports a robot file. Returns the names of its coordinates, and its generated functions.
 fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Output) {
     let mut cx = Diagnostics::new();
     let (arguments, item) = ("".parse().unwrap(), "struct Robot;".parse().unwrap());
     let mut source = read(arguments, item, Path::new(""), &mut cx).expect("a struct");
     let place = source.mechanism.description.name.place.clone();
-    let name = |text: &str| Name { text: text.to_string(), place: place.clone() };
+    let name_at_place = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
         format,
-        path: name("file"),
+        path: name_at_place("file"),
         base: if robot.free { Base::Free } else { Base::Fixed },
         honour_passive: true,
         follow_mimic: true,
         limits: linkwork_compiler::syntax::LimitOption::Honour,
         inertias: Inertias::Check,
         inputs: InputOption::Joints,
-        lock: robot.locked().map(name).collect(),
+        lock: robot.locked().map(name_at_place).collect(),
         snap: None,
         parameters: Vec::new(),
         contacts: false,
@@ -55,14 +55,18 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
 
 /// Returns the values of a function from the scalar program and from the program with lanes.
 fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
-    let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],
         Quantity::Force(k) => tau[k],
         other => panic!("{other:?}"),
     };
-    [Some(&f.program), f.program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol)).collect()
+    [Some(&f.program), f.program.simd.as_deref()]
+        .into_iter()
+        .flatten()
+        .map(|p| p.run(&value_of_symbol))
+        .collect()
 }
 
 fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], text: &str) {
@@ -82,12 +86,13 @@ struct Truth {
 /// Computes the reference values with Kane's equations, from the partial velocities of every link.
 fn truth(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
     let pieces = robot.pieces(&State::new(q, v, a));
-    let partial = |k: usize| {
+    let partial_velocities = |k: usize| {
         let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
         robot.pieces(&State::new(q, &unit, &vec![0.0; v.len()]))
     };
-    let force =
-        |k: usize| pieces.iter().zip(partial(k)).map(|(p, moved)| p.inertial_force(&moved, GRAVITY).re).sum();
+    let force = |k: usize| {
+        pieces.iter().zip(partial_velocities(k)).map(|(p, moved)| p.inertial_force(&moved, GRAVITY).re).sum()
+    };
     let mass: f64 = pieces.iter().map(|p| p.mass).sum();
     let moment = std::array::from_fn(|i| pieces.iter().map(|p| p.mass * p.p[i].0[0].re).sum::<f64>());
     Truth {
@@ -126,22 +131,22 @@ fn random_sdf_files_move_as_their_version_says() {
 fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
     let (names, output) = functions(robot, format, text);
     assert_eq!(names, robot.coordinates(), "{text}");
-    let function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
+    let find_function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
     for _ in 0..2 {
         let state = robot.state(random);
         let expected = truth(robot, &state);
-        let check = |name: &str, expected: &[f64]| {
-            for found in values(function(name), &state, &[]) {
+        let check_function = |name: &str, expected: &[f64]| {
+            for found in values(find_function(name), &state, &[]) {
                 assert_near(name, seed, &found, expected, text);
             }
         };
-        check("inverse_dynamics", &expected.forces);
-        check("kinetic_energy", &[expected.kinetic]);
+        check_function("inverse_dynamics", &expected.forces);
+        check_function("kinetic_energy", &[expected.kinetic]);
         if robot.links.iter().enumerate().any(|(k, _)| robot.moves(k)) {
-            check("potential_energy", &[expected.potential]);
-            check("center_of_mass", &expected.center);
+            check_function("potential_energy", &[expected.potential]);
+            check_function("center_of_mass", &expected.center);
         }
-        for found in values(function("forward_dynamics"), &state, &expected.forces) {
+        for found in values(find_function("forward_dynamics"), &state, &expected.forces) {
             let size = state[2].iter().fold(1.0_f64, |size, a| size.max(a.abs()));
             let off = found.iter().zip(&state[2]).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
             assert!(off <= 1e-6 * size, "forward dynamics of {seed}: {off}\n{}", text);

@@ -9,7 +9,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// Number with a derivative in its imaginary part.
 pub type C = Complex<f64>;
 
-/// Returns a complex number without imaginary part.
+/// Returns a real number as a complex number.
 pub fn real(x: f64) -> C {
     C::new(x, 0.0)
 }
@@ -19,7 +19,7 @@ pub fn real(x: f64) -> C {
 pub struct Jet(pub [C; 3]);
 
 impl Jet {
-    /// Creates a constant series.
+    /// Returns the Taylor series of a constant.
     pub fn constant(x: f64) -> Jet {
         Jet([real(x), real(0.0), real(0.0)])
     }
@@ -32,7 +32,7 @@ impl Jet {
         Jet([root, first, (c - first * first) / (root * 2.0)])
     }
 
-    /// Returns sine and cosine.
+    /// Returns sine and cosine of a Taylor series.
     pub fn sin_cos(self) -> (Jet, Jet) {
         let [a, b, c] = self.0;
         let (s, k) = (a.sin(), a.cos());
@@ -90,53 +90,53 @@ impl Mul for Jet {
     }
 }
 
-/// Vector as Taylor series.
+/// Vector of three Taylor series in time.
 pub type Vector = [Jet; 3];
-/// Rotation matrix as Taylor series, by rows.
+/// Rotation matrix of Taylor series in time, stored by rows.
 pub type Matrix = [[Jet; 3]; 3];
 
-/// Returns a constant vector.
+/// Returns a constant vector as Taylor series in time.
 pub fn constant_vector(v: [f64; 3]) -> Vector {
     v.map(Jet::constant)
 }
 
-/// Returns `a + b`.
+/// Returns the sum `a + b` of two vectors.
 pub fn sum(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] + b[i])
 }
 
-/// Returns `a − b`.
+/// Returns the difference `a − b` of two vectors.
 pub fn difference(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] - b[i])
 }
 
-/// Returns `s v`.
+/// Returns a constant vector times a Taylor series, `s v`.
 pub fn scaled(s: Jet, v: [f64; 3]) -> Vector {
     v.map(|x| s * Jet::constant(x))
 }
 
-/// Returns `a · b`.
+/// Returns the dot product `a · b`.
 pub fn dot(a: Vector, b: Vector) -> Jet {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns `R v`.
+/// Returns the product `R v` of a rotation matrix and a vector.
 pub fn rotated(r: &Matrix, v: Vector) -> Vector {
     r.map(|row| dot(row, v))
 }
 
-/// Returns `A B`.
+/// Returns the product `A B` of two matrices.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transposed(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
 
-/// Returns `Aᵀ`.
+/// Returns the transpose `Aᵀ` of a matrix.
 pub fn transposed(a: &Matrix) -> Matrix {
     from_fn(|i| from_fn(|j| a[j][i]))
 }
 
-/// Returns the identity matrix.
+/// Returns the identity matrix with Taylor series as entries.
 pub fn identity() -> Matrix {
     from_fn(|i| from_fn(|j| Jet::constant(if i == j { 1.0 } else { 0.0 })))
 }
@@ -155,7 +155,7 @@ pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
     })
 }
 
-/// Returns `a × b`.
+/// Returns the cross product `a × b`.
 pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }

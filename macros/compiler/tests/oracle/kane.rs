@@ -23,18 +23,18 @@ pub struct State {
 }
 
 impl State {
-    /// Creates a real state.
+    /// Creates a state from real configuration, velocities and accelerations.
     pub fn new(q: &[f64], v: &[f64], a: &[f64]) -> State {
-        let list = |x: &[f64]| x.iter().map(|x| real(*x)).collect();
-        State { q: list(q), v: list(v), a: list(a) }
+        let complex_vector = |x: &[f64]| x.iter().map(|x| real(*x)).collect();
+        State { q: complex_vector(q), v: complex_vector(v), a: complex_vector(a) }
     }
 }
 
-/// Motion of all bodies at one state.
+/// Poses, masses and joint coordinates of all bodies at one state, as Taylor series in time.
 struct World {
     poses: Vec<Pose>,
     pieces: Vec<Piece>,
-    /// For each body, the coordinates that elements can act on.
+    /// For each body, the joint coordinates that force elements can act on.
     coordinates: Vec<Vec<Jet>>,
 }
 
@@ -53,29 +53,32 @@ fn of_place(place: &Place) -> Pose {
 /// Returns the pose of a joint, and its coordinates that elements can act on.
 fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let [one, two] = body.axes;
-    let fixed = |r: Matrix| Pose { r, p: constant_vector([0.0; 3]) };
-    let translated = |p: Vector| Pose { r: identity(), p };
-    let three = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
+    let rotation_pose = |r: Matrix| Pose { r, p: constant_vector([0.0; 3]) };
+    let translation_pose = |p: Vector| Pose { r: identity(), p };
+    let three_components = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
     if body.kind == Kind::Ball {
-        return (fixed(turning(q, three(v, 0), three(a, 0))), Vec::new());
+        return (rotation_pose(turning(q, three_components(v, 0), three_components(a, 0))), Vec::new());
     }
     if body.kind == Kind::Free {
-        let (w, rate) = (three(v, 3), three(a, 3));
+        let (w, rate) = (three_components(v, 3), three_components(a, 3));
         let r = turning(&q[3..], w, rate);
-        return (Pose { r, p: drifting(q, &r, three(v, 0), w, three(a, 0)) }, Vec::new());
+        return (
+            Pose { r, p: drifting(q, &r, three_components(v, 0), w, three_components(a, 0)) },
+            Vec::new(),
+        );
     }
     let s: Vec<Jet> = (0..q.len()).map(|k| Jet([q[k], v[k], a[k] * 0.5])).collect();
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let pose = match body.kind {
-        Kind::Pin => fixed(rotation(one, s[0])),
-        Kind::Sleeve => translated(scaled(s[0], one)),
+        Kind::Pin => rotation_pose(rotation(one, s[0])),
+        Kind::Sleeve => translation_pose(scaled(s[0], one)),
         Kind::Screw => Pose { r: rotation(one, s[0]), p: scaled(s[0] * Jet::constant(body.pitch), one) },
         Kind::Collar => Pose { r: rotation(one, s[1]), p: scaled(s[0], one) },
         Kind::Slot => Pose { r: rotation(two, s[1]), p: scaled(s[0], one) },
-        Kind::Universal => fixed(product(&rotation(x, s[0]), &rotation(y, s[1]))),
+        Kind::Universal => rotation_pose(product(&rotation(x, s[0]), &rotation(y, s[1]))),
         Kind::Planar => Pose { r: rotation(z, s[2]), p: sum(scaled(s[0], x), scaled(s[1], y)) },
-        Kind::Stage => translated([s[0], s[1], s[2]]),
-        Kind::Ball | Kind::Free | Kind::Weld => fixed(identity()),
+        Kind::Stage => translation_pose([s[0], s[1], s[2]]),
+        Kind::Ball | Kind::Free | Kind::Weld => rotation_pose(identity()),
     };
     (pose, s)
 }
@@ -127,7 +130,7 @@ fn world(spec: &Spec, state: &State) -> World {
     world
 }
 
-/// Returns `R diag Rᵀ`.
+/// Returns the inertia matrix `R diag(moments) Rᵀ` of a body, from its principal moments and axes.
 fn inertia(body: &Body) -> [[f64; 3]; 3] {
     let r = turns(&body.inertia_turns);
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
@@ -165,8 +168,8 @@ fn across(
     let Some(axis) = axis else { return (from, Jet::constant(0.0), None) };
     let n = around.body.map_or(constant_vector(axis), |k| rotated(&world.poses[k].r, constant_vector(axis)));
     let heights = from.map(|p| dot(p, n));
-    let level = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
-    ([level(0), level(1)], heights[1] - heights[0], Some(n))
+    let normal_component_of_end = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
+    ([normal_component_of_end(0), normal_component_of_end(1)], heights[1] - heights[0], Some(n))
 }
 
 /// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
@@ -191,7 +194,7 @@ fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option
     if n.is_none() { level } else { (level * level + rise * rise).sqrt() }
 }
 
-/// Scalar with a prescribed motion.
+/// Scalar quantity whose motion is prescribed as a function of time.
 #[derive(Clone, Debug)]
 pub enum Measure {
     /// Weighted sum of coordinates: factor, body and index of the coordinate.
@@ -211,7 +214,7 @@ pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
     }
 }
 
-/// Returns whether the ends of all cables are outside their obstacles.
+/// Returns whether the ends of all cables are outside the balls and cylinders that the cables wrap around.
 pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
     let (_, nv) = sizes(spec);
     let world = world(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
@@ -258,7 +261,8 @@ pub fn power(spec: &Spec, state: &State, lambda: &[f64]) -> C {
     generalized(spec, &world(spec, state), &world(spec, &partial))
 }
 
-/// Returns the generalized force for one generalized speed; `partial` is the motion with a unit value of it.
+/// Returns the generalized force for one generalized speed. `partial` is the motion in which only this
+/// generalized speed is nonzero, with the value one.
 fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
     let mut tau = real(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
@@ -288,29 +292,30 @@ fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
 /// Returns the mass matrix by columns, and the bias forces.
 pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let nv = v.len();
-    let state = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
+    let state_with_velocity = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
     let zero = vec![real(0.0); nv];
-    let bias = inverse_dynamics(spec, &state(v, zero.clone()));
+    let bias = inverse_dynamics(spec, &state_with_velocity(v, zero.clone()));
     // The mass matrix is computed without forces at rest. Subtracting forces would leave rounding errors.
-    let inertial = |element: &&Element| {
+    let is_inerter = |element: &&Element| {
         let (Element::Between(law, ..) | Element::On(law, ..) | Element::Along(law, _)) = element else {
             return false;
         };
         matches!(law, Law::Inerter(_))
     };
-    let elements = spec.elements.iter().filter(inertial).cloned().collect();
+    let elements = spec.elements.iter().filter(is_inerter).cloned().collect();
     let unloaded = Spec { gravity: [0.0; 3], elements, ..spec.clone() };
     let columns = (0..nv)
         .map(|k| {
             let mut a = zero.clone();
             a[k] = real(1.0);
-            inverse_dynamics(&unloaded, &state(&zero, a))
+            inverse_dynamics(&unloaded, &state_with_velocity(&zero, a))
         })
         .collect();
     (columns, bias)
 }
 
-/// Returns `q ⊕ i h e`: an imaginary step along one velocity, on the configuration manifold.
+/// Returns the configuration after an imaginary step along one velocity on the configuration manifold,
+/// `q ⊕ i h e`.
 pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
     step(spec, q, k, C::new(0.0, h))
 }
@@ -318,8 +323,8 @@ pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
 /// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
 /// these velocities.
 pub fn displaced(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
-    let stepped = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
-    let mut q = rates.iter().enumerate().fold(q.to_vec(), stepped);
+    let step_coordinate = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
+    let mut q = rates.iter().enumerate().fold(q.to_vec(), step_coordinate);
     let mut first = 0;
     for body in &spec.bodies {
         let (own, _) = body.kind.sizes();
@@ -333,7 +338,8 @@ pub fn displaced(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
     q
 }
 
-/// Returns `q ⊕ h e` for a step along one velocity; terms of second order in `h` are neglected.
+/// Returns the configuration after a step along one velocity, `q ⊕ h e`. Terms of second order in `h` are
+/// neglected.
 fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);

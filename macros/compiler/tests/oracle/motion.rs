@@ -6,7 +6,7 @@ use crate::jet::{
 };
 use std::array::from_fn;
 
-/// Rigid pose.
+/// Pose of a rigid body as Taylor series in time: rotation matrix and position.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     pub r: Matrix,
@@ -20,14 +20,14 @@ impl Pose {
     }
 }
 
-/// Rigid body with mass.
+/// Rigid body with its mass, inertia and motion in ground axes.
 pub struct Piece {
     pub mass: f64,
     /// Inertia about the centre of mass in body axes.
     pub inertia: [[f64; 3]; 3],
-    /// Body axes.
+    /// Rotation matrix of the body axes relative to the ground.
     pub r: Matrix,
-    /// Position of the centre of mass.
+    /// Position of the centre of mass in ground axes.
     pub p: Vector,
 }
 
@@ -49,7 +49,7 @@ impl Piece {
         complex_dot(force, velocity(moved.p)) + complex_dot(torque, spin(&moved.r).0)
     }
 
-    /// Returns the kinetic energy.
+    /// Returns the kinetic energy of the body.
     pub fn kinetic_energy(&self) -> C {
         let (v, (w, _)) = (velocity(self.p), spin(&self.r));
         (complex_dot(v, v) * self.mass + complex_dot(w, self.turned_inertia(w))) * 0.5
@@ -112,18 +112,28 @@ pub fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vect
     })
 }
 
-/// Returns angular velocity and acceleration of an orientation in ground axes, from `R' Rᵀ` and its rate.
+/// Returns the angular velocity and angular acceleration of a rotation matrix in ground axes, from `R' Rᵀ`
+/// and its time derivative.
 pub fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
-    let part = |order: (usize, usize), i: usize, j: usize| -> C {
+    let sum_of_derivative_products = |order: (usize, usize), i: usize, j: usize| -> C {
         (0..3).map(|k| r[i][k].0[order.0] * r[j][k].0[order.1]).sum()
     };
     // The coefficient of t² is half the second derivative.
-    let w = |i: usize, j: usize| part((1, 0), i, j);
-    let d = |i: usize, j: usize| part((2, 0), i, j) * 2.0 + part((1, 1), i, j);
-    ([w(2, 1), w(0, 2), w(1, 0)], [d(2, 1), d(0, 2), d(1, 0)])
+    let angular_velocity_entry = |i: usize, j: usize| sum_of_derivative_products((1, 0), i, j);
+    let angular_acceleration_entry = |i: usize, j: usize| {
+        sum_of_derivative_products((2, 0), i, j) * 2.0 + sum_of_derivative_products((1, 1), i, j)
+    };
+    (
+        [angular_velocity_entry(2, 1), angular_velocity_entry(0, 2), angular_velocity_entry(1, 0)],
+        [
+            angular_acceleration_entry(2, 1),
+            angular_acceleration_entry(0, 2),
+            angular_acceleration_entry(1, 0),
+        ],
+    )
 }
 
-/// Returns the first derivative of a position.
+/// Returns the velocity, which is the first derivative of a position series.
 pub fn velocity(p: Vector) -> [C; 3] {
     p.map(Jet::rate)
 }

@@ -15,13 +15,13 @@ use std::path::Path;
 
 /// Maximum difference, relative to the terms whose sum a result is.
 const TOLERANCE: f64 = 1e-10;
-/// Imaginary step, whose square is negligible.
+/// Imaginary step of complex-step differentiation; its square is negligible.
 const STEP: f64 = 1e-40;
 
-/// Step of sixth-order differences.
+/// Step of sixth-order finite differences.
 const H: f64 = 3e-3;
 
-/// State and forces.
+/// State and generalized forces at which programs are compared with the oracle.
 struct Point {
     q: Vec<f64>,
     v: Vec<f64>,
@@ -73,10 +73,10 @@ pub fn check(spec: &Spec, seed: u64) {
 /// false if the derivatives are too long.
 fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::source(spec, "Random", word);
-    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         assert!(graph.is_full(), "seed {seed}: {}\n{arguments}\n{item}", cx.messages().join("\n"));
@@ -109,7 +109,7 @@ impl Case<'_> {
             .iter()
             .find(|f| f.name == name)
             .unwrap_or_else(|| panic!("no function {name}"));
-        let state = |s| match Quantity::from_symbol(s) {
+        let value_of_symbol = |s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => self.spec.bodies[k].mass,
             Quantity::Configuration(k) => self.point.q[k],
             Quantity::Velocity(k) => self.point.v[k],
@@ -121,12 +121,12 @@ impl Case<'_> {
         // The results of called functions are inputs of their callers.
         let called = Called::ALL.map(|called| {
             let function = self.output.functions.iter().find(|f| f.name == called.function());
-            function.map_or_else(Vec::new, |f| f.program.run(&state))
+            function.map_or_else(Vec::new, |f| f.program.run(&value_of_symbol))
         });
         let symbol_value = |s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            _ => state(s),
+            _ => value_of_symbol(s),
         };
         let program = &function.program;
         [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol_value)).collect()
@@ -151,8 +151,8 @@ impl Case<'_> {
         let (columns, bias) = kane::mass_and_bias(self.spec, &state.q, &state.v);
         let mass: Vec<f64> = columns.iter().flatten().map(|x| x.re).collect();
         let bias: Vec<f64> = bias.iter().map(|x| x.re).collect();
-        let largest = |list: &[f64]| list.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
-        let (heavy, strong) = (largest(&mass), largest(&bias));
+        let largest_magnitude = |list: &[f64]| list.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
+        let (heavy, strong) = (largest_magnitude(&mass), largest_magnitude(&bias));
         self.close("mass_matrix", &mass, heavy);
         self.close("bias_forces", &bias, heavy + strong);
         let forces: Vec<f64> = kane::inverse_dynamics(self.spec, &state).iter().map(|x| x.re).collect();
@@ -171,7 +171,7 @@ impl Case<'_> {
                 let size: f64 =
                     terms.iter().map(|x| x.abs()).sum::<f64>() + tau[i].abs() + bias[i].abs() + strong;
                 let rest = terms.iter().sum::<f64>() + bias[i] - tau[i];
-                let reach = largest(&actual) * heavy;
+                let reach = largest_magnitude(&actual) * heavy;
                 assert!(
                     rest.abs() <= TOLERANCE * size.max(reach),
                     "forward dynamics, row {i}: {rest} is left of {size}, {}",
@@ -185,16 +185,17 @@ impl Case<'_> {
         let Point { q, v, a, .. } = &self.point;
         let nv = v.len();
         let state = State::new(q, v, a);
-        let imaginary = |list: Vec<C>| -> Vec<f64> { list.iter().map(|x| x.im / STEP).collect() };
+        let imaginary_parts_over_step =
+            |list: Vec<C>| -> Vec<f64> { list.iter().map(|x| x.im / STEP).collect() };
         let mut expected = Vec::new();
         for k in 0..nv {
             let stepped = State { q: kane::imaginary_step(self.spec, &state.q, k, STEP), ..state.clone() };
-            expected.extend(imaginary(kane::inverse_dynamics(self.spec, &stepped)));
+            expected.extend(imaginary_parts_over_step(kane::inverse_dynamics(self.spec, &stepped)));
         }
         for k in 0..nv {
             let mut stepped = state.clone();
             stepped.v[k] = real(v[k]) + C::new(0.0, STEP);
-            expected.extend(imaginary(kane::inverse_dynamics(self.spec, &stepped)));
+            expected.extend(imaginary_parts_over_step(kane::inverse_dynamics(self.spec, &stepped)));
         }
         let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
         self.close("inverse_dynamics_derivatives", &expected, scale);
@@ -215,14 +216,17 @@ impl Case<'_> {
             .map(|name| self.run(name).concat());
         let scale = sizes.iter().flatten().chain(&expected).fold(1.0_f64, |m, x| m.max(x.abs()));
         for found in self.run("inverse_dynamics_second_derivatives") {
-            let block = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
+            let second_derivative = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
             for i in 0..nv {
-                let row = |b: usize, along: &[f64]| (0..nv).map(|j| block(b, i, j) * along[j]).sum::<f64>();
-                let column = |b: usize| (0..nv).map(|j| block(b, j, i) * along[0][j]).sum::<f64>();
+                let row_product = |b: usize, along: &[f64]| {
+                    (0..nv).map(|j| second_derivative(b, i, j) * along[j]).sum::<f64>()
+                };
+                let column_product =
+                    |b: usize| (0..nv).map(|j| second_derivative(b, j, i) * along[0][j]).sum::<f64>();
                 let products = [
-                    row(0, &along[0]) + row(1, &along[1]) + row(3, &along[2]),
-                    column(1) + row(2, &along[1]),
-                    column(3),
+                    row_product(0, &along[0]) + row_product(1, &along[1]) + row_product(3, &along[2]),
+                    column_product(1) + row_product(2, &along[1]),
+                    column_product(3),
                 ];
                 for (kind, product) in products.iter().enumerate() {
                     let expected = expected[kind * nv + i];
@@ -237,34 +241,47 @@ impl Case<'_> {
         }
     }
 
-    /// Returns the second derivative of the power of the factors with respect to one entry of configuration,
-    /// velocity or acceleration, and along the direction. It is the mean of both orders of differentiation,
-    /// by differences with steps of `size`.
+    /// Returns a mixed second derivative of the power of the generalized forces with given factors: once with
+    /// respect to one entry of `q`, `v` or `a`, once along the direction. It is the mean of both orders of
+    /// differentiation, by finite differences with steps of `size`.
     fn mixed(&self, state: &State, entry: usize, size: f64) -> f64 {
         let Point { lambda, along, .. } = &self.point;
         let nv = lambda.len();
         let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
         unit[entry / nv][entry % nv] = 1.0;
-        let slope = |state: &State, along: &[Vec<f64>; 3]| {
+        let power_derivative_along = |state: &State, along: &[Vec<f64>; 3]| {
             let all = (0..nv)
                 .fold(state.q.clone(), |q, k| kane::imaginary_step(self.spec, &q, k, STEP * along[0][k]));
-            let add = |list: &[C], rates: &[f64]| -> Vec<C> {
+            let add_imaginary_step = |list: &[C], rates: &[f64]| -> Vec<C> {
                 list.iter().zip(rates).map(|(x, rate)| x + C::new(0.0, STEP * rate)).collect()
             };
-            let stepped = State { q: all, v: add(&state.v, &along[1]), a: add(&state.a, &along[2]) };
+            let stepped = State {
+                q: all,
+                v: add_imaginary_step(&state.v, &along[1]),
+                a: add_imaginary_step(&state.a, &along[2]),
+            };
             kane::power(self.spec, &stepped, lambda).im / STEP
         };
-        let difference = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
-            let value = |h: f64| {
-                let add = |list: &[C], rates: &[f64]| -> Vec<C> {
+        let difference_quotient = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
+            let derivative_at_displacement = |h: f64| {
+                let add_real_step = |list: &[C], rates: &[f64]| -> Vec<C> {
                     list.iter().zip(rates).map(|(x, rate)| x + real(h * rate)).collect()
                 };
                 let q = kane::displaced(self.spec, &state.q, &outer[0], h);
-                slope(&State { q, v: add(&state.v, &outer[1]), a: add(&state.a, &outer[2]) }, inner)
+                power_derivative_along(
+                    &State {
+                        q,
+                        v: add_real_step(&state.v, &outer[1]),
+                        a: add_real_step(&state.a, &outer[2]),
+                    },
+                    inner,
+                )
             };
-            let part = |h: f64| value(h) - value(-h);
-            (part(size) * 45.0 - part(2.0 * size) * 9.0 + part(3.0 * size)) / (60.0 * size)
+            let central_difference = |h: f64| derivative_at_displacement(h) - derivative_at_displacement(-h);
+            (central_difference(size) * 45.0 - central_difference(2.0 * size) * 9.0
+                + central_difference(3.0 * size))
+                / (60.0 * size)
         };
-        (difference(along, &unit) + difference(&unit, along)) * 0.5
+        (difference_quotient(along, &unit) + difference_quotient(&unit, along)) * 0.5
     }
 }

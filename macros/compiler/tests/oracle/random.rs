@@ -1,11 +1,11 @@
-//! Reproducible random numbers.
+//! Reproducible random numbers for tests.
 
 /// Random number generator SplitMix64 (Steele, Lea and Flood, *Fast splittable pseudorandom number
 /// generators*, 2014).
 pub struct Random(u64);
 
 impl Random {
-    /// Creates the generator for a seed.
+    /// Creates a random number generator from a seed.
     pub fn new(seed: u64) -> Random {
         Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d))
     }

@@ -13,7 +13,7 @@ pub const KINDS: [&str; 7] =
 pub struct Link {
     name: String,
     pub mass: f64,
-    /// Centre of mass in link axes.
+    /// Position of the centre of mass in link axes.
     pub com: [f64; 3],
     /// Inertia about the centre of mass in link axes.
     pub inertia: [[f64; 3]; 3],
@@ -41,7 +41,7 @@ pub struct Robot {
     shuffle: Vec<usize>,
 }
 
-/// Returns `R_z(yaw) R_y(pitch) R_x(roll)`.
+/// Returns the rotation matrix `R_z(yaw) R_y(pitch) R_x(roll)`.
 pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
     let axis_rotation =
         |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
@@ -79,7 +79,7 @@ impl Link {
     }
 }
 
-/// Returns numbers separated by spaces.
+/// Formats three numbers as text, separated by spaces.
 pub fn spaced(numbers: [f64; 3]) -> String {
     numbers.map(|x| format!("{x:?}")).join(" ")
 }
@@ -174,7 +174,7 @@ impl Robot {
     /// Returns the robot as an MJCF file. `inside` returns additional text for the body of each link, and
     /// `behind` is inserted after the bodies.
     pub fn mjcf(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
-        let follows = |link: &Link| {
+        let mimic_constraint_text = |link: &Link| {
             let joint = link.joint.as_ref()?;
             let (leader, factor, offset) = joint.mimic.filter(|_| !joint.locked)?;
             let leader = &self.links[leader].joint.as_ref()?.name;
@@ -183,7 +183,7 @@ impl Robot {
                 joint.name
             ))
         };
-        let couplings: String = self.links.iter().filter_map(follows).collect();
+        let couplings: String = self.links.iter().filter_map(mimic_constraint_text).collect();
         format!(
             "<mujoco><compiler angle=\"radian\" eulerseq=\"XYZ\"/>\n<worldbody>{}</worldbody>\n\
              <equality>{couplings}</equality>\n{behind}</mujoco>",
@@ -224,7 +224,7 @@ impl Robot {
         )
     }
 
-    /// Returns whether a link equals another one or is its ancestor.
+    /// Returns whether the link `carrier` equals the link `carried` or is an ancestor of it.
     pub fn carries(&self, carrier: usize, carried: usize) -> bool {
         carrier == carried
             || self.links[carried].joint.as_ref().is_some_and(|joint| self.carries(carrier, joint.parent))
@@ -266,15 +266,17 @@ impl Robot {
         joints.for_each(|joint| kinds[joint.kind] += 1);
     }
 
-    /// Returns the links depth first; links of one parent are sorted by the names of their joints.
+    /// Returns the link indices in depth-first order; links of one parent are sorted by the names of their
+    /// joints.
     fn order(&self) -> Vec<usize> {
         let (mut order, mut open) = (Vec::new(), vec![0]);
         while let Some(link) = open.pop() {
             order.push(link);
-            let joint = |k: usize| self.links[k].joint.as_ref();
-            let mut children: Vec<usize> =
-                (1..self.links.len()).filter(|k| joint(*k).is_some_and(|j| j.parent == link)).collect();
-            children.sort_by_key(|k| std::cmp::Reverse(joint(*k).map(|j| j.name.clone())));
+            let joint_of_link = |k: usize| self.links[k].joint.as_ref();
+            let mut children: Vec<usize> = (1..self.links.len())
+                .filter(|k| joint_of_link(*k).is_some_and(|j| j.parent == link))
+                .collect();
+            children.sort_by_key(|k| std::cmp::Reverse(joint_of_link(*k).map(|j| j.name.clone())));
             open.extend(children);
         }
         order
@@ -310,9 +312,9 @@ impl Robot {
     /// Returns random `q`, `v` and `v̇`; quaternions in `q` are normalised.
     pub fn state(&self, random: &mut Random) -> [Vec<f64>; 3] {
         let entries = self.entries();
-        let count = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
+        let total_size = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
         let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.figure()).collect() };
-        let (mut q, v, a) = (numbers(count(0)), numbers(count(1)), numbers(count(1)));
+        let (mut q, v, a) = (numbers(total_size(0)), numbers(total_size(1)), numbers(total_size(1)));
         for (link, [first, _]) in self.links.iter().zip(entries) {
             let [n, _] = link.sizes(self.free);
             if n == 4 || n == 7 {
@@ -324,7 +326,7 @@ impl Robot {
         [q, v, a]
     }
 
-    /// Returns whether a link can move.
+    /// Returns whether a link can move relative to the ground.
     pub fn moves(&self, link: usize) -> bool {
         match &self.links[link].joint {
             None => self.free,
@@ -357,16 +359,16 @@ impl Robot {
         places
     }
 
-    /// Returns the moving bodies with their masses.
+    /// Returns the moving bodies of the robot with their masses and poses.
     pub fn pieces(&self, state: &State) -> Vec<Piece> {
         let places = self.places(state);
         let moving = (0..self.links.len()).filter(|k| self.moves(*k));
-        let piece = |k: usize| {
+        let rigid_piece_of_link = |k: usize| {
             let Link { mass, com, inertia, .. } = self.links[k];
             let center = Pose { r: identity(), p: constant_vector(com) };
             Piece { mass, inertia, r: places[k].r, p: compose(&places[k], &center).p }
         };
-        moving.map(piece).collect()
+        moving.map(rigid_piece_of_link).collect()
     }
 }
 
@@ -376,7 +378,8 @@ impl Joint {
         self.axis.map(|x| x / length)
     }
 
-    /// Returns the pose of a joint that rotates about or slides along its axis.
+    /// Returns the pose of a joint that rotates about its axis or slides along it, at a value of its
+    /// coordinate.
     fn joint_pose(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
             "prismatic" => Pose { p: scaled(coordinate, self.unit()), ..Pose::identity() },
@@ -390,10 +393,11 @@ impl Joint {
             "floating" => floating(state, [q, v]),
             "planar" => {
                 let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
-                let axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
-                let shift = |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), axis(k));
+                let unit_axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
+                let planar_shift_along =
+                    |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), unit_axis(k));
                 let r = rotation(self.unit(), plain(state, [q + 2, v + 2]));
-                Pose { r, p: sum(shift(1), shift(2)) }
+                Pose { r, p: sum(planar_shift_along(1), planar_shift_along(2)) }
             }
             "spherical" => {
                 let r = turning(&state.q[q..q + 4], three(&state.v, v), three(&state.a, v));

@@ -51,7 +51,7 @@ impl Placed {
         Placed(axes, apply(&axes, self.1).map(|x| -x))
     }
 
-    /// Returns the six numbers of a `<pose>`.
+    /// Returns the pose as the six numbers of an SDF element `<pose>`: position, then roll, pitch and yaw.
     fn text(&self) -> String {
         let Placed(m, [x, y, z]) = self;
         let angles =
@@ -60,7 +60,7 @@ impl Placed {
     }
 }
 
-/// Data for writing a file of one version.
+/// Writer of a random robot as an SDF file of one version.
 struct Writer<'a> {
     robot: &'a Robot,
     minor: usize,

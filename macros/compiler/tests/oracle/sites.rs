@@ -47,16 +47,16 @@ fn forces(text: &str, locked: &[String]) -> Forces {
         (model.configuration.clone(), model.inputs.iter().map(|(name, _)| name.clone()));
     let inputs = inputs.collect();
     let function = output.functions.into_iter().find(|f| f.name == "generalized_forces");
-    let values = move |q: &[f64], v: &[f64], u: &[f64]| {
-        let symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let evaluate_forces = move |q: &[f64], v: &[f64], u: &[f64]| {
+        let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
             Quantity::Input(k) => u[k],
             other => panic!("{other:?}"),
         };
-        function.as_ref().map_or_else(Vec::new, |function| function.program.run(&symbol))
+        function.as_ref().map_or_else(Vec::new, |function| function.program.run(&value_of_symbol))
     };
-    Forces { coordinates, inputs, values: Box::new(values) }
+    Forces { coordinates, inputs, values: Box::new(evaluate_forces) }
 }
 
 /// Frame on a link or on the ground.
@@ -109,7 +109,8 @@ impl Motor {
     }
 }
 
-/// Files of two to seven links with one to four motors, on moving and on fixed links.
+/// Checks that motors on sites do the work of their forces. Random files have two to seven links and one to
+/// four motors, on moving and fixed links.
 #[test]
 fn random_motors_on_sites_do_the_work_of_their_forces() {
     for seed in seeds(60) {
@@ -134,16 +135,16 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
                 Motor { sites: [link + 1, other], against: random.index_below(2) == 0, gear }
             })
             .collect();
-        let inside = |link: usize| sites[link + 1].write(&format!("s{}", link + 1));
-        let actuator = |(k, motor): (usize, &Motor)| {
+        let text_of_site_in_link = |link: usize| sites[link + 1].write(&format!("s{}", link + 1));
+        let text_of_motor = |(k, motor): (usize, &Motor)| {
             let [on, other] = motor.sites;
             let against = if motor.against { format!(" refsite=\"s{other}\"") } else { String::new() };
             let gear = motor.gear.map(|x| format!("{x:?}")).join(" ");
             format!("<motor name=\"m{k}\" site=\"s{on}\"{against} gear=\"{gear}\"/>")
         };
-        let motors_text: String = motors.iter().enumerate().map(actuator).collect();
+        let motors_text: String = motors.iter().enumerate().map(text_of_motor).collect();
         let text = robot
-            .mjcf(&inside, &format!("<actuator>{motors_text}</actuator>"))
+            .mjcf(&text_of_site_in_link, &format!("<actuator>{motors_text}</actuator>"))
             .replace("<worldbody>", &format!("<worldbody>{}", sites[0].write("s0")));
         let locked: Vec<String> = robot.locked().map(str::to_string).collect();
         if !(0..links).any(|link| robot.moves(link)) {
@@ -172,7 +173,7 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
 /// Nozzle at the end of an arm: results calculated by hand and with MuJoCo 4.0.0.
 #[test]
 fn motors_on_sites_of_an_arm() {
-    let arm = |actuator: &str| {
+    let arm_model_text = |actuator: &str| {
         format!(
             "<mujoco><worldbody><site name='base'/><body name='arm'><inertial pos='0.2 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\
              <joint name='hinge' axis='0 1 0'/><site name='tip' pos='0.5 0 0'/></body></worldbody>\
@@ -186,7 +187,7 @@ fn motors_on_sites_of_an_arm() {
         ("refsite='base' gear='0 0 1'", -0.5 * at.cos()),
         ("refsite='base' gear='0 0 1 0 1 0'", 1.0 - 0.5 * at.cos()),
     ] {
-        let found = (forces(&arm(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
+        let found = (forces(&arm_model_text(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
         assert!((found[0] - expected).abs() < 1e-15, "{actuator}: {found:?}");
     }
     // Two rotors lift a hull with the sum of their forces, and rotate it with the difference of their

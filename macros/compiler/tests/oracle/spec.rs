@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 
-/// Joint type of the language.
+/// Joint type of random test mechanisms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Pin,
@@ -18,7 +18,7 @@ pub enum Kind {
     Weld,
 }
 
-/// All joint types.
+/// All joint types of random test mechanisms.
 pub const KINDS: [Kind; 11] = [
     Kind::Pin,
     Kind::Sleeve,
@@ -73,11 +73,11 @@ pub struct Slider {
     pub offset: [f64; 3],
 }
 
-/// Body with its joint to the parent.
+/// Body of a random test mechanism, with the joint to its parent.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub kind: Kind,
-    /// Parent body; `None` for the ground.
+    /// Parent body, to which the joint connects this body; `None` for the ground.
     pub parent: Option<usize>,
     pub on_parent: Place,
     pub on_child: Place,
@@ -104,44 +104,45 @@ pub struct End {
 /// Law of an element between two points, on a coordinate, or on the length of a path.
 #[derive(Clone, Copy, Debug)]
 pub enum Law {
-    /// Stiffness and free length.
+    /// Spring, with its stiffness and free length.
     Spring(f64, f64),
-    /// Damping coefficient.
+    /// Dashpot, with its damping coefficient.
     Dashpot(f64),
-    /// Inertance.
+    /// Inerter, with its inertance.
     Inerter(f64),
     /// Strength of an attraction with the inverse square of the distance; only between two points.
     Attraction(f64),
-    /// Dry friction; only on coordinates.
+    /// Dry friction, which acts only on coordinates.
     Friction(Friction),
 }
 
-/// Parameters of dry friction.
+/// Parameters of a dry friction law with Stribeck effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
     pub coulomb: f64,
     pub stiction: f64,
     pub stribeck_speed: f64,
     pub viscous: f64,
-    /// Speed of the regularisation.
+    /// Velocity scale of the regularisation of dry friction.
     pub speed: f64,
 }
 
-/// Path with a length.
+/// Path whose length a force element acts on.
 #[derive(Clone, Debug)]
 pub enum Path {
-    /// Straight segments between points.
+    /// Rope of straight segments through three points.
     Rope([End; 3]),
-    /// Cable between two points around a ball, or around a cylinder with an axis in the frame of its body.
+    /// Cable between two points that wraps around a ball, or around a cylinder whose axis is given in the
+    /// frame of its body.
     Cable { ends: [End; 2], around: End, radius: f64, axis: Option<[f64; 3]> },
 }
 
-/// Force element.
+/// Force element of a random test mechanism.
 #[derive(Clone, Debug)]
 pub enum Element {
-    /// Element along the line between two points.
+    /// Force element along the straight line between two points.
     Between(Law, End, End),
-    /// Element along a path.
+    /// Force element along a rope or a cable.
     Along(Law, Path),
     /// Element on a coordinate of a body's joint: law, body, coordinate.
     On(Law, usize, usize),
@@ -149,34 +150,34 @@ pub enum Element {
     Push(End, [f64; 3]),
     /// Force in body axes at a point of a body.
     Follow(End, [f64; 3]),
-    /// Torque in ground axes on a body.
+    /// Torque on a body, in ground axes.
     Twist(usize, [f64; 3]),
 }
 
-/// Mechanism.
+/// Random test mechanism as plain data: gravity, bodies and force elements.
 #[derive(Clone, Debug)]
 pub struct Spec {
     pub gravity: [f64; 3],
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
-    /// Whether masses are parameters.
+    /// Whether the masses of the bodies are parameters instead of numbers.
     pub symbolic: bool,
 }
 
-/// Parameters of the generator.
+/// Settings of the generator of random mechanisms.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
-    /// Maximum number of bodies.
+    /// Maximum number of bodies of a random mechanism.
     pub bodies: usize,
     /// Number of identical limbs; zero for a random tree.
     pub limbs: usize,
-    /// Masses are within this many powers of ten of one.
+    /// Decades of the random masses: each mass is within this many powers of ten of one.
     pub decades: f64,
     /// Standard magnitude of deviations of angles and axes from coordinate axes.
     pub noise: Option<f64>,
 }
 
-/// Random numbers and choices.
+/// Source of random numbers and choices for a mechanism.
 struct Source(Random);
 
 impl Source {
@@ -306,7 +307,7 @@ impl Source {
         })
     }
 
-    /// Returns a random body or the ground.
+    /// Returns a random body, or `None` for the ground.
     fn any(&mut self, bodies: &[Body]) -> Option<usize> {
         self.index_below(bodies.len() + 1).checked_sub(1)
     }
@@ -384,7 +385,7 @@ const LIMB_KINDS: [Kind; 12] = [
     Kind::Free,
 ];
 
-/// Returns the mechanism of a seed.
+/// Returns the random mechanism of a seed.
 pub fn spec(seed: u64, style: Style) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();

@@ -1,11 +1,11 @@
-//! Random mechanisms as source text.
+//! Source text of random test mechanisms.
 
 use crate::spec::{Body, Element, End, Friction, Kind, Law, Path, Place, Spec};
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Returns the attribute's arguments and the struct.
+/// Returns the source text of a random mechanism: arguments of the attribute, and the struct.
 pub fn source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
     let mut out = String::new();
     for (k, body) in spec.bodies.iter().enumerate() {

@@ -11,33 +11,34 @@ const FORCES: [&str; 6] = ["X", "Y", "Z", "L", "M", "N"];
 /// Linear and angular velocities along the same axes.
 const VELOCITIES: [&str; 6] = ["u", "v", "w", "p", "q", "r"];
 
-/// Reference quantities that make derivatives dimensionless.
+/// Reference quantities that make aerodynamic derivatives dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// Density of the air, kg/m³.
     pub density: f64,
     /// Wing area, m².
     pub area: f64,
-    /// Mean chord, m.
+    /// Mean chord of the wing, m.
     pub chord: f64,
     /// Wing span, m.
     pub span: f64,
 }
 
-/// Derivatives of all forces on an aircraft except gravity and its own inertia: aerodynamic forces and
-/// thrust. Moments are about the origin of the airframe; components are in its axes.
+/// Stability and control derivatives of an aircraft: derivatives of aerodynamic forces and thrust, without
+/// gravity and inertia. Moments are about the origin of the airframe; components are in airframe axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivatives {
     /// Derivatives with respect to `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s. Rows are `X`, `Y`, `Z`,
     /// `L`, `M`, `N`.
     pub by_velocity: DMatrix<f64>,
-    /// Derivatives with respect to the rates of these velocities, such as `Z` by `ẇ`: kg, kg·m, kg·m².
+    /// Derivatives of forces and moments with respect to the time derivatives of the velocities, such as
+    /// `∂Z/∂ẇ`: kg, kg·m, kg·m².
     pub by_acceleration: DMatrix<f64>,
-    /// Derivatives with respect to the inputs.
+    /// Derivatives of forces and moments with respect to the inputs.
     pub by_input: DMatrix<f64>,
-    /// Forces and moments, N and N·m.
+    /// Forces and moments on the aircraft at the reference state, N and N·m.
     pub forces: DVector<f64>,
-    /// Linear and angular velocity, m/s and rad/s.
+    /// Linear and angular velocity of the aircraft at the reference state, m/s and rad/s.
     pub velocity: DVector<f64>,
     inputs: Vec<&'static str>,
 }
@@ -45,9 +46,9 @@ pub struct Derivatives {
 /// Returns the wrench `w × (M v)` for a twist `w`, with the linear part first.
 fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
     let momentum = mass * v;
-    let part = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
-    let (force, moment) = (part(&momentum, 0), part(&momentum, 3));
-    let (linear, angular) = (part(w, 0), part(w, 3));
+    let three_entries_from = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
+    let (force, moment) = (three_entries_from(&momentum, 0), three_entries_from(&momentum, 3));
+    let (linear, angular) = (three_entries_from(w, 0), three_entries_from(w, 3));
     let mut all = DVector::zeros(6);
     all.fixed_rows_mut::<3>(0).copy_from(&angular.cross(&force));
     all.fixed_rows_mut::<3>(3).copy_from(&(angular.cross(&moment) + linear.cross(&force)));
@@ -108,10 +109,10 @@ impl Derivatives {
         for k in [0, 3] {
             (turn[(k, k)], turn[(k, k + 2)], turn[(k + 2, k)], turn[(k + 2, k + 2)]) = (c, s, -s, c);
         }
-        let rotate = |m: &DMatrix<f64>| &turn * m * turn.transpose();
+        let rotate_to_stability_axes = |m: &DMatrix<f64>| &turn * m * turn.transpose();
         Self {
-            by_velocity: rotate(&self.by_velocity),
-            by_acceleration: rotate(&self.by_acceleration),
+            by_velocity: rotate_to_stability_axes(&self.by_velocity),
+            by_acceleration: rotate_to_stability_axes(&self.by_acceleration),
             by_input: &turn * &self.by_input,
             forces: &turn * &self.forces,
             velocity: &turn * &self.velocity,

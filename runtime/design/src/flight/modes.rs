@@ -11,15 +11,16 @@ use crate::{Error, Mode, StateSpace};
 pub struct FlightModes {
     /// Oscillation of angle of attack and pitch rate.
     pub short_period: Option<Mode>,
-    /// Slow oscillation that exchanges airspeed and height.
+    /// Phugoid: slow oscillation that exchanges airspeed and height.
     pub phugoid: Option<Mode>,
-    /// Oscillation of sideslip, yaw and roll.
+    /// Dutch roll: oscillation of sideslip, yaw and roll.
     pub dutch_roll: Option<Mode>,
-    /// Fast real mode of the roll rate.
+    /// Roll mode: fast real mode of the roll rate.
     pub roll: Option<Mode>,
     /// Slow real mode of bank angle and heading.
     pub spiral: Option<Mode>,
-    /// Remaining modes, such as those of engines, of actuators and of the change of air density with height.
+    /// Modes of the aircraft other than the named ones, such as those of engines, of actuators and of the
+    /// change of air density with height.
     pub others: Vec<Mode>,
 }
 
@@ -52,29 +53,41 @@ impl FlightModes {
         let longitudinal_share = |mode: &Mode| share(mode, &LONGITUDINAL);
         let lateral_share = |mode: &Mode| share(mode, &LATERAL);
         let in_plane = |mode: &Mode| longitudinal_share(mode) > 0.5;
-        let sideways = |mode: &Mode| lateral_share(mode) > 0.5;
-        let swings = |mode: &Mode| mode.exponent.im > 0.0;
-        let pitches = |mode: &Mode| share(mode, &["w", "q"]);
-        let surges = |mode: &Mode| share(mode, &["u", "theta", "h"]);
-        let short = |mode: &Mode| in_plane(mode) && swings(mode) && pitches(mode) > surges(mode);
-        let long = |mode: &Mode| in_plane(mode) && swings(mode) && pitches(mode) <= surges(mode);
-        let yaws = |mode: &Mode| share(mode, &["v", "r"]);
-        let rolls = |mode: &Mode| sideways(mode) && !swings(mode);
+        let is_lateral_mode = |mode: &Mode| lateral_share(mode) > 0.5;
+        let is_oscillating_mode = |mode: &Mode| mode.exponent.im > 0.0;
+        let pitch_share = |mode: &Mode| share(mode, &["w", "q"]);
+        let surge_share = |mode: &Mode| share(mode, &["u", "theta", "h"]);
+        let is_short_period = |mode: &Mode| {
+            in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
+        };
+        let is_phugoid = |mode: &Mode| {
+            in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
+        };
+        let yaw_share = |mode: &Mode| share(mode, &["v", "r"]);
+        let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);
         Ok(Self {
-            short_period: take(&mut modes, short, Mode::frequency),
-            phugoid: take(&mut modes, long, surges),
-            dutch_roll: take(&mut modes, |mode| sideways(mode) && swings(mode) && yaws(mode) > 0.3, yaws),
-            roll: take(&mut modes, |mode| rolls(mode) && share(mode, &["p"]) > 0.3, Mode::frequency),
+            short_period: take(&mut modes, is_short_period, Mode::frequency),
+            phugoid: take(&mut modes, is_phugoid, surge_share),
+            dutch_roll: take(
+                &mut modes,
+                |mode| is_lateral_mode(mode) && is_oscillating_mode(mode) && yaw_share(mode) > 0.3,
+                yaw_share,
+            ),
+            roll: take(
+                &mut modes,
+                |mode| is_aperiodic_lateral(mode) && share(mode, &["p"]) > 0.3,
+                Mode::frequency,
+            ),
             spiral: take(
                 &mut modes,
-                |mode| rolls(mode) && share(mode, &["phi"]) > 0.3,
+                |mode| is_aperiodic_lateral(mode) && share(mode, &["phi"]) > 0.3,
                 |mode| -mode.frequency(),
             ),
             others: modes,
         })
     }
 
-    /// Returns the existing modes with their names.
+    /// Returns the named modes of the aircraft that exist, with their names.
     pub fn named_modes(&self) -> Vec<(&'static str, &Mode)> {
         let all = [
             ("short period", &self.short_period),

@@ -31,7 +31,7 @@ const STEADY: f64 = 1e-6;
 /// rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// Suffixes of a free joint's velocities.
+/// Suffixes of the velocity names of a free joint, linear before angular.
 const FREE: [&str; 6] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz"];
 
 /// Reports an error for a mechanism that does not begin with a free joint.

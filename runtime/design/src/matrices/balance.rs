@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Maximum number of sweeps; three are usual.
+/// Maximum number of balancing sweeps; three are usual.
 const MAX_SWEEPS: usize = 40;
 
 /// Returns `D⁻¹ A D`, whose rows and columns have similar norms, and the diagonal of `D` (Parlett and
@@ -14,8 +14,8 @@ pub(crate) fn balanced(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     (a, d)
 }
 
-/// Returns `D⁻¹ A D`, `D⁻¹ B`, `C D` and the diagonal of `D`. The scales balance the row of each state, which
-/// drives it, with its column, through which it acts.
+/// Returns `D⁻¹ A D`, `D⁻¹ B`, `C D` and the diagonal of `D`. The scales in `D` balance, for each state, its
+/// row in `A` and `B` with its column in `A` and `C`.
 pub(crate) fn balance_system(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

@@ -4,7 +4,7 @@ use super::{C, balanced, check_square};
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Maximum number of steps for one eigenvalue or pair; three are usual.
+/// Maximum number of QR steps for one eigenvalue or pair; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
 /// Computes the eigenvalues of a square matrix, after balancing, by Francis' double QR steps on its

@@ -53,10 +53,10 @@ pub fn exponential(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let a2 = &a * &a;
     let a4 = &a2 * &a2;
     let a6 = &a2 * &a4;
-    let even = |low: [f64; 4]| &a6 * low[3] + &a4 * low[2] + &a2 * low[1] + &identity * low[0];
-    let high = |b: [f64; 3]| &a6 * (&a6 * b[2] + &a4 * b[1] + &a2 * b[0]);
-    let odd = &a * (high([B[9], B[11], B[13]]) + even([B[1], B[3], B[5], B[7]]));
-    let even = high([B[8], B[10], B[12]]) + even([B[0], B[2], B[4], B[6]]);
+    let low_order_sum = |low: [f64; 4]| &a6 * low[3] + &a4 * low[2] + &a2 * low[1] + &identity * low[0];
+    let high_order_sum = |b: [f64; 3]| &a6 * (&a6 * b[2] + &a4 * b[1] + &a2 * b[0]);
+    let odd = &a * (high_order_sum([B[9], B[11], B[13]]) + low_order_sum([B[1], B[3], B[5], B[7]]));
+    let even = high_order_sum([B[8], B[10], B[12]]) + low_order_sum([B[0], B[2], B[4], B[6]]);
     let mut e = solve("the exponential's denominator", &(&even - &odd), &(&even + &odd))?;
     for _ in 0..squarings as usize {
         e = &e * &e;

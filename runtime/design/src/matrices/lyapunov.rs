@@ -1,5 +1,5 @@
-//! Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation AX
-//! + XB = C*, 1972), with one step of iterative refinement.
+//! Solvers of Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix
+//! equation AX + XB = C*, 1972), with one step of iterative refinement.
 
 use super::{C, CMatrix, Schur, check, check_square, complex, symmetric};
 use crate::Error;
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 type CVector = DVector<C>;
 
-/// Left-hand side of the equation: `A X + X B` or `A X B − X`.
+/// Kind of Sylvester equation, by its left-hand side: `A X + X B` (continuous) or `A X B − X` (discrete).
 #[derive(Clone, Copy)]
 enum Kind {
     Continuous,

@@ -1,13 +1,13 @@
-//! Numerical ranks of matrices.
+//! Numerical rank of matrices by orthogonal transformations.
 
 use super::check;
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Orthogonal transformation of a matrix such that `Qᵀ M` has `rank` significant rows on top; the others are
-/// rounding errors.
+/// Orthogonal transformation of a matrix `M` such that the first `rank` rows of `Qᵀ M` are significant; the
+/// other rows are rounding errors.
 pub(crate) struct Compression {
-    /// Orthogonal square matrix `Q`.
+    /// Orthogonal square matrix `Q` of the transformation.
     pub q: DMatrix<f64>,
     /// Number of significant rows of `Qᵀ M`.
     pub rank: usize,
@@ -21,8 +21,9 @@ impl Compression {
         let (mut r, mut q) = (m.clone(), DMatrix::identity(rows, rows));
         let mut rank = 0;
         while rank < rows.min(columns) {
-            let norm = |j: usize| r.view((rank, j), (rows - rank, 1)).norm();
-            let Some((best, size)) = (rank..columns).map(|j| (j, norm(j))).max_by(|a, b| a.1.total_cmp(&b.1))
+            let norm_of_remaining_column = |j: usize| r.view((rank, j), (rows - rank, 1)).norm();
+            let Some((best, size)) =
+                (rank..columns).map(|j| (j, norm_of_remaining_column(j))).max_by(|a, b| a.1.total_cmp(&b.1))
             else {
                 break;
             };

@@ -1,5 +1,5 @@
-//! Riccati equations: the continuous one by an ordered Schur form, the discrete one by an invariant subspace
-//! or by doubling, both refined by Newton's method.
+//! Solvers of Riccati equations. The continuous equation is solved by an ordered Schur form, the discrete one
+//! by an invariant subspace or by doubling; Newton's method refines both solutions.
 
 use super::{
     C, CMatrix, Schur, balance_system, balanced, check, check_square, complex, discrete_lyapunov,
@@ -15,9 +15,9 @@ const MAX_ITERATIONS: usize = 60;
 /// semidefinite, `R` positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// Weight `Q` of the states.
+    /// Weight matrix `Q` of the states in the quadratic cost.
     pub q: DMatrix<f64>,
-    /// Weight `R` of the inputs.
+    /// Weight matrix `R` of the inputs in the quadratic cost.
     pub r: DMatrix<f64>,
     /// Weight `N` of products of states and inputs.
     pub n: DMatrix<f64>,
@@ -33,8 +33,8 @@ impl Cost {
     /// Creates a cost with diagonal weights. Bryson's rule chooses the reciprocal of the square of the
     /// maximum acceptable deviation.
     pub fn diagonal(states: &[f64], inputs: &[f64]) -> Self {
-        let diagonal = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
-        Self::new(diagonal(states), diagonal(inputs))
+        let diagonal_matrix = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
+        Self::new(diagonal_matrix(states), diagonal_matrix(inputs))
     }
 
     /// Sets the weight of products of states and inputs.
@@ -74,14 +74,14 @@ impl Cost {
     }
 }
 
-/// Stabilising solution of a Riccati equation.
+/// Stabilising solution of an algebraic Riccati equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Riccati {
     /// Solution `X`; `x₀ᵀ X x₀` is the minimum cost from the initial state `x₀`.
     pub x: DMatrix<f64>,
     /// Gain `K` of the optimal inputs `u = −K x`.
     pub gain: DMatrix<f64>,
-    /// Eigenvalues of `A − B K`.
+    /// Closed-loop poles: the eigenvalues of `A − B K`.
     pub poles: Vec<C>,
 }
 
@@ -122,12 +122,12 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
         });
     }
     let x = subspace_solution(&schur, &d)?;
-    let residual = |x: &DMatrix<f64>| f.transpose() * x + x * &f - x * &g * x + &q;
-    let newton = |x: &DMatrix<f64>| {
+    let riccati_residual = |x: &DMatrix<f64>| f.transpose() * x + x * &f - x * &g * x + &q;
+    let newton_step = |x: &DMatrix<f64>| {
         let closed = &f - &g * x;
-        Ok(x + lyapunov(&closed.transpose(), &residual(x))?)
+        Ok(x + lyapunov(&closed.transpose(), &riccati_residual(x))?)
     };
-    let x = refine(x, residual, newton)?;
+    let x = refine(x, riccati_residual, newton_step)?;
     let gain = solve("R", &cost.r, &(b.transpose() * &x + cost.n.transpose()))?;
     let poles = eigenvalues(&(a - b * &gain))?;
     if poles.iter().any(|p| p.re >= 0.0) {
@@ -142,11 +142,12 @@ fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
     let n = h.nrows() / 2;
     let sizes = h.map(f64::abs);
     let (_, d) = balanced(&sizes);
-    let half = |i: usize| (0.5 * (d[i].log2() - d[n + i].log2())).round().exp2();
-    (0..n).map(half).chain((0..n).map(|i| 1.0 / half(i))).collect()
+    let balancing_scale = |i: usize| (0.5 * (d[i].log2() - d[n + i].log2())).round().exp2();
+    (0..n).map(balancing_scale).chain((0..n).map(|i| 1.0 / balancing_scale(i))).collect()
 }
 
-/// Performs at most four Newton steps, as long as they reduce the residual.
+/// Refines the solution of a Riccati equation by at most four Newton steps, as long as they reduce the
+/// residual.
 fn refine(
     mut x: DMatrix<f64>,
     residual: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
@@ -198,8 +199,8 @@ fn check_modes(
 pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     let n = a.nrows();
     let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
-    let unit = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
-    let (of_a, of_b) = (unit(&a), unit(&b));
+    let inverse_norm = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
+    let (of_a, of_b) = (inverse_norm(&a), inverse_norm(&b));
     let m = CMatrix::from_fn(n, n + b.ncols(), |i, j| {
         if j >= n {
             return C::new(b[(i, j - n)] * of_b, 0.0);
@@ -255,7 +256,7 @@ fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<R
     Ok(refined(a, b, cost, found.x)?.0)
 }
 
-/// Computes the limit of the doubling iteration.
+/// Computes the solution of a discrete Riccati equation as the limit of the doubling iteration.
 fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let (mut a_k, mut g_k, mut h_k) = (f.clone(), g.clone(), q.clone());
@@ -317,21 +318,21 @@ fn refined(
     x: DMatrix<f64>,
 ) -> Result<(Riccati, f64), Error> {
     let n = a.nrows();
-    let gain = |x: &DMatrix<f64>| {
+    let feedback_gain = |x: &DMatrix<f64>| {
         let weight = symmetric(&(&cost.r + b.transpose() * x * b));
         solve("R + BᵀXB", &weight, &(b.transpose() * x * a + cost.n.transpose()))
     };
-    let residual = |x: &DMatrix<f64>| match gain(x) {
+    let riccati_residual = |x: &DMatrix<f64>| match feedback_gain(x) {
         Ok(k) => a.transpose() * x * a - x - (a.transpose() * x * b + &cost.n) * k + &cost.q,
         Err(_) => DMatrix::from_element(n, n, f64::INFINITY),
     };
-    let newton = |x: &DMatrix<f64>| {
-        let closed = a - b * gain(x)?;
-        Ok(x + discrete_lyapunov(&closed.transpose(), &symmetric(&residual(x)))?)
+    let newton_step = |x: &DMatrix<f64>| {
+        let closed = a - b * feedback_gain(x)?;
+        Ok(x + discrete_lyapunov(&closed.transpose(), &symmetric(&riccati_residual(x)))?)
     };
-    let x = refine(x, residual, newton)?;
-    let left = residual(&x).norm() / (x.norm() + cost.q.norm());
-    let gain = gain(&x)?;
+    let x = refine(x, riccati_residual, newton_step)?;
+    let left = riccati_residual(&x).norm() / (x.norm() + cost.q.norm());
+    let gain = feedback_gain(&x)?;
     let poles = eigenvalues(&(a - b * &gain))?;
     if poles.iter().any(|p| p.norm() >= 1.0) {
         return Err(Error::NotConverged { what: "the discrete Riccati equation" });

@@ -1,9 +1,9 @@
-//! Complex Schur form, and its reordering.
+//! Complex Schur form of a matrix, and reordering of its eigenvalues.
 
 use super::{C, CMatrix};
 use crate::Error;
 
-/// Maximum number of steps for one eigenvalue; three are usual.
+/// Maximum number of QR steps for one eigenvalue; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
 /// Schur form `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular, which has the eigenvalues of `A` on its

@@ -1,4 +1,4 @@
-//! Axes of pictures: ranges, ticks at round numbers and their labels.
+//! Axes of diagrams: ranges, ticks at round numbers, and labels.
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
@@ -97,11 +97,11 @@ fn scientific(x: f64, step: f64) -> String {
 }
 
 fn superscript(k: i64) -> String {
-    let raise = |c: char| match c.to_digit(10) {
+    let superscript_digit = |c: char| match c.to_digit(10) {
         Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
         None => '⁻',
     };
-    k.to_string().chars().map(raise).collect()
+    k.to_string().chars().map(superscript_digit).collect()
 }
 
 /// Axis with a maximum number of ticks, for plotters.
@@ -134,16 +134,22 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        let labels = |axis: &Axis, most| -> Vec<String> {
+        let tick_labels = |axis: &Axis, most| -> Vec<String> {
             axis.ticks(most).into_iter().map(|x| axis.label(x, most)).collect()
         };
-        let axis = |low, high, logarithmic| Axis { low, high, logarithmic };
-        assert_eq!(labels(&axis(-0.26, 0.31, false), 6), ["−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
-        assert_eq!(labels(&axis(0.0, 61.0, false), 7), ["0", "10", "20", "30", "40", "50", "60"]);
-        assert_eq!(labels(&axis(-2.0, 1.0, true), 8), ["0.01", "0.1", "1", "10"]);
-        assert_eq!(labels(&axis(-0.1, 0.8, true), 8), ["1", "2", "5"]);
-        assert_eq!(labels(&axis(-16.0, -4.0, true), 3), ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴"]);
-        assert_eq!(labels(&axis(0.0, 4e6, false), 4), ["0", "1·10⁶", "2·10⁶", "3·10⁶", "4·10⁶"]);
+        let axis_between = |low, high, logarithmic| Axis { low, high, logarithmic };
+        assert_eq!(
+            tick_labels(&axis_between(-0.26, 0.31, false), 6),
+            ["−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]
+        );
+        assert_eq!(
+            tick_labels(&axis_between(0.0, 61.0, false), 7),
+            ["0", "10", "20", "30", "40", "50", "60"]
+        );
+        assert_eq!(tick_labels(&axis_between(-2.0, 1.0, true), 8), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(tick_labels(&axis_between(-0.1, 0.8, true), 8), ["1", "2", "5"]);
+        assert_eq!(tick_labels(&axis_between(-16.0, -4.0, true), 3), ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴"]);
+        assert_eq!(tick_labels(&axis_between(0.0, 4e6, false), 4), ["0", "1·10⁶", "2·10⁶", "3·10⁶", "4·10⁶"]);
         // The range of a constant value is not empty.
         let flat = Axis::fit([3.0, 3.0].into_iter(), 0.06, false).unwrap();
         assert!(flat.low < 3.0 && flat.high > 3.0 && !flat.ticks(6).is_empty());

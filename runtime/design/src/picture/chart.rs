@@ -1,4 +1,4 @@
-//! Charts of arbitrary curves.
+//! Diagrams of arbitrary curves.
 
 use super::panel::{self, Curve, Panel};
 use crate::Error;
@@ -25,13 +25,13 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Creates a chart without curves. The labels of the axes contain name and unit.
+    /// Creates a diagram without curves. The labels of the axes contain name and unit.
     pub fn new(title: impl Into<String>, x: impl Into<String>, y: impl Into<String>) -> Self {
         let panel = Panel { title: title.into(), x: x.into(), y: y.into(), ..Panel::default() };
         Self { panel, size: (720, 360) }
     }
 
-    /// Creates a chart over time in seconds.
+    /// Creates a diagram without curves whose horizontal axis is time in seconds.
     pub fn over_time(title: impl Into<String>, y: impl Into<String>) -> Self {
         Self::new(title, "time, s", y)
     }
@@ -64,8 +64,8 @@ impl Chart {
         self
     }
 
-    /// Adds a curve through these points. The name is shown above the chart; an empty name omits it. Points
-    /// that are not finite interrupt the curve.
+    /// Adds a curve through these points to the diagram. The name is shown above the diagram; an empty name
+    /// omits it. Points that are not finite interrupt the curve.
     #[must_use]
     pub fn curve(mut self, name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         self.panel.curves.push(Curve { name: name.into(), points: points.into_iter().collect() });
@@ -86,14 +86,14 @@ impl Chart {
     /// [`Error::Picture`] if no point is finite.
     pub fn svg(self) -> Result<String, Error> {
         let Self { mut panel, size } = self;
-        let logarithm = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
+        let logarithm_or_nan = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
         let (along, upward) = (panel.logarithmic, panel.decades);
         for (x, y) in panel.curves.iter_mut().flat_map(|curve| &mut curve.points) {
-            *x = if along { logarithm(*x) } else { *x };
-            *y = if upward { logarithm(y.abs()) } else { *y };
+            *x = if along { logarithm_or_nan(*x) } else { *x };
+            *y = if upward { logarithm_or_nan(y.abs()) } else { *y };
         }
         for (x, _) in panel.instants.iter_mut().filter(|_| along) {
-            *x = logarithm(*x);
+            *x = logarithm_or_nan(*x);
         }
         panel::draw(&[panel], size)
     }

@@ -1,4 +1,4 @@
-//! Pictures of modes as rotating phasors.
+//! Pictures of mode shapes as rotating phasors.
 
 use crate::{Error, Mode};
 use std::fmt::Write;
@@ -6,7 +6,8 @@ use std::fmt::Write;
 const COLOURS: [&str; 6] = ["#005aa0", "#d55e00", "#008c64", "#aa3c82", "#c89600", "#5a5a5a"];
 const ROW: f64 = 170.0;
 const RADIUS: f64 = 62.0;
-/// Duration of one revolution on the screen, s, if the period of the mode is not between 0.5 s and 20 s.
+/// Duration of one revolution of the animated phasors, s, if the period of the mode is not between 0.5 s and
+/// 20 s.
 const TURN: f64 = 4.0;
 
 fn escaped(text: &str) -> String {
@@ -68,14 +69,14 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     }
     write_motion(out, mode);
     out.push_str("</g></g>\n");
-    let say = |out: &mut String, row: f64, colour: &str, words: &str| {
+    let write_text_row = |out: &mut String, row: f64, colour: &str, words: &str| {
         let place = y - 45.0 + 19.0 * row;
         let _ = writeln!(out, "<text x=\"180\" y=\"{place:.1}\" fill=\"{colour}\">{}</text>", escaped(words));
     };
     let text = mode.to_string();
     let heading = text.rsplit_once(": ").map_or(text.as_str(), |(heading, _)| heading);
     let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
-    say(out, 0.0, "#000", &format!("{before}{heading}"));
+    write_text_row(out, 0.0, "#000", &format!("{before}{heading}"));
     for (row, (name, part)) in mode.participants().into_iter().take(5).enumerate() {
         let place = mode.place_of(name);
         let shape = mode.shape.get(place).copied().unwrap_or_default();
@@ -86,7 +87,7 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
             significant(shape.norm()),
             shape.arg().to_degrees()
         );
-        say(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
+        write_text_row(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
     }
 }
 

@@ -6,7 +6,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Colours that colour-blind readers can distinguish.
+/// Colours of the curves, which colour-blind readers can distinguish.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 90, 160),
     RGBColor(213, 94, 0),
@@ -50,21 +50,22 @@ pub struct Panel {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// Whether the first coordinates are decimal logarithms.
+    /// Whether horizontal coordinates are decimal logarithms.
     pub logarithmic: bool,
-    /// Whether the second coordinates are decimal logarithms.
+    /// Whether vertical coordinates are decimal logarithms.
     pub decades: bool,
-    /// Whether both axes have the same scale.
+    /// Whether both axes of the panel have the same scale.
     pub equal: bool,
-    /// Limits of the axes, if they do not show all points; curves are clipped there.
+    /// Limits of the horizontal and vertical axis, if the panel does not show all points; curves are clipped
+    /// there.
     pub window: Option<[(f64, f64); 2]>,
     pub curves: Vec<Curve>,
-    /// Thin grey lines.
+    /// Polylines that are drawn as thin grey lines.
     pub lines: Vec<Vec<(f64, f64)>>,
     pub marks: Vec<(Mark, f64, f64)>,
-    /// Meaning of each kind of mark.
+    /// Meaning of each kind of mark, for the legend.
     pub mark_names: Vec<(Mark, &'static str)>,
-    /// Vertical lines: first coordinate and label.
+    /// Vertical lines of the panel: horizontal coordinate and label.
     pub instants: Vec<(f64, String)>,
 }
 
@@ -180,17 +181,18 @@ impl Panel {
     fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
         let (mut x, y) = (as_i32(units(84)), as_i32(units(NAMES / 2 + 2)));
         let style = text(14).pos(Pos::new(HPos::Left, VPos::Center));
-        let say = |x: &mut i32, word: &str| {
+        let draw_word = |x: &mut i32, word: &str| {
             let place = (*x + as_i32(units(26)), y);
             *x += as_i32(units(26 + 20)) + (word.chars().count() * units(8) as usize) as i32;
             area.draw_text(word, &style, place).map_err(failed)
         };
-        let end = |x: i32| x + as_i32(units(20));
+        let end_of_line_sample = |x: i32| x + as_i32(units(20));
         for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
             if !curve.name.is_empty() {
-                let line = PathElement::new([(x, y), (end(x), y)], colour.stroke_width(2 * UNITS));
+                let line =
+                    PathElement::new([(x, y), (end_of_line_sample(x), y)], colour.stroke_width(2 * UNITS));
                 area.draw(&line).map_err(failed)?;
-                say(&mut x, &curve.name)?;
+                draw_word(&mut x, &curve.name)?;
             }
         }
         let thick = BLACK.stroke_width(2 * UNITS);
@@ -201,7 +203,7 @@ impl Panel {
                 Mark::Circle => area.draw(&Circle::new(middle, units(6), thick)),
             }
             .map_err(failed)?;
-            say(&mut x, name)?;
+            draw_word(&mut x, name)?;
         }
         Ok(())
     }
@@ -264,9 +266,9 @@ fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64
             last = last.min(room / rate);
         }
     }
-    let point = |part: f64| (a.0 + part * dx, a.1 + part * dy);
-    let from = if first > 0.0 { point(first) } else { a };
-    (first <= last).then(|| (from, if last < 1.0 { point(last) } else { b }))
+    let point_on_segment = |part: f64| (a.0 + part * dx, a.1 + part * dy);
+    let from = if first > 0.0 { point_on_segment(first) } else { a };
+    (first <= last).then(|| (from, if last < 1.0 { point_on_segment(last) } else { b }))
 }
 
 fn failed(error: impl std::fmt::Display) -> Error {
@@ -284,6 +286,6 @@ pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Err
         }
         root.present().map_err(failed)?;
     }
-    let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(svg.replacen(&size(units(width), units(height)), &size(width, height), 1))
+    let size_attributes = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(svg.replacen(&size_attributes(units(width), units(height)), &size_attributes(width, height), 1))
 }

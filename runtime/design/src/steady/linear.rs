@@ -24,17 +24,18 @@ pub struct Linear {
     pub by_q: DMatrix<f64>,
     pub mass: DMatrix<f64>,
     motion: Seen,
-    /// Whether all constraints are holonomic.
+    /// Whether all constraints of the mechanism are holonomic.
     pub is_holonomic: bool,
 }
 
 /// Maps from independent coordinates, independent velocities and inputs to the displacements, velocities and
 /// accelerations of all coordinates. Outputs are linearised with them.
 struct Seen {
-    /// All velocities as functions of the independent coordinates and of the independent velocities.
+    /// Derivatives of all velocities with respect to the independent coordinates and the independent
+    /// velocities.
     velocities: [DMatrix<f64>; 2],
-    /// All accelerations as functions of the independent coordinates, the independent velocities and the
-    /// inputs.
+    /// Derivatives of all accelerations with respect to the independent coordinates, the independent
+    /// velocities and the inputs.
     accelerations: [DMatrix<f64>; 3],
     acceleration: Vec<f64>,
     parameters: Vec<f64>,
@@ -45,7 +46,7 @@ struct Seen {
 struct Dependence {
     left: DMatrix<f64>,
     right: DMatrix<f64>,
-    /// Row and column of each pivot.
+    /// Row and column of each pivot of the elimination.
     pivots: Vec<(usize, usize)>,
 }
 
@@ -55,8 +56,8 @@ impl Dependence {
         let mut pivots: Vec<(usize, usize)> = Vec::new();
         let small = ROUNDING * left.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         for _ in 0..rows {
-            let free = |i: &usize| pivots.iter().all(|(row, _)| row != i);
-            let places = (0..rows).filter(free).flat_map(|i| (0..columns).map(move |j| (i, j)));
+            let is_not_pivot_row = |i: &usize| pivots.iter().all(|(row, _)| row != i);
+            let places = (0..rows).filter(is_not_pivot_row).flat_map(|i| (0..columns).map(move |j| (i, j)));
             let best = places.max_by(|a, b| left[*a].abs().total_cmp(&left[*b].abs()));
             let Some((row, column)) = best.filter(|place| left[*place].abs() > small) else { break };
             pivots.push((row, column));
@@ -93,7 +94,7 @@ impl Dependence {
     }
 }
 
-/// Appends unit rows, one for each held coordinate, to a matrix.
+/// Appends unit rows to a constraint matrix, one for each coordinate that is held constant.
 fn with_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
     let mut all = m.clone().resize(m.nrows() + held.len(), columns, 0.0);
     held.iter().enumerate().for_each(|(i, k)| all[(m.nrows() + i, *k)] = 1.0);
@@ -141,14 +142,14 @@ where
     let by_position = &by_q * &shape + &by_v * &carried;
     let by_speed = &by_v * &gamma;
     let (np, ns) = (coordinates.len(), speeds.len());
-    let row = |i: usize| if i < np { coordinates[i] } else { speeds[i - np] };
+    let row_of_state = |i: usize| if i < np { coordinates[i] } else { speeds[i - np] };
     let a = DMatrix::from_fn(np + ns, np + ns, |i, j| match (i < np, j < np) {
-        (true, true) => drift[(row(i), j)],
-        (true, false) => gamma[(row(i), j - np)],
-        (false, true) => by_position[(row(i), j)],
-        (false, false) => by_speed[(row(i), j - np)],
+        (true, true) => drift[(row_of_state(i), j)],
+        (true, false) => gamma[(row_of_state(i), j - np)],
+        (false, true) => by_position[(row_of_state(i), j)],
+        (false, false) => by_speed[(row_of_state(i), j - np)],
     });
-    let b = DMatrix::from_fn(np + ns, NU, |i, j| if i < np { 0.0 } else { by_u[(row(i), j)] });
+    let b = DMatrix::from_fn(np + ns, NU, |i, j| if i < np { 0.0 } else { by_u[(row_of_state(i), j)] });
     let is_holonomic = holonomic == jacobian.nrows();
     let motion = Seen {
         velocities: [carried, gamma],

@@ -1,4 +1,4 @@
-//! Equations of a steady state: unknowns, conditions and their derivatives.
+//! Equations of a steady-state problem: unknowns, conditions and derivatives.
 
 use super::Trim;
 use crate::Error;
@@ -6,14 +6,14 @@ use crate::mechanism::acceleration_names;
 use linkwork::{Constrained, Derivatives, Mechanism, OutputDerivatives};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
-/// Constraints and their derivatives.
+/// Residuals of the constraints at a state, with their derivatives.
 pub struct Bounds {
     pub names: &'static [&'static str],
     /// Position residuals `φ`, which belong to the first rows.
     pub residuals: DVector<f64>,
     /// Velocity residuals `J v + …`, for all rows.
     pub rates: DVector<f64>,
-    /// Constraint Jacobian `J`.
+    /// Constraint Jacobian `J`: one row per constraint, one column per velocity.
     pub jacobian: DMatrix<f64>,
     /// Derivatives of the constraint velocities `J v + …` with respect to the configuration.
     pub rates_by_q: DMatrix<f64>,
@@ -58,8 +58,11 @@ where
 {
     let mut rates_by_q = DMatrix::zeros(NC, NV);
     for j in 0..NV {
-        let rates = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
-        rates_by_q.set_column(j, &vector(&((rates(STEP) - rates(-STEP)) / (2.0 * STEP))));
+        let constraint_rates_displaced = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
+        rates_by_q.set_column(
+            j,
+            &vector(&((constraint_rates_displaced(STEP) - constraint_rates_displaced(-STEP)) / (2.0 * STEP))),
+        );
     }
     Bounds {
         names: &const { M::CONSTRAINTS },
@@ -92,13 +95,13 @@ where
     }
 }
 
-/// Scalar unknown of a state.
+/// Scalar unknown of a steady-state problem, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     Coordinate(usize),
     Speed(usize),
     Input(usize),
-    /// Generalized force that locks a held coordinate.
+    /// Generalized force that keeps a held coordinate at its value.
     Holding(usize),
     Parameter(usize),
 }
@@ -122,14 +125,14 @@ pub struct Accelerated<const NV: usize, const NU: usize> {
     pub by_v: SMatrix<f64, NV, NV>,
     pub by_force: SMatrix<f64, NV, NV>,
     pub by_u: SMatrix<f64, NV, NU>,
-    /// Scale above which a derivative of an acceleration is significant; smaller ones are rounding errors.
-    /// Computed from the accelerations that the constraints remove and from the largest derivative.
+    /// Scale above which the derivative of an acceleration is significant; smaller ones are rounding errors.
+    /// It is computed from the accelerations that the constraints remove and from the largest derivative.
     scale: f64,
 }
 
-/// Residuals of the conditions at a state, with their derivatives.
+/// Residuals of all steady-state conditions at a state, with their derivatives.
 pub struct Equations {
-    /// Residual of each condition.
+    /// Residual of each steady-state condition.
     pub residuals: DVector<f64>,
     /// Derivative of the residuals with respect to the unknowns.
     pub jacobian: DMatrix<f64>,
@@ -143,14 +146,14 @@ const TAKEN: f64 = 1e-3;
 /// Fraction of the largest derivative that counts as a significant derivative.
 const BESIDE: f64 = 1e-6;
 
-/// Trim with names resolved to indices.
+/// Steady-state problem: a trim whose names have been resolved to indices.
 pub struct Problem<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> {
     pub trim: &'a Trim<'m, M, NQ, NV, NU>,
     pub unknowns: Vec<Unknown>,
     pub held: Vec<usize>,
     /// Required acceleration of each entry; `None` for entries without a condition.
     targets: Vec<Option<f64>>,
-    /// Indices of outputs with their required values.
+    /// Indices of outputs that are prescribed, with their required values.
     outputs: Vec<(usize, f64)>,
 }
 
@@ -193,13 +196,13 @@ where
             Some(names) => indices("coordinate", names, &M::VELOCITIES)?,
             None => (0..NV).collect(),
         };
-        let is_free = |k: &usize| !held.contains(k) && !fixed.contains(k);
+        let is_free_coordinate = |k: &usize| !held.contains(k) && !fixed.contains(k);
         let first_order = NV.saturating_sub(M::FIRST_ORDER)..NV;
         let places = 0..first_order.start;
         let mut unknowns: Vec<Unknown> =
-            places.filter(|k| among.contains(k) && is_free(k)).map(Unknown::Coordinate).collect();
+            places.filter(|k| among.contains(k) && is_free_coordinate(k)).map(Unknown::Coordinate).collect();
         let mut speeds = indices("speed", &trim.speeds, &M::VELOCITIES)?;
-        let states = first_order.filter(|k| is_free(k) && !speeds.contains(k)).collect::<Vec<_>>();
+        let states = first_order.filter(|k| is_free_coordinate(k) && !speeds.contains(k)).collect::<Vec<_>>();
         speeds.extend(states);
         unknowns.extend(speeds.into_iter().map(Unknown::Speed));
         unknowns.extend(indices("input", &trim.inputs, &M::INPUTS)?.into_iter().map(Unknown::Input));
@@ -245,8 +248,8 @@ where
         to
     }
 
-    /// Returns the magnitude that an unknown is compared with: its absolute value, but at least one for all
-    /// unknowns except parameters.
+    /// Returns the magnitude to which changes of an unknown are compared: its absolute value, but at least
+    /// one unless it is a parameter.
     pub fn size(&self, place: &Place<NQ, NV, NU>, unknown: Unknown) -> f64 {
         match unknown {
             Unknown::Coordinate(_) => 1.0,
@@ -313,17 +316,20 @@ where
         for (j, unknown) in self.unknowns.iter().enumerate() {
             let Unknown::Parameter(k) = *unknown else { continue };
             let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
-            let residuals = |h: f64| {
+            let residuals_displaced = |h: f64| {
                 let mut place = place.clone();
                 place.parameters[k] += h;
                 Ok::<_, Error>(self.generated(&place)?.residuals)
             };
-            equations.jacobian.set_column(j, &((residuals(step)? - residuals(-step)?) / (2.0 * step)));
+            equations
+                .jacobian
+                .set_column(j, &((residuals_displaced(step)? - residuals_displaced(-step)?) / (2.0 * step)));
         }
         Ok(equations)
     }
 
-    /// Computes the residuals and all derivatives except those with respect to parameters.
+    /// Computes the residuals of all conditions, and their derivatives except those with respect to
+    /// parameters.
     fn generated(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
         let motion = self.motion(place)?;
         let mut rows: Vec<Row> = Vec::new();
@@ -348,21 +354,25 @@ where
     }
 
     fn push_bounds(&self, bounds: &Bounds, rows: &mut Vec<Row>) {
-        let floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
+        let residual_floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
         for (i, residual) in bounds.residuals.iter().enumerate() {
-            let derivative = |unknown| match unknown {
+            let derivative_of_residual = |unknown| match unknown {
                 Unknown::Coordinate(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
-            rows.push(Row { residual: *residual, by: self.row(derivative), floor: floor(i) });
+            rows.push(Row {
+                residual: *residual,
+                by: self.row(derivative_of_residual),
+                floor: residual_floor(i),
+            });
         }
         for (i, rate) in bounds.rates.iter().enumerate() {
-            let derivative = |unknown| match unknown {
+            let derivative_of_rate = |unknown| match unknown {
                 Unknown::Coordinate(k) => bounds.rates_by_q[(i, k)],
                 Unknown::Speed(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
-            rows.push(Row { residual: *rate, by: self.row(derivative), floor: floor(i) });
+            rows.push(Row { residual: *rate, by: self.row(derivative_of_rate), floor: residual_floor(i) });
         }
     }
 
@@ -385,7 +395,7 @@ where
 
     fn push_quantities(&self, place: &Place<NQ, NV, NU>, rows: &mut Vec<Row>) {
         for (_, wanted, quantity) in &self.trim.quantities {
-            let value = |place: &Place<NQ, NV, NU>| {
+            let value_of_quantity = |place: &Place<NQ, NV, NU>| {
                 self.trim.with_mechanism(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
             };
             let by: Vec<f64> = (0..self.unknowns.len())
@@ -395,19 +405,19 @@ where
                         return 0.0;
                     }
                     let step = STEP * self.size(place, unknown);
-                    let side = |h: f64| {
-                        value(&self.displace(
+                    let quantity_displaced = |h: f64| {
+                        value_of_quantity(&self.displace(
                             place,
                             &DVector::from_fn(self.unknowns.len(), |i, _| if i == k { h } else { 0.0 }),
                         ))
                     };
-                    (side(step) - side(-step)) / (2.0 * step)
+                    (quantity_displaced(step) - quantity_displaced(-step)) / (2.0 * step)
                 })
                 .collect();
             // Differences of values leave this much rounding.
-            let rounding = f64::EPSILON * (value(place).abs() + wanted.abs()) / STEP;
+            let rounding = f64::EPSILON * (value_of_quantity(place).abs() + wanted.abs()) / STEP;
             let floor = BESIDE * by.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + rounding;
-            rows.push(Row { residual: value(place) - wanted, by, floor });
+            rows.push(Row { residual: value_of_quantity(place) - wanted, by, floor });
         }
     }
 
@@ -416,10 +426,10 @@ where
     }
 }
 
-/// Condition: its residual, derivatives and floor.
+/// One condition of a steady state: residual, derivatives, and rounding-error floor of the derivatives.
 struct Row {
     residual: f64,
-    /// Derivatives with respect to the unknowns.
+    /// Derivatives of the residual with respect to the unknowns.
     by: Vec<f64>,
     floor: f64,
 }

@@ -16,8 +16,8 @@ const LEFT: f64 = 1e-9;
 /// conditions are less sensitive at a double root than during the iteration towards it.
 const STEADY: f64 = 1e-5;
 
-/// Singular values below this, of a matrix whose rows and columns have norm one, count as zero. At a double
-/// root, half of the digits of the solution are accurate.
+/// Threshold of singular values, for a matrix whose rows and columns have norm one; smaller singular values
+/// count as zero. At a double root, half of the digits of the solution are accurate.
 const SINGULAR: f64 = 1e-7;
 
 /// Unknowns whose scaled column norm is below this fraction of the largest have no influence beyond rounding
@@ -87,7 +87,7 @@ fn damped(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
     qr.r().solve_upper_triangular(&(qr.q().transpose() * right)).filter(|x| x.iter().all(|x| x.is_finite()))
 }
 
-/// State at the end of the iteration.
+/// State, equations and iteration count at the end of the search for a steady state.
 struct Ended<const NQ: usize, const NV: usize, const NU: usize> {
     place: Place<NQ, NV, NU>,
     scales: Scales,
@@ -186,9 +186,10 @@ where
         let next = problem.displace(&place, &change);
         // If friction jams or a value is not finite, the step was too long.
         let trial = problem.equations(&next).ok();
-        let size = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();
-        let better =
-            trial.map(|trial| (r.norm_squared() - size(&trial), trial)).filter(|(gained, _)| *gained > 0.0);
+        let weighted_squared_residual = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();
+        let better = trial
+            .map(|trial| (r.norm_squared() - weighted_squared_residual(&trial), trial))
+            .filter(|(gained, _)| *gained > 0.0);
         let Some((gained, trial)) = better else {
             mu = (mu * 10.0).max(1e-12);
             continue;
@@ -249,7 +250,8 @@ where
     let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = square.svd(false, true);
     let Some(directions) = svd.v_t else { return Vec::new() };
-    let open = |k: &usize| svd.singular_values[*k] <= SINGULAR;
-    let takes_part = |j: &usize| (0..columns).filter(open).any(|k| directions[(k, *j)].abs() > PART);
+    let is_singular_direction = |k: &usize| svd.singular_values[*k] <= SINGULAR;
+    let takes_part =
+        |j: &usize| (0..columns).filter(is_singular_direction).any(|k| directions[(k, *j)].abs() > PART);
     (0..columns).filter(takes_part).map(|j| problem.name(problem.unknowns[j])).collect()
 }

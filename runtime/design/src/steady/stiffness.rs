@@ -20,7 +20,7 @@ const SKEW: f64 = 1e-7;
 pub struct Stiffness {
     /// Stiffness matrix `K`: N/m, N·m/rad or N, depending on the units of the two displacements.
     pub matrix: DMatrix<f64>,
-    /// Independent coordinates, by the names of their velocities.
+    /// Names of the independent coordinates, which are the names of their velocities.
     pub coordinates: Vec<&'static str>,
     /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², in ascending order: squares of the undamped natural
     /// frequencies.

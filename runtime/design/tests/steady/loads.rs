@@ -52,9 +52,9 @@ fn a_column_buckles_at_eulers_load() {
     let bent = problem.find_all([vector![0.5, 0.5], vector![-0.5, -0.5], vector![0.01, -0.01]]).unwrap();
     for found in &bent[..2] {
         let (first, second) = (found.q[0], found.q[0] + found.q[1]);
-        let moment = |angle: f64| 1.2 * critical * 0.5 * angle.sin();
-        close(20.0 * (second - first), moment(second), 1e-10);
-        close(20.0 * first - 20.0 * (second - first), moment(first), 1e-10);
+        let restoring_moment = |angle: f64| 1.2 * critical * 0.5 * angle.sin();
+        close(20.0 * (second - first), restoring_moment(second), 1e-10);
+        close(20.0 * first - 20.0 * (second - first), restoring_moment(first), 1e-10);
         assert!(first.abs() > 0.3);
         assert_eq!(problem.stiffness(found).unwrap().verdict(), Verdict::Stable);
     }
@@ -67,7 +67,7 @@ fn a_column_buckles_at_eulers_load() {
     assert!(more > 0.0 && more < 1e-4, "{more}");
 }
 
-/// Table on three legs, with a load.
+/// Test mechanism: a table on three legs that carries a load.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Table {
     px: f64,
@@ -139,7 +139,7 @@ fn six_legs_hold_a_platform() {
         Vector3::new(0.1, -0.05, 0.9).into(),
         UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
     );
-    let weight = |mass: f64| Vector3::new(0.0, 0.0, -9.81 * mass);
+    let weight_of_mass = |mass: f64| Vector3::new(0.0, 0.0, -9.81 * mass);
     let platform = Platform {};
     let mut q = platform.neutral();
     q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
@@ -147,8 +147,8 @@ fn six_legs_hold_a_platform() {
     let mut axial = DMatrix::zeros(6, 6);
     let com = pose.rotation * Vector3::new(0.05, 0.0, 0.1);
     let mut load = DVector::zeros(6);
-    load.rows_mut(0, 3).copy_from(&weight(30.0));
-    load.rows_mut(3, 3).copy_from(&com.cross(&weight(30.0)));
+    load.rows_mut(0, 3).copy_from(&weight_of_mass(30.0));
+    load.rows_mut(3, 3).copy_from(&com.cross(&weight_of_mass(30.0)));
     let mut legs = Vec::new();
     for k in 0..6 {
         let angle = PI / 3.0 * k as f64;
@@ -163,8 +163,8 @@ fn six_legs_hold_a_platform() {
         axial.view_mut((3, k), (3, 1)).copy_from(&arm.cross(&n));
         // Perpendicular to the leg: the share of the leg's weights that acts at the head, from moments
         // about the foot.
-        let across = |w: Vector3<f64>| w - n * n.dot(&w);
-        let carried = across(weight(2.0)) * ((0.3 + length - 0.3) / length);
+        let component_across_normal = |w: Vector3<f64>| w - n * n.dot(&w);
+        let carried = component_across_normal(weight_of_mass(2.0)) * ((0.3 + length - 0.3) / length);
         let mut view = load.rows_mut(0, 3);
         view += carried;
         let mut view = load.rows_mut(3, 3);
@@ -172,17 +172,17 @@ fn six_legs_hold_a_platform() {
     }
     let along = axial.lu().solve(&-load).unwrap();
     // The guess differs slightly from the solution.
-    let place = |name: &str| Platform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
+    let coordinate_index = |name: &str| Platform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
     for (k, (n, length, _)) in legs.iter().enumerate() {
-        q[place(&format!("foot_{k}.first"))] = (-n.y).atan2(n.z) + 0.02;
-        q[place(&format!("foot_{k}.second"))] = n.x.asin() - 0.03;
-        q[place(&format!("slide_{k}"))] = length + 0.01;
+        q[coordinate_index(&format!("foot_{k}.first"))] = (-n.y).atan2(n.z) + 0.02;
+        q[coordinate_index(&format!("foot_{k}.second"))] = n.x.asin() - 0.03;
+        q[coordinate_index(&format!("slide_{k}"))] = length + 0.01;
     }
     let drives: Vec<String> = (0..6).map(|k| format!("drive_{k}")).collect();
     let fixed = ["vx", "vy", "vz", "wx", "wy", "wz"].map(|axis| format!("pose.{axis}"));
     let found = constrained_equilibrium(&platform).from(q).fix(fixed).inputs(drives).find().unwrap();
     for (k, (n, length, _)) in legs.iter().enumerate() {
-        close(found.q[place(&format!("slide_{k}"))], *length, 1e-12);
-        close(found.u[k], along[k] - n.dot(&weight(2.0)), 1e-9);
+        close(found.q[coordinate_index(&format!("slide_{k}"))], *length, 1e-12);
+        close(found.u[k], along[k] - n.dot(&weight_of_mass(2.0)), 1e-9);
     }
 }

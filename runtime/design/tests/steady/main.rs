@@ -40,20 +40,21 @@ struct Chain {
     last: Pin,
 }
 
-/// Compares with the slopes of a chain of heavy links, `tan φₖ = (k − 5/2) w / H`, where `w` is the weight of
-/// a link and the horizontal force `H` is chosen such that the chain spans the distance of the pins.
+/// Compares the steady state of a hanging chain of heavy links with its exact slopes,
+/// `tan φₖ = (k − 5/2) w / H`, where `w` is the weight of a link. The horizontal force `H` is such that the
+/// chain spans the distance of the pins.
 #[test]
 fn a_chain_hangs_in_its_catenary() {
     let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
-    let slope = |pull: f64, k: usize| ((k as f64 - 2.5) * weight / pull).atan();
-    let reach = |pull: f64| (0..6).map(|k| 0.2 * slope(pull, k).cos()).sum::<f64>() - 0.9;
-    let pull = root(reach, 0.1, 100.0);
+    let slope_of_link = |pull: f64, k: usize| ((k as f64 - 2.5) * weight / pull).atan();
+    let excess_reach = |pull: f64| (0..6).map(|k| 0.2 * slope_of_link(pull, k).cos()).sum::<f64>() - 0.9;
+    let pull = root(excess_reach, 0.1, 100.0);
     let problem = constrained_equilibrium(&chain).from([-1.0, 0.3, 0.3, 0.3, 0.3, 0.3].into());
     let found = problem.find().unwrap();
     let mut angle = 0.0;
     for k in 0..6 {
         angle += found.q[k];
-        close(angle, slope(pull, k), 1e-10);
+        close(angle, slope_of_link(pull, k), 1e-10);
     }
     let [(x, horizontal), (y, vertical)] = found.multipliers[..] else { panic!("two multipliers") };
     assert_eq!((x, y), ("last.x", "last.y"));
@@ -143,7 +144,7 @@ fn a_bead_on_a_hoop_has_four_equilibria() {
     close(mode.frequency(), 6.0 * lifted.sin(), 1e-12);
 }
 
-/// Top in massless gimbals.
+/// Test mechanism: a spinning top in massless gimbals.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Top {
     #[body]

@@ -28,13 +28,13 @@ struct Signature {
     results: Vec<(CString, usize, usize)>,
 }
 
-/// Index of the list of functions.
+/// Index of the list of functions among the lists that the C interface describes.
 const FUNCTIONS: usize = 5;
 
 enum Failure {
     /// A null pointer, or a text that is not UTF-8.
     Null,
-    /// No entry of this index.
+    /// Failure: an index for which no entry exists.
     Index(usize),
     Linkwork(Error),
 }
@@ -73,15 +73,15 @@ thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
 }
 
-/// Converts a text; a zero ends it.
+/// Converts a text to a C string; the text is cut at its first zero byte.
 fn c_text(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
 /// Runs a function; keeps the message of its failure and returns its code. No panic passes.
 fn guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
-    let internal = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
-    match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal) {
+    let internal_error = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
+    match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal_error) {
         Ok(()) => 0,
         Err(failure) => {
             let _ = MESSAGE.try_with(|message| message.replace(c_text(&failure.text())));
@@ -90,7 +90,7 @@ fn guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
     }
 }
 
-/// Runs a function that returns a value; returns another value if it fails.
+/// Runs a function and returns its value, or the value `otherwise` if the function fails.
 fn value<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
     let mut found = otherwise;
     guarded(|| {
@@ -103,8 +103,8 @@ fn value<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
 impl LwRobot {
     fn new(robot: Robot) -> LwRobot {
         let functions: Vec<Function> = robot.functions().collect();
-        let plain = |name: &str| (c_text(name), CString::default());
-        let signature = |f: &Function| Signature {
+        let name_without_unit = |name: &str| (c_text(name), CString::default());
+        let signature_of_function = |f: &Function| Signature {
             documentation: c_text(f.documentation()),
             arguments: f.arguments().iter().map(|(name, length)| (c_text(name), *length)).collect(),
             results: f.results().iter().map(|m| (c_text(m.name), m.rows, m.columns)).collect(),
@@ -112,10 +112,10 @@ impl LwRobot {
         let quantities = [robot.configuration(), robot.velocities(), robot.inputs(), robot.parameters()]
             .map(|list| list.iter().map(|entry| (c_text(&entry.name), c_text(&entry.unit))).collect());
         let [configuration, velocities, inputs, parameters] = quantities;
-        let frames = robot.frames().iter().map(|name| plain(name)).collect();
-        let names = functions.iter().map(|f| plain(f.name())).collect();
+        let frames = robot.frames().iter().map(|name| name_without_unit(name)).collect();
+        let names = functions.iter().map(|f| name_without_unit(f.name())).collect();
         LwRobot {
-            signatures: functions.iter().map(signature).collect(),
+            signatures: functions.iter().map(signature_of_function).collect(),
             lists: [configuration, velocities, inputs, parameters, frames, names],
             name: c_text(robot.name()),
             functions,
@@ -143,7 +143,7 @@ fn give(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, Failure>) ->
     })
 }
 
-/// Returns options, which may be null.
+/// Returns the text of options passed from C; a null pointer counts as an empty text.
 unsafe fn options<'a>(options: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as the caller promises.
     if options.is_null() { Ok("") } else { unsafe { raw::text(options) } }
@@ -225,8 +225,8 @@ pub unsafe extern "C" fn lw_index(
     guarded(|| {
         // SAFETY: a robot of this library, a text and a variable of the caller, as the header says.
         let (robot, name, to) = unsafe { (raw::shared(robot)?, raw::text(name)?, raw::unique(to)?) };
-        let position = |known: &CStr| known.to_bytes() == name.as_bytes();
-        let found = robot.list(list)?.iter().position(|(known, _)| position(known));
+        let is_searched_name = |known: &CStr| known.to_bytes() == name.as_bytes();
+        let found = robot.list(list)?.iter().position(|(known, _)| is_searched_name(known));
         let kinds = ["coordinate", "velocity", "input", "parameter", "frame", "function"];
         *to = match found {
             Some(index) => index,
@@ -370,7 +370,7 @@ pub unsafe extern "C" fn lw_compile(robot: *const LwRobot, function: usize) -> c
     })
 }
 
-/// Maximum number of arguments of a function.
+/// Maximum number of arguments of a function called from C.
 const ARGUMENTS: usize = 12;
 
 #[unsafe(no_mangle)]
@@ -481,21 +481,21 @@ pub unsafe extern "C" fn lw_simulate(
             true => "automatic",
             false => unsafe { raw::text(settings.method) }?,
         };
-        let positive = |x: f64| (x != 0.0).then_some(x);
-        let method = Method::from_name(name, positive(settings.setting))?;
+        let nonzero_setting = |x: f64| (x != 0.0).then_some(x);
+        let method = Method::from_name(name, nonzero_setting(settings.setting))?;
         let control = settings.control.map(|control| raw::Controller { control, user: settings.user });
         let mut controller = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
             Some(control) => control.call(t, q, v, u),
             None => Ok(()),
         };
-        let inputs = match (&control, positive(settings.period)) {
+        let inputs = match (&control, nonzero_setting(settings.period)) {
             (None, _) => Inputs::Zero,
             (Some(_), None) => Inputs::Function(&mut controller),
             (Some(_), Some(period)) => Inputs::Sampled(period, &mut controller),
         };
         let run = robot.simulate().start_at(settings.start).from(q, v).inputs(inputs).method(method);
         let run = run.duration(settings.duration);
-        let run = match positive(settings.every) {
+        let run = match nonzero_setting(settings.every) {
             Some(every) => run.sample_every(every),
             None => run,
         };

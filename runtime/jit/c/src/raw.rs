@@ -78,7 +78,7 @@ pub unsafe fn free<T>(pointer: *mut T) {
     }
 }
 
-/// Controller of the caller.
+/// C function of the caller that computes the inputs from time and state.
 pub type Control =
     unsafe extern "C" fn(user: *mut c_void, t: f64, q: *const f64, v: *const f64, u: *mut f64) -> c_int;
 
@@ -94,7 +94,7 @@ unsafe impl Send for Controller {}
 unsafe impl Sync for Controller {}
 
 impl Controller {
-    /// Calls the controller.
+    /// Calls the controller of the caller, which writes the inputs `u`.
     pub fn call(&self, t: f64, q: &[f64], v: &[f64], u: &mut [f64]) -> Result<(), String> {
         // SAFETY: the function and its data are those of the caller, and the slices have the lengths that the
         // header says.

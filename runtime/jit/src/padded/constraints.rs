@@ -1,4 +1,4 @@
-//! Constraints of padded robots.
+//! Constraints of robots that are padded to constant dimensions.
 
 use super::Padded;
 use crate::internal::Internal;
@@ -12,7 +12,7 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Constrained, ConstraintError};
 use std::borrow::Borrow;
 
-/// Accelerations, or changes of velocities, and multipliers.
+/// Accelerations, or changes of velocities, together with constraint multipliers.
 pub(super) type Solution<const NV: usize> = (SVector<f64, NV>, SVector<f64, NV>);
 
 /// Row of a sliding contact that is padding.
@@ -23,18 +23,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         !self.robot().shared.constraints.names.is_empty()
     }
 
-    /// Number of constraints.
+    /// Returns the number of constraints of the robot.
     fn rows(&self) -> usize {
         self.robot().shared.constraints.names.len()
     }
 
-    /// Groups of the constraints; each row of the padding is a group of its own.
+    /// Returns the group of each constraint row; each row of the padding is a group of its own.
     pub(super) fn groups(&self) -> [usize; NV] {
         let groups = &self.robot().shared.constraints.groups;
         std::array::from_fn(|k| groups.get(k).copied().unwrap_or(NV + k))
     }
 
-    /// Rows of sliding contacts.
+    /// Returns the constraint rows of sliding contacts.
     pub(super) fn slipping(&self) -> [usize; NV] {
         let rows = &self.robot().shared.constraints.slipping;
         std::array::from_fn(|k| rows.get(k).copied().unwrap_or(NO_ROW))
@@ -54,8 +54,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         nearly_singular::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, dv)
     }
 
-    /// Evaluates an elimination, whose rows of the padding have pivots of one. The further entries of the
-    /// accelerations are `more`.
+    /// Evaluates an elimination of the constraint equations. Rows of the padding get pivots of one, and
+    /// accelerations of the padding are taken from `more`.
     pub(super) fn elimination(
         &self,
         f: Internal,
@@ -75,14 +75,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         };
         self.call(f, state, found);
         let (accelerations, rest) = found.split_at(n);
-        let list = |first: usize, padding: f64| {
+        let padded_row_values = |first: usize, padding: f64| {
             std::array::from_fn(|k| if k < rows { rest[first * rows + k] } else { padding })
         };
         let mut all = Elimination {
             accelerations: more.data.0[0],
-            multipliers: list(0, 0.0),
-            pivots: list(1, 1.0),
-            before: list(2, 1.0),
+            multipliers: padded_row_values(0, 0.0),
+            pivots: padded_row_values(1, 1.0),
+            before: padded_row_values(2, 1.0),
         };
         all.accelerations[..n].copy_from_slice(accelerations);
         all
@@ -146,7 +146,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         })
     }
 
-    /// Changes of velocities for forces and biases; further entries are those of the forces.
+    /// Returns the changes of velocities for generalized forces and constraint biases. Entries of the padding
+    /// are those of the forces.
     pub(super) fn constraint_solution(
         &self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Contacts of padded robots.
+//! Unilateral contacts of robots that are padded to constant dimensions.
 
 use super::{Padded, write_block};
 use crate::error::Error;
@@ -61,7 +61,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         Ok(PaddedContacts { plain: Padded::new(robot)? })
     }
 
-    /// Returns the robot.
+    /// Returns the robot that has been padded to constant dimensions.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         self.plain.robot()
@@ -156,9 +156,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
         let contacts = &self.robot().shared.contacts;
-        let rows = |k: usize| contacts.get(k).map_or([NR, 0], |contact| contact.rows);
+        let rows_of_contact = |k: usize| contacts.get(k).map_or([NR, 0], |contact| contact.rows);
         (
-            std::array::from_fn(|k| Rows { first: rows(k)[0], count: rows(k)[1] }),
+            std::array::from_fn(|k| Rows { first: rows_of_contact(k)[0], count: rows_of_contact(k)[1] }),
             std::array::from_fn(|k| contacts.get(k).map_or(k, |contact| contact.pressed_by)),
         )
     }
@@ -201,12 +201,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         let mut laws = vec![0.0; 3 * contacts.len()];
         self.plain.call(Internal::ContactLaws, State::default(), &mut laws);
         std::array::from_fn(|k| {
-            let coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
+            let contact_coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
             let by_impulses = contacts.get(k).is_some_and(|contact| contact.of_impulses);
             Law {
-                friction: coefficient(0),
-                restitution: coefficient(1),
-                stiction: coefficient(2),
+                friction: contact_coefficient(0),
+                restitution: contact_coefficient(1),
+                stiction: contact_coefficient(2),
                 hypothesis: if by_impulses { Restitution::Poisson } else { Restitution::Newton },
             }
         })

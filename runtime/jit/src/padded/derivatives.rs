@@ -1,4 +1,4 @@
-//! Derivatives of padded robots.
+//! Derivatives of the dynamics of robots that are padded to constant dimensions.
 
 use super::{Padded, write_block};
 use crate::internal::Internal;
@@ -15,7 +15,7 @@ use std::borrow::Borrow;
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
-/// Returns consecutive entries.
+/// Returns `N` consecutive entries of a vector, from index `first` on.
 fn entries<const N: usize, const NV: usize>(v: &SVector<f64, NV>, first: usize) -> [f64; N] {
     std::array::from_fn(|k| v[first + k])
 }
@@ -45,8 +45,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         })
     }
 
-    /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns
-    /// of the given ones.
+    /// Evaluates a function whose results are square matrices. Writes them to the first rows and columns of
+    /// the given larger matrices.
     fn squares<const K: usize>(
         &self,
         f: Internal,
@@ -157,18 +157,19 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
         self.call(Internal::MotionDerivatives, state, &mut found);
         let mut rest = &found[..];
-        let next = |rows: usize| {
+        let take_padded_block = |rows: usize| {
             let (own, others) = rest.split_at(n * rows);
             rest = others;
             let mut all = Square::<NV>::zeros();
             write_block(&mut all, rows, own);
             all.data.0
         };
-        let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] = lengths.map(next);
+        let [forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning] =
+            lengths.map(take_padded_block);
         MotionDerivatives { forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning }
     }
 
-    /// Derivatives of accelerations under constraints.
+    /// Returns the derivatives of accelerations and multipliers under constraints.
     fn constrained_motion_derivatives(
         &self,
         t: f64,

@@ -17,7 +17,7 @@ use std::cell::{Cell, RefCell};
 /// Size of the stack of the thread on which large mechanisms move.
 const STACK: usize = 64 << 20;
 
-/// Calls a function on a thread of its own.
+/// Runs a function on a thread with a large stack, and waits for it.
 pub(super) fn on_large_stack(run: impl FnOnce() -> Result<(), Error> + Send) -> Result<(), Error> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
@@ -34,7 +34,7 @@ pub(super) enum Given<'a> {
     Samples(&'a [f64], &'a [f64]),
 }
 
-/// Checked settings of a run.
+/// Checked settings of a simulation run.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<'a> {
     pub(super) robot: &'a Robot,
@@ -46,18 +46,18 @@ pub(super) struct Settings<'a> {
     pub(super) inputs: Given<'a>,
 }
 
-/// A run.
+/// Driver of a simulation run: settings, controller, and receiver of the samples.
 pub(super) struct Driver<'a, 'i, 's> {
     pub(super) settings: Settings<'a>,
-    /// Function of the inputs, with its period.
+    /// Controller that computes the inputs, with its sampling period, if any.
     pub(super) controller: Option<(Option<f64>, Controller<'i>)>,
     pub(super) sink: &'s mut (dyn FnMut(Sample) + Send),
-    /// Whether the first sample has been emitted.
+    /// Whether the first sample of the run has been emitted.
     pub(super) has_begun: bool,
     pub(super) stiff_from: Option<f64>,
 }
 
-/// A run from its initial state.
+/// Simulation run with its initial state, to be started on a padded robot.
 pub(super) struct Moving<'d, 'a, 'i, 's> {
     pub(super) driver: &'d mut Driver<'a, 'i, 's>,
     pub(super) q: &'d [f64],
@@ -104,7 +104,7 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
     }
 }
 
-/// A state with padding.
+/// State that is padded with zeros to `N` entries.
 #[derive(Clone, Copy)]
 struct PaddedState<const N: usize> {
     t: f64,
@@ -114,8 +114,8 @@ struct PaddedState<const N: usize> {
 
 impl<const N: usize> PaddedState<N> {
     fn new(t: f64, q: &[f64], v: &[f64]) -> Self {
-        let padded = |x: &[f64]| SVector::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
-        PaddedState { t, q: padded(q), v: padded(v) }
+        let padded_vector = |x: &[f64]| SVector::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+        PaddedState { t, q: padded_vector(q), v: padded_vector(v) }
     }
 }
 
@@ -124,7 +124,7 @@ impl<const N: usize> PaddedState<N> {
 struct Section<const N: usize> {
     start: PaddedState<N>,
     end: f64,
-    /// Times of samples after the start.
+    /// Times of the samples in the section, after its start.
     times: Vec<f64>,
     /// Inputs at the start, and their constant rate.
     u: SVector<f64, N>,
@@ -170,7 +170,7 @@ impl Settings<'_> {
         stops
     }
 
-    /// Returns the time of a sample.
+    /// Returns the time of the sample with an index.
     fn time(&self, index: u64) -> Option<f64> {
         let every = self.every?;
         let t = self.start + index as f64 * every;
@@ -184,18 +184,23 @@ impl Settings<'_> {
             Given::Samples(..) => self.inputs(t, false),
             _ => *u,
         };
-        let part = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();
+        let leading_entries = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();
         let velocities = robot.nv() + robot.shared.states.len();
-        Sample { t, q: part(&state.q, robot.nq()), v: part(&state.v, velocities), u: part(&u, robot.nu()) }
+        Sample {
+            t,
+            q: leading_entries(&state.q, robot.nq()),
+            v: leading_entries(&state.v, velocities),
+            u: leading_entries(&u, robot.nu()),
+        }
     }
 }
 
-/// Inputs as integration methods ask for them.
+/// Inputs of a section, in the form in which integration methods request them.
 struct Feed<'f, 'i, const N: usize> {
     settings: &'f Settings<'f>,
     section: &'f Section<N>,
     controller: Option<&'f mut (Option<f64>, Controller<'i>)>,
-    /// Inputs in the current period.
+    /// Inputs of the current sampling period of the controller.
     u: SVector<f64, N>,
     evaluations: &'f Cell<u64>,
     failure: &'f RefCell<Option<String>>,
@@ -239,17 +244,17 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
 /// State at the end of an integration; after an error that of the last sample before it.
 type Reached<const N: usize> = (PaddedState<N>, Result<(), Error>);
 
-/// Maximum number of steps of an explicit method before an implicit one is tried.
+/// Maximum number of steps of an explicit method before an implicit method is tried.
 const MOST_STEPS: u64 = 200_000;
 /// Maximum number of steps of an implicit method in the comparison.
 const MOST_IMPLICIT_STEPS: u64 = 20_000;
-/// Shortest step of an explicit method, s.
+/// Minimum step size of an explicit method, s.
 const SHORTEST: f64 = 1e-10;
 /// Number of evaluations of the dynamics after which an implicit method is tried for the first time.
 const OBSERVED: u64 = 2000;
 
 impl Driver<'_, '_, '_> {
-    /// Integrates section by section.
+    /// Integrates the motion section by section; sections end where the inputs jump or have kinks.
     fn sections<const N: usize>(
         &mut self,
         start: PaddedState<N>,
@@ -277,7 +282,7 @@ impl Driver<'_, '_, '_> {
         Ok(())
     }
 
-    /// Integrates with one method.
+    /// Integrates the whole motion with one method.
     fn go<M, S, const N: usize>(&mut self, m: &M, start: PaddedState<N>, method: S) -> Result<(), Error>
     where
         M: Mechanism<N, N, N, Scalar = f64>,
@@ -288,9 +293,9 @@ impl Driver<'_, '_, '_> {
         })
     }
 
-    /// Integrates a section with one method, from a state of it. `goes_on` receives each sample, and the
-    /// number of evaluations of the dynamics since the sample before; where it returns false the integration
-    /// ends.
+    /// Integrates a section with one method, from a state in it. `goes_on` receives each sample and the
+    /// number of evaluations of the dynamics since the previous sample. The integration ends if it returns
+    /// false.
     fn integrate_section<M, S, const N: usize>(
         &mut self,
         m: &M,
@@ -357,7 +362,7 @@ impl Driver<'_, '_, '_> {
         (last, Ok(()))
     }
 
-    /// Integrates with an explicit method, and with an implicit one from where this is cheaper.
+    /// Integrates with an explicit method, and switches to an implicit method where that is cheaper.
     fn automatic<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,

@@ -1,4 +1,4 @@
-//! Integration methods by name.
+//! Integration methods of simulations, selected by name.
 
 use crate::error::Error;
 
@@ -10,37 +10,38 @@ pub enum Method {
     /// [`Rodas`](linkwork::integrate::Rodas) from where the motion is stiff. Mechanisms with contacts have
     /// [`TimeStepping`](linkwork::integrate::TimeStepping) with steps of 1 ms.
     Automatic(f64),
-    /// [`DormandPrince`](linkwork::integrate::DormandPrince) with a tolerance.
+    /// Method [`DormandPrince`](linkwork::integrate::DormandPrince), with its tolerance.
     DormandPrince(f64),
-    /// [`DormandPrince8`](linkwork::integrate::DormandPrince8) with a tolerance.
+    /// Method [`DormandPrince8`](linkwork::integrate::DormandPrince8), with its tolerance.
     DormandPrince8(f64),
-    /// [`Rodas`](linkwork::integrate::Rodas) with a tolerance.
+    /// Method [`Rodas`](linkwork::integrate::Rodas), with its tolerance.
     Rodas(f64),
-    /// [`Rk4`](linkwork::integrate::Rk4) with a step.
+    /// Method [`Rk4`](linkwork::integrate::Rk4), with its step size, s.
     Rk4(f64),
-    /// [`ImplicitMidpoint`](linkwork::integrate::ImplicitMidpoint) with a step.
+    /// Method [`ImplicitMidpoint`](linkwork::integrate::ImplicitMidpoint), with its step size, s.
     ImplicitMidpoint(f64),
-    /// [`Rosenbrock`](linkwork::integrate::Rosenbrock) with a step.
+    /// Method [`Rosenbrock`](linkwork::integrate::Rosenbrock), with its step size, s.
     Rosenbrock(f64),
-    /// [`SemiImplicitEuler`](linkwork::integrate::SemiImplicitEuler) with a step.
+    /// Method [`SemiImplicitEuler`](linkwork::integrate::SemiImplicitEuler), with its step size, s.
     SemiImplicitEuler(f64),
-    /// [`TimeStepping`](linkwork::integrate::TimeStepping) with a step.
+    /// Method [`TimeStepping`](linkwork::integrate::TimeStepping), with its step size, s.
     TimeStepping(f64),
-    /// [`TimeStepping::midpoint`](linkwork::integrate::TimeStepping::midpoint) with a step.
+    /// Method [`TimeStepping::midpoint`](linkwork::integrate::TimeStepping::midpoint), with its step size, s.
     TimeSteppingMidpoint(f64),
-    /// [`TimeStepping::leapfrog`](linkwork::integrate::TimeStepping::leapfrog) with a step.
+    /// Method [`TimeStepping::leapfrog`](linkwork::integrate::TimeStepping::leapfrog), with its step size, s.
     TimeSteppingLeapfrog(f64),
-    /// [`EventDriven`](linkwork::integrate::EventDriven) with a tolerance.
+    /// Method [`EventDriven`](linkwork::integrate::EventDriven), with its tolerance.
     EventDriven(f64),
 }
 
-/// Tolerance of adaptive methods, unless another one is set.
+/// Default tolerance of adaptive methods.
 const TOLERANCE: f64 = 1e-9;
-/// Step of methods with fixed steps, s, unless another one is set.
+/// Default step size of methods with fixed steps, s.
 pub(super) const STEP: f64 = 1e-3;
 
 impl Method {
-    /// Names of the methods, whether their setting is a step, and whether they treat contacts.
+    /// Integration methods: name, whether the setting is a step size (otherwise a tolerance), and whether
+    /// contacts are supported.
     pub const NAMES: [(&'static str, bool, bool); 12] = [
         ("automatic", false, true),
         ("dormand_prince", false, false),
@@ -63,9 +64,9 @@ impl Method {
     ///
     /// There is no such method.
     pub fn from_name(name: &str, setting: Option<f64>) -> Result<Method, Error> {
-        let names = || Self::NAMES.iter().map(|(name, ..)| *name);
+        let method_names = || Self::NAMES.iter().map(|(name, ..)| *name);
         let Some((_, has_step, _)) = Self::NAMES.iter().find(|(known, ..)| *known == name) else {
-            return Err(Error::unknown("method", name, names()));
+            return Err(Error::unknown("method", name, method_names()));
         };
         let setting = setting.unwrap_or(if *has_step { STEP } else { TOLERANCE });
         Ok(match name {

@@ -31,15 +31,15 @@ const MAX: u8 = 0xa5;
 /// Maximum depth of operations whose results stay on the stack.
 const DEPTH: usize = 32;
 
-/// A module under construction.
+/// WebAssembly module under construction.
 #[derive(Default)]
 pub struct BinaryModule {
     types: Vec<(Vec<u8>, Vec<u8>)>,
-    /// Name and type of each imported function.
+    /// Name and type index of each imported function.
     imports: Vec<(String, usize)>,
     /// Name, type and code of each exported function.
     functions: Vec<(String, usize, Vec<u8>)>,
-    /// Number of tables that are looked up.
+    /// Number of interpolation tables that the module looks up.
     pub tables: usize,
 }
 
@@ -76,7 +76,7 @@ impl BinaryModule {
         Ok(())
     }
 
-    /// Returns the bytes of the module.
+    /// Returns the binary encoding of the WebAssembly module.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let mut out = b"\0asm\x01\0\0\0".to_vec();
@@ -115,7 +115,7 @@ impl BinaryModule {
         out
     }
 
-    /// Returns the index of a type.
+    /// Returns the index of a function type, which is added to the module if it is new.
     fn kind(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
         let kind = (parameters, results);
         index_of(&mut self.types, kind)
@@ -136,7 +136,7 @@ fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
     })
 }
 
-/// Location of the result of an instruction.
+/// Location of an instruction's result in the generated WebAssembly code.
 #[derive(Clone, Copy, PartialEq)]
 enum Value {
     Missing,
@@ -290,7 +290,7 @@ impl BinaryWriter<'_> {
     }
 }
 
-/// Writes an unsigned integer in LEB128.
+/// Writes an unsigned integer in LEB128 encoding.
 fn unsigned(out: &mut Vec<u8>, mut x: usize) {
     while x >= 0x80 {
         out.push((x & 0x7f) as u8 | 0x80);
@@ -308,7 +308,7 @@ fn signed(out: &mut Vec<u8>, mut x: usize) {
     out.push(x as u8);
 }
 
-/// Writes a name with its length.
+/// Writes a name, preceded by its length.
 fn text(out: &mut Vec<u8>, name: &str) {
     unsigned(out, name.len());
     out.extend(name.bytes());
@@ -331,14 +331,14 @@ mod tests {
     /// The examples of the WebAssembly specification and of DWARF, appendix C.
     #[test]
     fn integers_have_variable_lengths() {
-        let encoded = |write: fn(&mut Vec<u8>, usize), x: usize| {
+        let encoded_integer = |write: fn(&mut Vec<u8>, usize), x: usize| {
             let mut out = Vec::new();
             write(&mut out, x);
             out
         };
-        assert_eq!(encoded(unsigned, 624_485), [0xe5, 0x8e, 0x26]);
-        assert_eq!(encoded(unsigned, 127), [0x7f]);
-        assert_eq!(encoded(signed, 127), [0xff, 0]);
-        assert_eq!(encoded(signed, 2), [2]);
+        assert_eq!(encoded_integer(unsigned, 624_485), [0xe5, 0x8e, 0x26]);
+        assert_eq!(encoded_integer(unsigned, 127), [0x7f]);
+        assert_eq!(encoded_integer(signed, 127), [0xff, 0]);
+        assert_eq!(encoded_integer(signed, 2), [2]);
     }
 }

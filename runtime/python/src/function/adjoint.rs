@@ -1,4 +1,4 @@
-//! Computation of vector–Jacobian products.
+//! Computation of vector–Jacobian products for Python.
 
 use super::{ARGUMENTS, Argument, Kind, Signature};
 use crate::robot::{Robot, set_parameters};
@@ -6,10 +6,11 @@ use crate::shared::Failed;
 use linkwork_jit::{AdjointStepper, Error, Sensitivity, VectorJacobian};
 use std::ops::Range;
 
-/// Derivatives of one state: by the arguments one after the other, then by the parameters.
+/// Vector–Jacobian product for one state: derivatives with respect to the arguments in order, then the
+/// parameters.
 enum Adjoint {
     Product(linkwork_jit::Robot, VectorJacobian),
-    /// With the placement of a frame as a matrix of four rows, whose last row is constant.
+    /// Derivatives of a frame's placement as a matrix of four rows, whose last row is constant.
     Placement(linkwork_jit::Robot, VectorJacobian),
     Step(Box<AdjointStepper>),
 }
@@ -59,7 +60,7 @@ impl Adjoint {
 }
 
 impl Signature {
-    /// Writes the derivatives of consecutive states.
+    /// Writes the vector–Jacobian products of consecutive states.
     pub(super) fn differentiate(
         &self,
         robot: &Robot,
@@ -95,7 +96,7 @@ impl Signature {
         failed
     }
 
-    /// Returns the derivatives, for a frame where the function takes one.
+    /// Returns the computation of derivatives, for the given frame if the function takes one.
     fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
         Ok(match &self.kind {
             Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),

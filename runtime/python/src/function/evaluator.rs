@@ -1,9 +1,9 @@
-//! Computation of the results of one state.
+//! Computation of a function's results for one state.
 
 use super::{Kind, OnConstraints, Output, Signature};
 use linkwork_jit::{Error, Stepper};
 
-/// A computation with its work space.
+/// Computation of a function's results for one state, with its work space.
 pub(super) enum Evaluator {
     Generated(linkwork_jit::Robot, linkwork_jit::Function),
     Placement(linkwork_jit::Robot, linkwork_jit::Function),
@@ -13,18 +13,18 @@ pub(super) enum Evaluator {
 }
 
 impl Signature {
-    /// Returns the computation, for a frame where the function takes one.
+    /// Returns the computation of results, for the given frame if the function takes one.
     pub(super) fn evaluator(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Evaluator, Error> {
-        let robot = || robot.clone();
+        let cloned_robot = || robot.clone();
         Ok(match &self.kind {
-            Kind::Generated(f) => Evaluator::Generated(robot(), f.clone()),
-            Kind::Frames(all) => Evaluator::Generated(robot(), all[frame].clone()),
-            Kind::Placements(all) => Evaluator::Placement(robot(), all[frame].clone()),
-            Kind::Step => Evaluator::Step(Box::new(Stepper::new(&robot())?), false),
-            Kind::Transition => Evaluator::Step(Box::new(Stepper::new(&robot())?), true),
-            Kind::IntegrateDerivatives => Evaluator::Derivatives(robot(), false),
-            Kind::TangentRateDerivatives => Evaluator::Derivatives(robot(), true),
-            Kind::Constraint(which) => Evaluator::Constraint(robot(), *which),
+            Kind::Generated(f) => Evaluator::Generated(cloned_robot(), f.clone()),
+            Kind::Frames(all) => Evaluator::Generated(cloned_robot(), all[frame].clone()),
+            Kind::Placements(all) => Evaluator::Placement(cloned_robot(), all[frame].clone()),
+            Kind::Step => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), false),
+            Kind::Transition => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), true),
+            Kind::IntegrateDerivatives => Evaluator::Derivatives(cloned_robot(), false),
+            Kind::TangentRateDerivatives => Evaluator::Derivatives(cloned_robot(), true),
+            Kind::Constraint(which) => Evaluator::Constraint(cloned_robot(), *which),
         })
     }
 
@@ -46,7 +46,7 @@ impl Evaluator {
         }
     }
 
-    /// Writes the results one after the other, matrices by columns.
+    /// Writes the results of the function one after the other, matrices by columns.
     pub(super) fn evaluate(&mut self, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
         match self {
             Evaluator::Generated(robot, f) => robot.evaluate_into(f, arguments, out),
@@ -94,19 +94,21 @@ fn satisfy(
         robot.set_time(arguments[0][0]);
         rest = &arguments[1..];
     }
-    let marked = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
+    let nonzero_indices = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
     let found = match (which, rest) {
-        (OnConstraints::Assemble, [q, held]) => robot.assemble(q, &marked(held)),
+        (OnConstraints::Assemble, [q, held]) => robot.assemble(q, &nonzero_indices(held)),
         (OnConstraints::ProjectConfiguration, [q]) => robot.project_configuration(q),
         (OnConstraints::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
-        (OnConstraints::CompleteVelocity, [q, v, held]) => robot.complete_velocity(q, v, &marked(held)),
+        (OnConstraints::CompleteVelocity, [q, v, held]) => {
+            robot.complete_velocity(q, v, &nonzero_indices(held))
+        }
         _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
     }?;
     out.copy_from_slice(found.as_slice());
     Ok(())
 }
 
-/// Writes the state after a step, and its Jacobians if they are wanted.
+/// Writes the state after a Runge–Kutta step, and the Jacobians of the step if requested.
 fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
     let (t, rest) = match arguments {
         [t, rest @ ..] if rest.len() == 4 => (t[0], rest),

@@ -30,15 +30,15 @@ const FRAMES: [(&str, &str); 4] = [
 ];
 
 fn arguments(f: &linkwork_jit::Function) -> Vec<Argument> {
-    let argument = |(name, length): (&str, usize)| Argument {
+    let argument_of_function = |(name, length): (&str, usize)| Argument {
         name: name.to_string(),
         length: (name != "t").then_some(length),
     };
-    f.arguments().into_iter().map(argument).collect()
+    f.arguments().into_iter().map(argument_of_function).collect()
 }
 
 fn results(f: &linkwork_jit::Function) -> Vec<Output> {
-    let output = |m: &linkwork_jit::Matrix| Output {
+    let output_of_matrix = |m: &linkwork_jit::Matrix| Output {
         name: m.name.to_string(),
         shape: match f.rank() {
             0 => Vec::new(),
@@ -46,7 +46,7 @@ fn results(f: &linkwork_jit::Function) -> Vec<Output> {
             _ => vec![m.rows, m.columns],
         },
     };
-    f.results().iter().map(output).collect()
+    f.results().iter().map(output_of_matrix).collect()
 }
 
 fn vector(name: &str, length: usize) -> Argument {
@@ -70,7 +70,7 @@ impl Function {
         Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) }
     }
 
-    /// Returns all functions of a mechanism.
+    /// Returns all functions of a mechanism as Python methods.
     pub fn all(robot: &linkwork_jit::Robot) -> Vec<Function> {
         let plain = robot.functions().filter(|f| !f.name().contains('('));
         let mut all: Vec<Function> = plain
@@ -80,14 +80,14 @@ impl Function {
             })
             .collect();
         all.extend(FRAMES.iter().filter_map(|(name, documentation)| of_frames(robot, name, documentation)));
-        let has = |name: &str| robot.function(name).is_ok();
+        let has_function = |name: &str| robot.function(name).is_ok();
         if Stepper::new(robot).is_ok_or_missing() {
-            all.extend(steps(robot, has("linearize") && has("tangent_rate")));
+            all.extend(steps(robot, has_function("linearize") && has_function("tangent_rate")));
         }
         if robot.constraints() > 0 {
             all.extend(on_constraints(robot));
         }
-        if has("tangent_rate") {
+        if has_function("tangent_rate") {
             let n = robot.nv();
             all.push(Function::new(
                 "integrate_derivatives",
@@ -143,12 +143,12 @@ fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Op
 /// Returns the functions for steps of the classical Runge–Kutta method.
 fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
-    let number = |name: &str| Argument { name: name.to_string(), length: None };
-    let time = robot.depends_on_time().then(|| number("t"));
-    let state = [vector("q", nq), vector("v", nv), vector("u", nu), number("h")];
+    let scalar_argument = |name: &str| Argument { name: name.to_string(), length: None };
+    let time = robot.depends_on_time().then(|| scalar_argument("t"));
+    let state = [vector("q", nq), vector("v", nv), vector("u", nu), scalar_argument("h")];
     let arguments: Vec<Argument> = time.into_iter().chain(state).collect();
-    let end = |name: &str, n: usize| Output { name: name.to_string(), shape: vec![n] };
-    let state = vec![end("q", nq), end("v", nv)];
+    let vector_output = |name: &str, n: usize| Output { name: name.to_string(), shape: vec![n] };
+    let state = vec![vector_output("q", nq), vector_output("v", nv)];
     let mut jacobians = state.clone();
     for of in ["q", "v"] {
         for (by, columns) in [("q", nv), ("v", nv), ("u", nu)] {
@@ -163,7 +163,7 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
         state,
         Kind::Step,
     );
-    let transition = || {
+    let transition_function = || {
         Function::new(
             "transition",
             "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration \
@@ -174,7 +174,7 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
             Kind::Transition,
         )
     };
-    if with_jacobians { vec![step, transition()] } else { vec![step] }
+    if with_jacobians { vec![step, transition_function()] } else { vec![step] }
 }
 
 /// Returns the functions that find states which satisfy the constraints.
@@ -182,38 +182,39 @@ fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
     let [nq, nv] = [robot.nq(), robot.nv()];
     let (q, v, held) = (vector("q", nq), vector("v", nv), vector(HELD, nv));
     let number = Argument { name: "t".to_string(), length: None };
-    let time = || robot.depends_on_time().then(|| number.clone());
-    let list = |rest: &[&Argument]| time().into_iter().chain(rest.iter().map(|a| (*a).clone())).collect();
-    let result = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
+    let time_argument = || robot.depends_on_time().then(|| number.clone());
+    let with_time_argument =
+        |rest: &[&Argument]| time_argument().into_iter().chain(rest.iter().map(|a| (*a).clone())).collect();
+    let result_vector = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
     [
         Function::new(
             "assemble",
             "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do \
              not change.",
-            list(&[&q, &held]),
-            result(nq),
+            with_time_argument(&[&q, &held]),
+            result_vector(nq),
             Kind::Constraint(OnConstraints::Assemble),
         ),
         Function::new(
             "project_configuration",
             "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic \
              energy.",
-            list(&[&q]),
-            result(nq),
+            with_time_argument(&[&q]),
+            result_vector(nq),
             Kind::Constraint(OnConstraints::ProjectConfiguration),
         ),
         Function::new(
             "project_velocity",
             "Velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.",
-            list(&[&q, &v]),
-            result(nv),
+            with_time_argument(&[&q, &v]),
+            result_vector(nv),
             Kind::Constraint(OnConstraints::ProjectVelocity),
         ),
         Function::new(
             "complete_velocity",
             "Velocity with the entries `held` of `v` that satisfies the constraints.",
-            list(&[&q, &v, &held]),
-            result(nv),
+            with_time_argument(&[&q, &v, &held]),
+            result_vector(nv),
             Kind::Constraint(OnConstraints::CompleteVelocity),
         ),
     ]

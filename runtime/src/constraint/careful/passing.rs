@@ -24,7 +24,7 @@ struct Way<T, const NQ: usize, const NV: usize> {
     moves: bool,
 }
 
-/// Returns the largest magnitude of the entries.
+/// Returns the largest magnitude of the entries of a vector.
 pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
 }
@@ -64,20 +64,30 @@ where
     let moves = clear && (!driven || speed * speed > rate * safe_distance::<T>() * constant(0.03));
     let way = Way { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
     let (clear, within) = (safe_distance::<T>() * constant(0.4), zone::<T>() * constant(0.5));
-    let passed = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
+    let acceleration_past_singularity = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
         let pace = safe_distance::<T>() / size(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
         steps.into_iter().find_map(|step| way.points(step, clear).interpolated(mechanism, structure))
     };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
-    passed(&way, &[1.0, 2.0], clear)
-        .or_else(|| passed(&way.deviating(mechanism, structure)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
+    acceleration_past_singularity(&way, &[1.0, 2.0], clear)
         .or_else(|| {
-            passed(&way.deviating(mechanism, structure)?.across(&way), &[1.0, 2.0, 4.0, 8.0, 0.5], clear)
+            acceleration_past_singularity(
+                &way.deviating(mechanism, structure)?,
+                &[1.0, 2.0, 4.0, 8.0, 0.5],
+                clear,
+            )
         })
-        .or_else(|| passed(&way, &[4.0, 16.0], clear))
-        .or_else(|| passed(&way, &[1.0, 0.5, 0.25], within))?
+        .or_else(|| {
+            acceleration_past_singularity(
+                &way.deviating(mechanism, structure)?.across(&way),
+                &[1.0, 2.0, 4.0, 8.0, 0.5],
+                clear,
+            )
+        })
+        .or_else(|| acceleration_past_singularity(&way, &[4.0, 16.0], clear))
+        .or_else(|| acceleration_past_singularity(&way, &[1.0, 0.5, 0.25], within))?
         .acceleration(structure, system)
 }
 
@@ -103,8 +113,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
             let points = still.points(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
-            let accelerations = |h: T| points.accelerations(mechanism, structure, h, &course);
-            Some((accelerations(-points.step)?.free + accelerations(points.step)?.free) * any)
+            let free_acceleration_at = |h: T| points.accelerations(mechanism, structure, h, &course);
+            Some((free_acceleration_at(-points.step)?.free + free_acceleration_at(points.step)?.free) * any)
         })?;
         let size = size(&heading);
         (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
@@ -222,7 +232,8 @@ struct Room<T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
-    /// Factorises the rows above the relative magnitude `clear`, and the smaller ones up to rounding errors.
+    /// Factorises the constraint rows above the relative magnitude `clear`, then the smaller ones down to
+    /// rounding errors.
     fn new(structure: &Structure<'_, NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
         let mut span = Span::new(&Metric::new(&SMatrix::identity().data.0), jacobian, &structure.groups);
         span.extend(clear, structure.rank);

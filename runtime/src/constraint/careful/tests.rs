@@ -73,7 +73,7 @@ impl Random {
     }
 }
 
-/// Mass matrix, Jacobian, forces and biases.
+/// Random system of constrained dynamics: mass matrix, Jacobian, forces and biases.
 #[derive(Clone, Copy)]
 struct Sample<const NV: usize, const NC: usize> {
     mass: SMatrix<f64, NV, NV>,
@@ -83,8 +83,9 @@ struct Sample<const NV: usize, const NC: usize> {
 }
 
 impl<const NV: usize, const NC: usize> Sample<NV, NC> {
-    /// Returns random point masses on a chain of coordinates, which differ by up to a factor of `10^(2
-    /// spread)`. Half of the systems have a constraint that differs from another one by at least `10^-near`.
+    /// Returns a random system of point masses on a chain of coordinates; masses differ by up to a factor of
+    /// `10^(2 spread)`. Half of the systems have a constraint that differs from another one by at least
+    /// `10^-near`.
     fn random(random: &mut Random, spread: f64, near: f64) -> Self {
         let mut mass = SMatrix::<f64, NV, NV>::zeros();
         for link in 0..NV {
@@ -129,14 +130,14 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
         let n = NV + NC;
         let mut rows: Vec<Vec<Double>> = (0..n)
             .map(|i| {
-                let entry = |j: usize| match (i < NV, j < NV) {
+                let entry_of_system = |j: usize| match (i < NV, j < NV) {
                     (true, true) => self.mass[(i, j)],
                     (true, false) => -self.jacobian[(j - NV, i)],
                     (false, true) => self.jacobian[(i - NV, j)],
                     (false, false) => 0.0,
                 };
                 let right = if i < NV { self.force[i] } else { -self.bias[i - NV] };
-                (0..n).map(entry).chain([right]).map(|x| Double(x, 0.0)).collect()
+                (0..n).map(entry_of_system).chain([right]).map(|x| Double(x, 0.0)).collect()
             })
             .collect();
         let mut order: Vec<usize> = (0..n).collect();
@@ -160,35 +161,40 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
             let rest = (k + 1..n).fold(rows[k][n], |sum, j| sum - rows[k][j] * x[j]);
             x[k] = rest / rows[k][k];
         }
-        let unknown = |k: usize| order.iter().position(|o| *o == k).map_or(0.0, |place| x[place].0);
-        (SVector::from_fn(|k, _| unknown(k)), SVector::from_fn(|k, _| unknown(NV + k)))
+        let solution_entry = |k: usize| order.iter().position(|o| *o == k).map_or(0.0, |place| x[place].0);
+        (SVector::from_fn(|k, _| solution_entry(k)), SVector::from_fn(|k, _| solution_entry(NV + k)))
     }
 
     fn solved<T: Real>(&self, rank: usize) -> (SVector<f64, NV>, SVector<f64, NC>) {
-        let convert = |x: f64| constant::<T>(x);
+        let convert_number = |x: f64| constant::<T>(x);
         let structure = Structure { groups: core::array::from_fn(|k| k), determining: &[], rank };
-        let (mass, jacobian) = (self.mass.map(convert), self.jacobian.map(convert));
-        let (a, lambda) =
-            System { mass, jacobian, force: self.force.map(convert), bias: self.bias.map(convert) }
-                .solve(&structure, zone(), Weak::Taken)
-                .0;
+        let (mass, jacobian) = (self.mass.map(convert_number), self.jacobian.map(convert_number));
+        let (a, lambda) = System {
+            mass,
+            jacobian,
+            force: self.force.map(convert_number),
+            bias: self.bias.map(convert_number),
+        }
+        .solve(&structure, zone(), Weak::Taken)
+        .0;
         (a.map(crate::private::to_f64), lambda.map(crate::private::to_f64))
     }
 }
 
-/// Checks that the solution is as close to the exact one as rounding errors of the system permit.
+/// Checks that the solution of a random constrained system is as close to the exact solution as rounding
+/// errors of the system permit.
 fn check<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near: f64) {
     let mut random = Random(seed);
     let epsilon = crate::private::to_f64(epsilon::<T>());
     for case in 0..300 {
         let all = Sample::<NV, NC>::random(&mut random, spread, near);
         // Numbers rounded to `T`.
-        let round = |x: f64| crate::private::to_f64(constant::<T>(x));
+        let round_to_scalar = |x: f64| crate::private::to_f64(constant::<T>(x));
         let system = Sample {
-            mass: all.mass.map(round),
-            jacobian: all.jacobian.map(round),
-            force: all.force.map(round),
-            bias: all.bias.map(round),
+            mass: all.mass.map(round_to_scalar),
+            jacobian: all.jacobian.map(round_to_scalar),
+            force: all.force.map(round_to_scalar),
+            bias: all.bias.map(round_to_scalar),
         };
         let (a, lambda) = system.exact();
         let (mut a_error, mut lambda_error) = (10.0 * epsilon * a.amax(), 10.0 * epsilon * lambda.amax());
@@ -244,10 +250,10 @@ fn what_follows_from_others_changes_nothing() {
             Sample::<6, 4> { mass: less.mass, jacobian: SMatrix::zeros(), force: less.force, bias: [0.0; 4] };
         for k in 0..3 {
             // Fewer digits, so that sums are exact.
-            let short = |x: f64| (x * 1024.0).round() / 1024.0;
-            let row = less.jacobian.row(k).map(short);
+            let round_to_few_bits = |x: f64| (x * 1024.0).round() / 1024.0;
+            let row = less.jacobian.row(k).map(round_to_few_bits);
             all.jacobian.set_row(k, &row);
-            all.bias[k] = short(less.bias[k]);
+            all.bias[k] = round_to_few_bits(less.bias[k]);
         }
         let sum = (0..3).fold(all.jacobian.row(3) * 0.0, |sum, k| sum + all.jacobian.row(k) * combination[k]);
         all.jacobian.set_row(3, &sum);

@@ -1,4 +1,4 @@
-//! The seven stages of one step, its error estimate and its interpolating polynomial.
+//! Stages of one Dormand–Prince step of order 5, with error estimate and interpolating polynomial.
 
 use crate::Real;
 use crate::integrate::adaptive::{Attempt, Trial};
@@ -6,25 +6,26 @@ use crate::integrate::stages::{Rates, stage, sum};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
 
-/// Returns one step of length `h` that ends at `t`. Hairer, Nørsett and Wanner, II, table 5.2 and (6.12).
+/// Returns one Dormand–Prince step of length `h` that ends at `t`, computed by seven stages (Hairer, Nørsett
+/// and Wanner, II, table 5.2 and (6.12)).
 pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
 ) -> Trial<T, NQ, NV> {
     let Attempt { start, acceleration, scale, h, t } = *attempt;
-    let time_at = |part: f64| start.t + h * constant(part);
+    let time_at_fraction = |part: f64| start.t + h * constant(part);
     let k1 = &Rates { displacement: start.v, velocity: *acceleration };
     let change = sum(h, [(1.0 / 5.0, k1)]);
-    let k2 = &stage(system, start, time_at(1.0 / 5.0), &change).0;
+    let k2 = &stage(system, start, time_at_fraction(1.0 / 5.0), &change).0;
     let change = sum(h, [(3.0 / 40.0, k1), (9.0 / 40.0, k2)]);
-    let k3 = &stage(system, start, time_at(3.0 / 10.0), &change).0;
+    let k3 = &stage(system, start, time_at_fraction(3.0 / 10.0), &change).0;
     let change = sum(h, [(44.0 / 45.0, k1), (-56.0 / 15.0, k2), (32.0 / 9.0, k3)]);
-    let k4 = &stage(system, start, time_at(4.0 / 5.0), &change).0;
+    let k4 = &stage(system, start, time_at_fraction(4.0 / 5.0), &change).0;
     let change = sum(
         h,
         [(19372.0 / 6561.0, k1), (-25360.0 / 2187.0, k2), (64448.0 / 6561.0, k3), (-212.0 / 729.0, k4)],
     );
-    let k5 = &stage(system, start, time_at(8.0 / 9.0), &change).0;
+    let k5 = &stage(system, start, time_at_fraction(8.0 / 9.0), &change).0;
     let change = sum(
         h,
         [

@@ -117,7 +117,8 @@ pub static STAGES: [&[(usize, f64)]; 15] = [
     ],
 ];
 
-/// Coefficients of the error of fifth order.
+/// Coefficients of the stages in the fifth-order error estimate of DOP853, as pairs of stage index and
+/// weight.
 pub static FIFTH: &[(usize, f64)] = &[
     (0, 0.01312004499419488),
     (5, -1.2251564463762044),
@@ -129,7 +130,8 @@ pub static FIFTH: &[(usize, f64)] = &[
     (11, -0.022355307863886294),
 ];
 
-/// Coefficients of the error of third order.
+/// Coefficients of the stages in the third-order error estimate of DOP853, as pairs of stage index and
+/// weight.
 pub static THIRD: &[(usize, f64)] = &[
     (0, -0.18980075407240762),
     (5, 4.450312892752409),

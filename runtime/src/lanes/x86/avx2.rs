@@ -16,13 +16,13 @@ use core::mem::transmute;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2;
 
-/// Whether the processor has the instructions.
+/// Whether the processor has the instructions AVX2 and FMA.
 #[inline(always)]
 pub(crate) fn is_available() -> bool {
     std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
 }
 
-/// Whether numbers of this type benefit.
+/// Whether these instructions speed up numbers of type `T`: `f64` or `f32`.
 #[inline(always)]
 pub(crate) fn serves<T: Real>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
@@ -238,8 +238,8 @@ fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     trigonometry::with_large::<Avx2, N>(x)
 }
 
-/// Rotates sine and cosine by the quadrant: an odd quadrant exchanges them, and bits of the quadrant are
-/// their signs.
+/// Converts sine and cosine of the reduced angle to those of the angle by its quadrant. An odd quadrant
+/// exchanges them, and bits of the quadrant determine their signs.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn turned_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {

@@ -15,8 +15,8 @@ use core::mem::transmute;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512;
 
-/// Whether the processor has the instructions and does not reduce its clock frequency when they are used:
-/// Intel's since Ice Lake, AMD's since Zen 4.
+/// Whether the processor has AVX-512 instructions and does not reduce its clock frequency when they are used:
+/// Intel since Ice Lake, AMD since Zen 4.
 #[inline(always)]
 pub(crate) fn is_available() -> bool {
     use std::is_x86_feature_detected as has;

@@ -4,7 +4,7 @@ use crate::rotation::*;
 use core::f64::consts::{FRAC_PI_2, PI};
 use std::string::ToString;
 
-/// Offsets from the singular middle angles.
+/// Offsets of the middle Euler angle from a singularity, rad, at which conversions are tested.
 const OFFSETS: [f64; 14] =
     [0.0, 1e-300, 1e-17, 1e-16, 4e-16, 8e-16, 1e-15, 3e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-3];
 

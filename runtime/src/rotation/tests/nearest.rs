@@ -26,12 +26,12 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
             assert_below((found.matrix().determinant() - 1.0).abs(), 2e-15, noise);
             // Rᵀ M is symmetric at every stationary point.
             assert_below(axial(&(found.inverse() * matrix)).norm(), 3e-15 * (1.0 + noise), noise);
-            let distance = |r: &Rotation3<f64>| (r.matrix() - matrix).norm_squared();
-            let least = distance(&found) * (1.0 - 1e-12);
-            assert!(least <= distance(&rotation));
+            let squared_distance = |r: &Rotation3<f64>| (r.matrix() - matrix).norm_squared();
+            let least = squared_distance(&found) * (1.0 - 1e-12);
+            assert!(least <= squared_distance(&rotation));
             for _ in 0..20 {
                 let near = found * RotationVector(random.vector() * 0.3).rotation();
-                assert!(least <= distance(&near) && least <= distance(&random.rotation()));
+                assert!(least <= squared_distance(&near) && least <= squared_distance(&random.rotation()));
             }
         }
     }
@@ -51,10 +51,11 @@ fn small_noise_moves_by_its_skew_part() {
 fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
     let mut random = Random(34);
     let (r, s) = (random.rotation(), random.rotation());
-    let product = |values: [f64; 3]| r.matrix() * Matrix3::from_diagonal(&values.into()) * s.matrix();
+    let matrix_with_singular_values =
+        |values: [f64; 3]| r.matrix() * Matrix3::from_diagonal(&values.into()) * s.matrix();
     let best = r * s;
     for values in [[3.0, 2.0, 0.0], [3.0, 2.0, 1.0], [3.0, 2.0, -1.0], [1.0, 1e-3, 0.0], [1.0, 1.0, -0.9]] {
-        let found = nearest_rotation(&product(values)).unwrap();
+        let found = nearest_rotation(&matrix_with_singular_values(values)).unwrap();
         assert_below(
             difference(found.matrix(), best.matrix()),
             3e-15 * values[0] / (values[1] + values[2]),
@@ -62,7 +63,7 @@ fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
         );
     }
     for values in [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, -1.0], [-1.0; 3], [f64::NAN, 1.0, 1.0]] {
-        assert_eq!(nearest_rotation(&product(values)), None, "{values:?}");
+        assert_eq!(nearest_rotation(&matrix_with_singular_values(values)), None, "{values:?}");
     }
     assert_eq!(nearest_rotation(&Matrix3::from_element(f64::INFINITY)), None);
     let single = nearest_rotation(&(r.matrix() * 3.0).cast::<f32>()).unwrap();

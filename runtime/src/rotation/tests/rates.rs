@@ -2,8 +2,8 @@ use super::*;
 use crate::rotation::*;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Lengths of rotation vectors: tiny, small, on both sides of the limit of the series, near and beyond π and
-/// 2π.
+/// Lengths of rotation vectors at which rates are tested, rad: tiny, small, on both sides of the limits of
+/// the series, near and beyond π and 2π.
 const LENGTHS: [f64; 15] =
     [0.0, 1e-200, 1e-9, 1e-4, 0.2, 0.23, 0.49, 0.51, 2.0, 3.1, PI, 3.2, 6.0, 6.6, 11.0];
 
@@ -88,10 +88,10 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
         let (q, omega) = (random.quaternion(), random.vector());
         let rotation = q.to_rotation_matrix();
         let space = rotation * omega;
-        let attitude = |t: f64| q * RotationVector(omega * t).quaternion();
+        let attitude_at_time = |t: f64| q * RotationVector(omega * t).quaternion();
 
         let rate = quaternion_rate_from_body(&q, &omega);
-        assert_below(difference(&rate.coords, &slope(|t| attitude(t).coords)), 1e-12, omega);
+        assert_below(difference(&rate.coords, &slope(|t| attitude_at_time(t).coords)), 1e-12, omega);
         assert_below(difference(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
         assert_below(difference(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
         assert_below(difference(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
@@ -100,7 +100,11 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
         assert_below(difference(&other.coords, &-rate.coords), 0.0, omega);
 
         let rate = rotation_rate_from_body(&rotation, &omega);
-        assert_below(difference(&rate, &slope(|t| *attitude(t).to_rotation_matrix().matrix())), 2e-12, omega);
+        assert_below(
+            difference(&rate, &slope(|t| *attitude_at_time(t).to_rotation_matrix().matrix())),
+            2e-12,
+            omega,
+        );
         assert_below(difference(&rate, &rotation_rate_from_space(&rotation, &space)), 1e-15, omega);
         assert_below(difference(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
         assert_below(difference(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
@@ -207,11 +211,11 @@ fn integrated_with_switching_the_vector_stays_in_the_ball() {
     let (h, steps) = (0.002, 10_000);
     let mut sigma = Mrp(Vector3::zeros());
     for _ in 0..steps {
-        let rate = |s: Vector3<f64>| Mrp(s).rate_from_body(&omega);
-        let a = rate(sigma.0);
-        let b = rate(sigma.0 + a * (h / 2.0));
-        let c = rate(sigma.0 + b * (h / 2.0));
-        let d = rate(sigma.0 + c * h);
+        let mrp_rate = |s: Vector3<f64>| Mrp(s).rate_from_body(&omega);
+        let a = mrp_rate(sigma.0);
+        let b = mrp_rate(sigma.0 + a * (h / 2.0));
+        let c = mrp_rate(sigma.0 + b * (h / 2.0));
+        let d = mrp_rate(sigma.0 + c * h);
         sigma = Mrp(sigma.0 + (a + (b + c) * 2.0 + d) * (h / 6.0)).switched();
         assert!(sigma.0.norm() <= 1.0);
     }

@@ -20,8 +20,8 @@ pub(super) struct Row {
     pub(super) omega_space: [f64; 3],
 }
 
-/// Returns one row of the table: sequence, name, matrix by rows, quaternion, rotation vector, ω in body and
-/// in space axes.
+/// Returns one row of the reference table: Euler-angle sequence, name, rotation matrix by rows, quaternion,
+/// rotation vector, and angular velocity in body and in space axes.
 const fn row(
     sequence: EulerSequence,
     name: &'static str,

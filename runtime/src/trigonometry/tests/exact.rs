@@ -1,4 +1,4 @@
-//! Sines and cosines in double-double precision.
+//! Reference sines and cosines in double-double precision.
 
 /// Number of twice the precision, as the sum of two numbers.
 pub type Double = (f64, f64);
@@ -37,16 +37,17 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
         (sine, versine) = (multiply(twice, cosine), multiply(twice, sine));
     }
     let cosine = add((1.0, 0.0), (-versine.0, -versine.1));
-    let minus = |x: Double| (-x.0, -x.1);
+    let negated_double = |x: Double| (-x.0, -x.1);
     match quarters.rem_euclid(4.0) as u8 {
         0 => [sine, cosine],
-        1 => [cosine, minus(sine)],
-        2 => [minus(sine), minus(cosine)],
-        _ => [minus(cosine), sine],
+        1 => [cosine, negated_double(sine)],
+        2 => [negated_double(sine), negated_double(cosine)],
+        _ => [negated_double(cosine), sine],
     }
 }
 
-/// Returns the error of a number, in units in the last place.
+/// Returns the error of a double-precision number against a double-double reference, in units in the last
+/// place.
 pub fn error(found: f64, exact: Double) -> f64 {
     let magnitude = exact.0.abs();
     let unit = f64::from_bits(magnitude.to_bits() + 1) - magnitude;

@@ -1,4 +1,4 @@
-//! Decoder of pages, independent of `view.js`.
+//! Decoder of the data in pages, independent of the decoder `view.js` in the browser.
 
 use serde_json::Value;
 
@@ -42,17 +42,17 @@ pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
 }
 
 fn base64(text: &str) -> Vec<u8> {
-    let digit = |c: u8| match c {
+    let base64_digit = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',
         b'a'..=b'z' => c - b'a' + 26,
         b'0'..=b'9' => c - b'0' + 52,
         b'+' => 62,
         _ => 63,
     };
-    let digits: Vec<u32> = text.bytes().filter(|c| *c != b'=').map(|c| u32::from(digit(c))).collect();
-    let group = |g: &[u32]| {
+    let digits: Vec<u32> = text.bytes().filter(|c| *c != b'=').map(|c| u32::from(base64_digit(c))).collect();
+    let bytes_of_group = |g: &[u32]| {
         let word = g.iter().enumerate().fold(0, |word, (k, d)| word | d << (18 - 6 * k));
         word.to_be_bytes()[1..g.len()].to_vec()
     };
-    digits.chunks(4).flat_map(group).collect()
+    digits.chunks(4).flat_map(bytes_of_group).collect()
 }

@@ -3,7 +3,7 @@
 
 use linkwork::prelude::*;
 
-/// Number with its first and second derivative.
+/// Number with its first and second derivative along a curve, for automatic differentiation.
 #[derive(Clone, Copy)]
 pub struct Jet(pub [f64; 3]);
 
@@ -86,15 +86,16 @@ pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: 
     // Twice D times the foot point and the height of the triangle.
     let (along, across) = (square.add(difference * (l2 + l3)), height.scaled(side));
     let over = square.scaled(2.0).inverse();
-    let tip = |a: Jet, b: Jet, c: Jet, d: Jet| a.times(b).plus(c.times(d)).times(over);
-    let (px, py) = (tip(along, dx, across.scaled(-1.0), dy), tip(along, dy, across, dx));
+    let tip_coordinate = |a: Jet, b: Jet, c: Jet, d: Jet| a.times(b).plus(c.times(d)).times(over);
+    let (px, py) =
+        (tip_coordinate(along, dx, across.scaled(-1.0), dy), tip_coordinate(along, dy, across, dx));
     let coupler = Jet::atan2(py, px);
     let rocker = Jet::atan2(py.plus(dy.scaled(-1.0)), px.plus(dx.scaled(-1.0)));
     [theta, coupler.plus(theta.scaled(-1.0)), rocker]
 }
 
-/// Assembly mode at a point: the configuration, the derivatives of all coordinates with respect to the `N`
-/// independent ones, and the second derivatives along the motion.
+/// Branch of a linkage's motion: a configuration, the derivatives of all coordinates with respect to the `N`
+/// independent ones, and second derivatives along the motion.
 pub struct Branch<const NV: usize, const N: usize> {
     pub q: SVector<f64, NV>,
     pub by: SMatrix<f64, NV, N>,
@@ -117,7 +118,7 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         let bias = m.bias_forces(0.0, &self.q, &v);
         let own = self.by.transpose() * mass * self.by;
         let force = bias + mass * self.bend;
-        let solve = |f: SVector<f64, N>| {
+        let solve_reduced_system = |f: SVector<f64, N>| {
             // The system has one or two unknowns.
             let mut x = SVector::<f64, N>::zeros();
             if N == 1 {
@@ -129,14 +130,14 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
             }
             x
         };
-        let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
+        let a = self.by * solve_reduced_system(-(self.by.transpose() * force)) + self.bend;
         // Accelerations that each force alone would cause, through the motion of its body, which is known
         // only to 1e-11 m or rad.
-        let acceleration = |k: usize| {
+        let acceleration_magnitude = |k: usize| {
             let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
-            (self.by * solve(by * bias[k])).amax()
+            (self.by * solve_reduced_system(by * bias[k])).amax()
         };
-        let most = (0..NV).map(acceleration).fold(0.0, f64::max);
+        let most = (0..NV).map(acceleration_magnitude).fold(0.0, f64::max);
         // Light bodies with stiff springs would have large accelerations without constraints. The constraint
         // forces have the rounding errors of these accelerations.
         let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());

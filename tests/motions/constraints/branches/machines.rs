@@ -4,8 +4,8 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Declares a four-bar linkage of rods along `$along` in the plane normal to `$about`, with springs on its
-/// pins.
+/// Declares a four-bar linkage of rods along `$along`, which moves in the plane normal to `$about`, with
+/// springs on its pins.
 macro_rules! four_bar {
     ($name:ident, $about:expr, $along:expr, $gravity:expr) => {
         #[mechanism(gravity = down * $gravity + aside * $along)]
@@ -66,7 +66,7 @@ macro_rules! four_bar {
 four_bar!(FourBar, z, x, y);
 four_bar!(Tilted, unit(x + 2 * y + 2 * z), (2 * x + y - 2 * z) / 3, (2 * x - 2 * y + z) / 3);
 
-/// Window that stands on another one, each with posts of equal length.
+/// Linkage of two stacked parallelogram windows, each with two posts of equal length.
 #[mechanism(gravity = down * y + aside * x)]
 #[derive(Clone, Copy, Debug)]
 pub struct Stacked {
@@ -124,7 +124,7 @@ pub struct Stacked {
     s4: Spring,
 }
 
-/// Three windows in a row.
+/// Linkage of three parallelogram windows side by side, whose posts have equal lengths.
 #[mechanism(gravity = down * y + aside * x)]
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
@@ -194,7 +194,7 @@ impl Style {
         10_f64.powf(random.uniform(self.masses))
     }
 
-    /// Returns a random stiffness, which is zero for one spring in three.
+    /// Returns a random spring stiffness, which is zero for one spring in three.
     pub fn stiffness(&self, random: &mut Random) -> f64 {
         if random.uniform(1.0) < -0.33 { 0.0 } else { 10_f64.powf(random.uniform(self.springs)) }
     }

@@ -1,4 +1,4 @@
-//! Compares factored sums with the polynomials that they represent.
+//! Tests of factored sums against the polynomials that they represent.
 
 use super::*;
 use crate::algebra::factor::items;
@@ -19,10 +19,10 @@ fn ring() -> Ring {
 }
 
 fn value(items: &[Item], atoms: &[f64]) -> f64 {
-    let power = |(k, n): (usize, u8)| atoms[k].powi(n.into());
+    let power_of_atom = |(k, n): (usize, u8)| atoms[k].powi(n.into());
     let item_value = |item: &Item| {
         let sums = item.sums.iter().map(|sum| value(&sum.items, atoms).powi(sum.power.into()));
-        item.coefficient * item.factor.factors().map(power).product::<f64>() * sums.product::<f64>()
+        item.coefficient * item.factor.factors().map(power_of_atom).product::<f64>() * sums.product::<f64>()
     };
     items.iter().map(item_value).sum()
 }
@@ -71,8 +71,8 @@ fn factored_sums_are_what_they_were() {
 #[test]
 fn products_of_sums_are_found() {
     let mut ring = ring();
-    let sum = |i, j, sign| Polynomial::sum(vec![term(i, 1.0), term(j, sign)]);
-    let p = times(&mut ring, &[&sum(0, 1, 1.0), &sum(2, 3, -1.0)]);
+    let sum_of_two_terms = |i, j, sign| Polynomial::sum(vec![term(i, 1.0), term(j, sign)]);
+    let p = times(&mut ring, &[&sum_of_two_terms(0, 1, 1.0), &sum_of_two_terms(2, 3, -1.0)]);
     let found = items(&ring, &Order::new(&ring), &p, FactorScope::All);
     assert!(found.len() == 1 && found[0].sums.len() == 2, "{found:?}");
 }

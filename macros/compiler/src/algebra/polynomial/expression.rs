@@ -1,4 +1,4 @@
-//! Conversion of polynomials back to expressions.
+//! Conversion of polynomials to expressions.
 
 use super::{Atom, Polynomial, Ring, Wave};
 use crate::expr::{Expr, Graph};
@@ -20,8 +20,12 @@ pub fn expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g>
                 Atom::Atan2(y, x) => expression(graph, ring, y).atan2(expression(graph, ring, x)),
                 Atom::Power(a, b) => expression(graph, ring, a).pow(expression(graph, ring, b)),
                 Atom::Table(_, lookup, x) => {
-                    let argument = |k: usize| x.get(k).map_or(graph.zero(), |x| expression(graph, ring, x));
-                    graph.lookup(*lookup, [argument(0), argument(1), argument(2)])
+                    let argument_expression =
+                        |k: usize| x.get(k).map_or(graph.zero(), |x| expression(graph, ring, x));
+                    graph.lookup(
+                        *lookup,
+                        [argument_expression(0), argument_expression(1), argument_expression(2)],
+                    )
                 }
                 Atom::Extreme(f, a, b) => expression(graph, ring, a).extreme(*f, expression(graph, ring, b)),
             };

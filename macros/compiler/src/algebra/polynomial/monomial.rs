@@ -3,12 +3,13 @@
 
 /// Maximum number of atoms of a ring.
 pub const ATOMS: usize = 64;
-/// Number of atoms in each 128-bit half.
+/// Number of atoms in each 128-bit half of a monomial.
 const HALF: usize = 32;
 /// The highest bit of every power: set after an overflow, otherwise zero.
 const OVERFLOW: u128 = 0x8888_8888_8888_8888_8888_8888_8888_8888;
 
-/// A product of powers of atoms, with powers of at most seven. Also used as a bit mask over such powers.
+/// Product of powers of atoms, with powers of at most seven. The same type is used as a bit mask of such
+/// powers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Monomial {
     high: u128,
@@ -16,7 +17,7 @@ pub struct Monomial {
 }
 
 impl Monomial {
-    /// The empty product.
+    /// Monomial one: the empty product.
     pub const ONE: Monomial = Monomial { high: 0, low: 0 };
 
     fn bits(atom: usize, bits: u128) -> Monomial {
@@ -27,7 +28,7 @@ impl Monomial {
         }
     }
 
-    /// Returns the first power of an atom.
+    /// Returns the monomial that is the first power of an atom.
     pub fn atom(atom: usize) -> Monomial {
         Monomial::bits(atom, 1)
     }
@@ -82,22 +83,23 @@ impl Monomial {
     /// Returns true if this monomial divides the other one.
     pub fn divides(self, other: Monomial) -> bool {
         // Compares power by power: the overflow bit stays set unless the subtraction borrows from it.
-        let fits = |a: u128, b: u128| (b | OVERFLOW).wrapping_sub(a) & OVERFLOW == OVERFLOW;
-        fits(self.high, other.high) && fits(self.low, other.low)
+        let has_no_larger_power = |a: u128, b: u128| (b | OVERFLOW).wrapping_sub(a) & OVERFLOW == OVERFLOW;
+        has_no_larger_power(self.high, other.high) && has_no_larger_power(self.low, other.low)
     }
 
-    /// Returns the greatest common divisor.
+    /// Returns the greatest common divisor of two monomials.
     pub fn common(self, other: Monomial) -> Monomial {
-        let shared = |(atom, power): (usize, u8)| Monomial::bits(atom, power.min(other.power(atom)).into());
-        self.factors().map(shared).fold(Monomial::ONE, Monomial::or)
+        let common_power_of_atom =
+            |(atom, power): (usize, u8)| Monomial::bits(atom, power.min(other.power(atom)).into());
+        self.factors().map(common_power_of_atom).fold(Monomial::ONE, Monomial::or)
     }
 
-    /// Returns the sum of the powers.
+    /// Returns the degree of the monomial: the sum of its powers.
     pub fn degree(self) -> u32 {
         self.factors().map(|(_, power)| u32::from(power)).sum()
     }
 
-    /// Returns the union of the bits.
+    /// Returns the union of the bits of two masks.
     pub fn or(self, other: Monomial) -> Monomial {
         Monomial { high: self.high | other.high, low: self.low | other.low }
     }

@@ -15,7 +15,7 @@ fn value_of(symbol: Symbol) -> f64 {
     0.37 + 0.61 * f64::from(symbol.0)
 }
 
-/// A reproducible pseudo-random generator (xorshift).
+/// Reproducible pseudorandom generator (xorshift).
 pub struct Random(pub u64);
 
 impl Random {
@@ -29,21 +29,21 @@ impl Random {
 
 fn random<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
     let pick = if depth == 0 { 0 } else { r.number_below(if functions { 12 } else { 9 }) };
-    let next = |r: &mut Random| random(graph, r, depth - 1, functions);
+    let random_subexpression = |r: &mut Random| random(graph, r, depth - 1, functions);
     match pick {
         0 if r.number_below(4) == 0 => graph.num(r.number_below(9) as f64 - 4.0),
         0 => graph.symbol(Symbol(r.number_below(6) as u32)),
-        1 | 2 => next(r) + next(r),
-        3 | 4 => next(r) - next(r),
-        5 | 6 => next(r) * next(r),
+        1 | 2 => random_subexpression(r) + random_subexpression(r),
+        3 | 4 => random_subexpression(r) - random_subexpression(r),
+        5 | 6 => random_subexpression(r) * random_subexpression(r),
         7 | 8 => {
             let angle = graph.symbol(Symbol(3 + r.number_below(2) as u32));
             let angle = if r.number_below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
             if r.number_below(2) == 0 { angle.sin() } else { angle.cos() }
         }
-        9 => next(r) / (next(r).square() + graph.one()),
-        10 => (next(r).square() + graph.one()).sqrt(),
-        _ => next(r).call(Function::Tanh),
+        9 => random_subexpression(r) / (random_subexpression(r).square() + graph.one()),
+        10 => (random_subexpression(r).square() + graph.one()).sqrt(),
+        _ => random_subexpression(r).call(Function::Tanh),
     }
 }
 

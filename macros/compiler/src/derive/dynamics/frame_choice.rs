@@ -8,9 +8,9 @@ use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 use std::rc::Rc;
 
-/// Tolerance of the first frame comparison of a mechanism with many operations: with the first distribution
-/// of its masses, frames that are larger by more than one part in this number are excluded. The first
-/// distribution is sufficient for this decision.
+/// Inverse tolerance of the first comparison of frames for a mechanism with many operations: frames that are
+/// larger by more than one part in this number are excluded. One distribution of the masses suffices for this
+/// decision.
 const SIMILAR_AT_FIRST: usize = 24;
 
 /// A frame choice: the variants of the model with these frames, their mass matrices and inverse dynamics.
@@ -54,16 +54,18 @@ impl<'g> FrameChoice<'g> {
     /// Returns false for frames that cost more according to the first distribution of the masses. For a
     /// mechanism with few operations it returns true, since all distributions are compared later.
     fn is_similar(&self, variants: &Variants<'g>) -> bool {
-        let first = |masses: &[Candidate<'_>], recursions: &[Candidate<'_>]| {
+        let size_of_first_candidates = |masses: &[Candidate<'_>], recursions: &[Candidate<'_>]| {
             Some(masses.first()?.size + recursions.first()?.size)
         };
-        let own = first(&self.masses, &self.recursions).filter(|own| *own > COMPARED_OPERATIONS);
+        let own =
+            size_of_first_candidates(&self.masses, &self.recursions).filter(|own| *own > COMPARED_OPERATIONS);
         own.is_none_or(|own| {
             let [masses, recursions] = [
                 variants.mass_matrices().take(1).collect(),
                 variants.recursions(true).take(1).collect::<Vec<_>>(),
             ];
-            first(&masses, &recursions).is_none_or(|other| other <= own + own / SIMILAR_AT_FIRST)
+            size_of_first_candidates(&masses, &recursions)
+                .is_none_or(|other| other <= own + own / SIMILAR_AT_FIRST)
         })
     }
 
@@ -75,7 +77,7 @@ impl<'g> FrameChoice<'g> {
     }
 }
 
-/// Returns the size of the smallest outputs.
+/// Returns the size of the candidate with the smallest outputs.
 pub fn smallest(all: &[Candidate<'_>]) -> Option<usize> {
     all.iter().map(|list| list.size).min()
 }

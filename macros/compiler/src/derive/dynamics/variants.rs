@@ -33,7 +33,7 @@ pub struct Variants<'g> {
 pub struct Bias {
     pub program: Program,
     variant: usize,
-    /// Program with identical limbs in SIMD lanes, and its variant.
+    /// Program with identical limbs in SIMD lanes, with the index of its variant; `None` without such limbs.
     pub simd: Option<(usize, Program)>,
 }
 
@@ -56,8 +56,11 @@ impl<'g> Variants<'g> {
             _ => Vec::new(),
         };
         let in_lanes = |variant: &Variant<'g>| {
-            let forces = || passive_forces(&variant.model, true);
-            Some((Limbs::new(&variant.model, &joints, &groups, forces)?, variant.for_inverse_dynamics))
+            let passive_forces_of_variant = || passive_forces(&variant.model, true);
+            Some((
+                Limbs::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
+                variant.for_inverse_dynamics,
+            ))
         };
         let limbs = all.iter().filter_map(in_lanes).collect();
         Variants { all, joints, specialisation, speeds, limbs, bias: Bias::default() }
@@ -70,17 +73,18 @@ impl<'g> Variants<'g> {
         self.bias = Bias { program, variant, simd };
     }
 
-    /// Returns the variants that serve all functions.
+    /// Returns the variants of the model that serve all functions.
     pub fn plain(&self) -> impl Iterator<Item = &Model<'g>> {
         self.all.iter().filter(|variant| !variant.for_inverse_dynamics).map(|variant| &variant.model)
     }
 
-    /// Returns the variants with identical limbs in SIMD lanes, except those for inverse dynamics only.
+    /// Returns the variants with identical limbs in SIMD lanes, except variants that serve inverse dynamics
+    /// only.
     pub fn plain_limbs(&self) -> impl Iterator<Item = &Limbs<'g>> {
         self.limbs.iter().filter(|(_, for_inverse_dynamics)| !for_inverse_dynamics).map(|(limbs, _)| limbs)
     }
 
-    /// Returns the outputs of a function, one candidate for each variant.
+    /// Returns the outputs of a function for each variant of the model.
     pub fn candidates(
         &self,
         role: Role,
@@ -137,7 +141,7 @@ impl<'g> Variants<'g> {
         self.limbs.iter().map(move |(limbs, _)| limb_lanes::inverse_dynamics(limbs, accelerations))
     }
 
-    /// Returns forward dynamics by articulated bodies.
+    /// Returns the outputs of forward dynamics by the articulated-body algorithm.
     pub fn articulated(&self) -> Vec<Candidate<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
@@ -162,17 +166,17 @@ impl<'g> Variants<'g> {
     /// Returns forward dynamics by factorisation of the mass matrix.
     pub fn factorised(&self) -> Vec<Candidate<'g>> {
         let r = self.unbalanced();
-        let solve = |model: &Model<'g>| {
+        let solve_for_accelerations = |model: &Model<'g>| {
             let mass = crba::mass_matrix(model, &self.joints);
             match model.acceleration_forces.is_empty() {
                 true => ldl::solve(mass, r.clone(), &self.joints),
                 false => Factor::new(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
             }
         };
-        self.candidates(Role::Accelerations(0), solve).collect()
+        self.candidates(Role::Accelerations(0), solve_for_accelerations).collect()
     }
 
-    /// Returns `τ − h`.
+    /// Returns the forces that accelerate the mechanism, `τ − h`.
     fn unbalanced(&self) -> Vec<Expr<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();

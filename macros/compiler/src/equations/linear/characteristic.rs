@@ -17,14 +17,14 @@ const VELOCITIES: usize = 3;
 const ROWS: usize = 6;
 /// Maximum degree: the largest power of the root that a monomial can have.
 const DEGREE: usize = 7;
-/// Maximum number of terms of all coefficients.
+/// Maximum number of terms of all coefficients of the characteristic polynomial.
 const TERMS: usize = 120;
 
 /// A characteristic polynomial, with the properties of its parameters that the stability analysis uses.
 pub struct Characteristic {
     /// Ring of all polynomials.
     pub ring: Ring,
-    /// Coefficients in ascending powers of the root. The last one is not zero.
+    /// Coefficients in ascending powers of the root; the last coefficient is not zero.
     pub coefficients: Vec<Polynomial>,
     /// True if the forces derive from a potential. The squares of the roots are then real.
     pub conservative: bool,
@@ -48,10 +48,11 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
     let mut matrix: Vec<Vec<OfRoot>> = Vec::new();
     for k in 0..rows {
         let deviations = 0..rows - nc;
-        let entry = |normal: &mut Normal<'g>, c: usize| -> Option<OfRoot> {
+        let entry_polynomials = |normal: &mut Normal<'g>, c: usize| -> Option<OfRoot> {
             all.orders.iter().map(|order| normal.normal_form(order[k][c])).collect()
         };
-        let mut row: Vec<OfRoot> = deviations.map(|c| entry(&mut normal, c)).collect::<Option<_>>()?;
+        let mut row: Vec<OfRoot> =
+            deviations.map(|c| entry_polynomials(&mut normal, c)).collect::<Option<_>>()?;
         for multiplier in &all.multipliers[k] {
             row.push(vec![normal.normal_form(-*multiplier)?]);
         }

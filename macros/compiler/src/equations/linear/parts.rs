@@ -1,4 +1,4 @@
-//! Symbols, rows and coefficients of linear equations.
+//! Construction of the symbols, rows and coefficients of linear equations.
 
 use crate::algebra::polynomial::Rank;
 use crate::expr::{Expr, Symbol};

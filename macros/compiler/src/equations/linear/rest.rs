@@ -44,15 +44,15 @@ impl<'g> Rest<'g> {
         }
     }
 
-    /// Evaluates expressions at rest.
+    /// Evaluates expressions at the equilibrium.
     pub fn evaluate(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let zero = |e: &Expr<'g>| Some(e.zero());
+        let zero_like_expression = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
         let moved = replace_exactly(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.configuration.get(k).copied(),
             Quantity::Input(k) => self.inputs.get(k).copied(),
             Quantity::Given(Supplied::Multiplier, k) => self.multipliers.get(k).copied(),
-            Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero),
+            Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero_like_expression),
             _ => None,
         });
         replace_exactly(&moved, &|s| match Quantity::from_symbol(s) {
@@ -83,7 +83,8 @@ impl<'g> Rest<'g> {
 /// Text of an error, and advice on how to correct it.
 type Refusal = (String, &'static str);
 
-/// Checks an equilibrium and determines its multipliers. `None` with an error in `cx` if it is not one.
+/// Checks an equilibrium and determines its multipliers. Returns `None` with an error in `cx` if forces do
+/// not balance.
 pub fn check<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
@@ -213,8 +214,8 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
     if vanishes(&normal.ring, &p) {
         return Ok(());
     }
-    let name = |symbol| super::super::written::name(model, &[], symbol).0;
-    let text = Writer::new(&normal.ring, &name).polynomial(&p);
+    let symbol_name = |symbol| super::super::written::name(model, &[], symbol).0;
+    let text = Writer::new(&normal.ring, &symbol_name).polynomial(&p);
     Err(match text.chars().count() > MAX_FORCE_CHARACTERS {
         true => format!("`{} …`", text.chars().take(MAX_FORCE_CHARACTERS).collect::<String>().trim_end()),
         false => format!("`{text}`"),
@@ -224,7 +225,7 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
 /// Whether a polynomial is zero for all parameters: it has no terms, or its terms cancel numerically.
 pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
     let parts: Vec<Polynomial> = p.terms.iter().map(|t| Polynomial { terms: vec![*t] }).collect();
-    let relative = |seed: u64| {
+    let relative_residual = |seed: u64| {
         let values: Vec<f64> =
             parts.iter().map(|part| ring.evaluate(part, &|s| parameter(s, seed))).collect();
         let size: f64 = values.iter().map(|value| value.abs()).sum();
@@ -233,7 +234,7 @@ pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
     if parts.is_empty() {
         return true;
     }
-    let found = trials(relative);
+    let found = trials(relative_residual);
     found.len() >= ENOUGH && found.iter().all(|part| part.abs() < ROUNDING)
 }
 
@@ -253,19 +254,19 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
     for id in needed(graph, e) {
-        let expr = |id| graph.expr(id);
+        let expression_of_id = |id| graph.expr(id);
         match graph.node(id) {
             Node::Call(f @ (Function::Abs | Function::Signum | Function::Sqrt), a) => {
-                suspects.push((f.name(), expr(a)));
+                suspects.push((f.name(), expression_of_id(a)));
             }
             Node::Extreme(f, a, b) => {
                 let name = if f == Extreme::Max { "max" } else { "min" };
-                suspects.push((name, expr(a) - expr(b)));
+                suspects.push((name, expression_of_id(a) - expression_of_id(b)));
             }
             _ => {}
         }
     }
-    let moves = |e: &Expr<'_>| {
+    let depends_on_motion = |e: &Expr<'_>| {
         let symbols = crate::kinematics::symbols_in(&[*e]);
         symbols.into_iter().any(|s| {
             matches!(
@@ -274,15 +275,15 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
             )
         })
     };
-    suspects.retain(|(_, argument)| moves(argument));
+    suspects.retain(|(_, argument)| depends_on_motion(argument));
     let arguments: Vec<Expr<'g>> = suspects.iter().map(|(_, argument)| *argument).collect();
     let values = rest.evaluate(&arguments);
-    let touches = |value: &Expr<'g>| {
+    let vanishes_numerically = |value: &Expr<'g>| {
         let tape = Tape::new(&[*value]);
         let found = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
         found.len() >= ENOUGH && found.iter().all(|value| value.abs() < ROUNDING)
     };
-    suspects.iter().zip(&values).find(|(_, value)| touches(value)).map(|((name, _), _)| *name)
+    suspects.iter().zip(&values).find(|(_, value)| vanishes_numerically(value)).map(|((name, _), _)| *name)
 }
 
 /// Returns the multipliers, and the residuals of the force balance with them. `None` if constraints are
@@ -309,9 +310,9 @@ fn solved<'g>(
     let mut left: Vec<usize> = (0..rows.len()).collect();
     let mut pivots = Vec::new();
     for column in 0..count {
-        let size = |row: usize| size(rows[row][column]);
-        let best = left.iter().copied().max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
-        if size(best) < ROUNDING {
+        let pivot_magnitude = |row: usize| size(rows[row][column]);
+        let best = left.iter().copied().max_by(|a, b| pivot_magnitude(*a).total_cmp(&pivot_magnitude(*b)))?;
+        if pivot_magnitude(best) < ROUNDING {
             return None;
         }
         left.retain(|row| *row != best);
@@ -339,19 +340,19 @@ fn size(e: Expr<'_>) -> f64 {
         .fold(f64::MAX, f64::min)
 }
 
-/// Returns a reason why coefficients are not finite, `None` if they are.
+/// Returns the reason why coefficients are not finite; `None` if they are finite.
 pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
     /// Larger values result from a division by [`TINY`] alone.
     const HUGE: f64 = 1e-6 / TINY;
     let entries: Vec<Expr<'_>> =
         all.orders.iter().chain([&all.inputs, &all.multipliers]).flatten().flatten().copied().collect();
     let tape = Tape::new(&entries);
-    let largest = |seed: u64| {
+    let largest_magnitude = |seed: u64| {
         let values = tape.values(&|s| parameter(s, seed));
         let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
         (values.iter().all(|value| value.is_finite()) && largest < HUGE).then_some(largest)
     };
-    let finite = trials(largest).len() >= ENOUGH;
+    let finite = trials(largest_magnitude).len() >= ENOUGH;
     (!finite).then_some(
         "a distance or an angle from which they are computed is singular there: declare the equilibrium \
          elsewhere, or write the force differently",

@@ -20,7 +20,7 @@ pub struct Stability {
     pub coefficients: Vec<Polynomial>,
     /// Parameters that the polynomial was divided by, which are assumed to be positive.
     pub divided: Vec<Symbol>,
-    /// Multiplicity of the root zero.
+    /// Multiplicity of the root zero of the characteristic polynomial.
     pub zeros: usize,
     /// The frequency, rad/s, if all nonzero roots belong to one undamped oscillation.
     pub frequency: Option<Polynomial>,
@@ -37,9 +37,9 @@ pub enum Verdict {
     Oscillation(Vec<Polynomial>),
     /// Not asymptotically stable for any values of the parameters.
     NotAsymptotic,
-    /// Unstable for all values of the parameters.
+    /// The equilibrium is unstable for all values of the parameters.
     Unstable,
-    /// There are no nonzero roots.
+    /// The characteristic polynomial has no nonzero roots.
     Nothing,
     /// The stability conditions are too long to be printed.
     Long,
@@ -103,7 +103,7 @@ fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol
     odd
 }
 
-/// Returns the frequency `sqrt(last / first)`.
+/// Returns the frequency of an undamped oscillation, `sqrt(last / first)`.
 fn frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
     let inverse = inverse(ring, first)?;
     let square = ring.times(last, &inverse)?;
@@ -137,10 +137,12 @@ fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verd
 fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynomial> {
     let n = rest.len() - 1;
     // Row i, column j, counted from one: the coefficient of s^(n − (2 i − j)).
-    let entry = |i: usize, j: usize| (2 * i).checked_sub(j).and_then(|k| n.checked_sub(k));
+    let coefficient_index = |i: usize, j: usize| (2 * i).checked_sub(j).and_then(|k| n.checked_sub(k));
     let rows: Vec<Vec<Polynomial>> = (1..=order)
         .map(|i| {
-            (1..=order).map(|j| entry(i, j).map_or(Polynomial::default(), |k| rest[k].clone())).collect()
+            (1..=order)
+                .map(|j| coefficient_index(i, j).map_or(Polynomial::default(), |k| rest[k].clone()))
+                .collect()
         })
         .collect();
     minor(&rows, ring)
@@ -218,8 +220,8 @@ fn simplify_conditions(
             kept.push(condition);
         }
     }
-    let opposite = |p: &Polynomial| kept.contains(&p.scaled(-1.0));
-    zero |= kept.iter().any(opposite);
+    let has_opposite_condition = |p: &Polynomial| kept.contains(&p.scaled(-1.0));
+    zero |= kept.iter().any(has_opposite_condition);
     match (unstable, zero) {
         (true, _) => Verdict::Unstable,
         (_, true) => Verdict::NotAsymptotic,
@@ -230,8 +232,10 @@ fn simplify_conditions(
 
 /// Returns true if all terms of a polynomial are positive.
 fn is_positive(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
-    let good = |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
-    !p.terms.is_empty() && p.terms.iter().all(|t| t.coefficient > 0.0 && t.monomial.factors().all(good))
+    let is_positive_power =
+        |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
+    !p.terms.is_empty()
+        && p.terms.iter().all(|t| t.coefficient > 0.0 && t.monomial.factors().all(is_positive_power))
 }
 
 fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
@@ -270,12 +274,12 @@ fn common(p: &Polynomial) -> Option<Monomial> {
 
 /// Divides a polynomial by a monomial.
 fn quotient(p: &Polynomial, divisor: Monomial) -> Polynomial {
-    let divided = |t: &Term| Term { monomial: t.monomial.quotient(divisor), ..*t };
-    Polynomial::sum(p.terms.iter().map(divided).collect())
+    let divide_term = |t: &Term| Term { monomial: t.monomial.quotient(divisor), ..*t };
+    Polynomial::sum(p.terms.iter().map(divide_term).collect())
 }
 
-/// Returns the minimum magnitude of the coefficients if all of them are integer multiples of it, otherwise
-/// one.
+/// Returns the smallest magnitude of the coefficients if all coefficients are integer multiples of it,
+/// otherwise one.
 fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
     let sizes: Vec<f64> = all.into_iter().flat_map(|p| &p.terms).map(|t| t.coefficient.abs()).collect();
     let least = sizes.iter().copied().fold(f64::MAX, f64::min);
@@ -285,13 +289,13 @@ fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
 
 /// Multiplies a polynomial by a number, and rounds coefficients that are integers up to rounding error.
 fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
-    let scale = |t: &Term| {
+    let scale_and_round_term = |t: &Term| {
         let coefficient = t.coefficient * factor;
         let rounded = coefficient.round();
         let near = rounded != 0.0 && (coefficient - rounded).abs() < 1e-11 * rounded.abs();
         Term { coefficient: if near { rounded } else { coefficient }, ..*t }
     };
-    Polynomial { terms: p.terms.iter().map(scale).collect() }
+    Polynomial { terms: p.terms.iter().map(scale_and_round_term).collect() }
 }
 
 /// Multiplies all polynomials by the even powers of atoms that occur in their denominators.

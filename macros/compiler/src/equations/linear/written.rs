@@ -32,29 +32,35 @@ struct Words<'a, 'g> {
 
 impl<'a, 'g> Words<'a, 'g> {
     fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> Words<'a, 'g> {
-        let free = |choices: &[&str]| {
-            let is_used = |word: &str| {
+        let first_unused_word = |choices: &[&str]| {
+            let is_used_as_name = |word: &str| {
                 let velocities = model.velocities.iter().map(|(name, _)| name);
                 let inputs = model.inputs.iter().map(|(name, _)| name);
                 let mut all =
                     model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
                 all.any(|name| name == word)
             };
-            let found = choices.iter().find(|word| !is_used(word));
+            let found = choices.iter().find(|word| !is_used_as_name(word));
             found.or(choices.last()).map_or_else(String::new, ToString::to_string)
         };
-        Words { model, at, deviations: deviations(model), root: free(&ROOTS), frequency: free(&FREQUENCIES) }
+        Words {
+            model,
+            at,
+            deviations: deviations(model),
+            root: first_unused_word(&ROOTS),
+            frequency: first_unused_word(&FREQUENCIES),
+        }
     }
 
     /// Returns the name of a symbol, and how often the quantity of this name is differentiated.
     fn name(&self, symbol: Symbol) -> (String, u8) {
         let nv = self.deviations.len();
-        let state = |k: usize| {
+        let state_name = |k: usize| {
             let state =
                 self.at.states.get(k - nv).and_then(|state| self.model.parameters.get(state.parameter));
             state.cloned().unwrap_or_default()
         };
-        let deviation_name = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
+        let deviation_name = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state_name(k));
         match Quantity::from_symbol(symbol) {
             Quantity::Deviation(k) => (deviation_name(k), 0),
             Quantity::Velocity(k) => (deviation_name(k), 1),
@@ -70,7 +76,8 @@ impl<'a, 'g> Words<'a, 'g> {
 /// for a small displacement and a small rotation in body axes.
 fn deviations(model: &Model<'_>) -> Vec<String> {
     let mut names: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
-    let joint = |name: &str| name.rsplit_once('.').map_or(String::new(), |(joint, _)| format!("{joint}."));
+    let joint_prefix =
+        |name: &str| name.rsplit_once('.').map_or(String::new(), |(joint, _)| format!("{joint}."));
     for chart in &model.charts {
         let (first, members): (usize, &[&str]) = match chart {
             Chart::Plain(q, v) => {
@@ -80,7 +87,7 @@ fn deviations(model: &Model<'_>) -> Vec<String> {
             Chart::Ball(_, v) => (v.0, &["rx", "ry", "rz"]),
             Chart::Free(_, v) => (v.0, &["dx", "dy", "dz", "rx", "ry", "rz"]),
         };
-        let joint = joint(&names[first]);
+        let joint = joint_prefix(&names[first]);
         for (k, member) in members.iter().enumerate() {
             names[first + k] = format!("{joint}{member}");
         }
@@ -107,7 +114,7 @@ impl Lines {
         let stability = linear.stability.as_ref();
         let of =
             |stability: &Stability| Some(Writer::styled(&stability.ring, style).linear(&in_one(stability)?));
-        let conditions = |stability: &Stability| match &stability.verdict {
+        let format_conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
                 let writer = Writer::styled(&stability.ring, style);
                 all.iter().map(|condition| writer.polynomial(condition)).collect()
@@ -123,7 +130,7 @@ impl Lines {
             values: values.map(|(what, p)| (style.symbol(what.symbol(), 1), writer.polynomial(p))).collect(),
             polynomial: stability.and_then(of),
             frequency,
-            conditions: stability.map(conditions).unwrap_or_default(),
+            conditions: stability.map(format_conditions).unwrap_or_default(),
         }
     }
 }
@@ -148,41 +155,41 @@ fn in_one(stability: &Stability) -> Option<Polynomial> {
 /// Formats linear equations as plain text, LaTeX and MathML.
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
-    let marked = |symbol| primed(words.name(symbol));
-    let plain = plain(&words, linear, &Lines::new(linear, Plain { name: &marked }));
+    let primed_name = |symbol| primed(words.name(symbol));
+    let plain = plain(&words, linear, &Lines::new(linear, Plain { name: &primed_name }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
     let names = names_with(model, &others);
-    let dotted = |symbol| {
+    let name_with_dots = |symbol| {
         let (name, dots) = words.name(symbol);
         (names.get(&name), dots)
     };
-    let lines = Lines::new(linear, Latex { name: &dotted });
-    let spelled = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
-    let latex = aligned(&equations(&lines, &spelled(&words.frequency)));
+    let lines = Lines::new(linear, Latex { name: &name_with_dots });
+    let spell_in_latex = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
+    let latex = aligned(&equations(&lines, &spell_in_latex(&words.frequency)));
     let frequency = crate::equations::print::mathml::spelled(&names.get(&words.frequency), 0, 1);
-    let mathml = page(&equations(&Lines::new(linear, MathMl { name: &dotted }), &frequency));
+    let mathml = page(&equations(&Lines::new(linear, MathMl { name: &name_with_dots }), &frequency));
     Written { plain, latex, mathml }
 }
 
 fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
-    let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let wrapped_line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {
         [] => format!("{}: all coordinates and inputs at zero.", words.at.name),
         all => format!("{}: {}; other values are zero.", words.at.name, all.join(", ")),
     };
     let mut out = filled(&header) + "\n\n";
-    out.extend(lines.equations.iter().map(|(motion, force)| line(&format!("{motion} = {force}"))));
+    out.extend(lines.equations.iter().map(|(motion, force)| wrapped_line(&format!("{motion} = {force}"))));
     out.push('\n');
     if let (Some(stability), Some(polynomial)) = (&linear.stability, &lines.polynomial) {
         out += &(filled(&about_roots(words, stability)) + "\n");
-        out += &line(&format!("    {polynomial} = 0"));
+        out += &wrapped_line(&format!("    {polynomial} = 0"));
         if let Some(frequency) = &lines.frequency {
             out += &format!("Natural frequency, rad/s:\n    {} = {frequency}\n", words.frequency);
         }
         out += &(filled(verdict(stability)) + "\n");
-        out.extend(lines.conditions.iter().map(|condition| line(&format!("    {condition} > 0"))));
+        out.extend(lines.conditions.iter().map(|condition| wrapped_line(&format!("    {condition} > 0"))));
         if stability.zeros > 0 {
             out += &(filled(&about_zeros(words, stability)) + "\n");
         }
@@ -207,7 +214,7 @@ fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
     }
 }
 
-/// Returns the sentence before the stability conditions.
+/// Returns the sentence that introduces the stability conditions, or states the result.
 fn verdict(stability: &Stability) -> &'static str {
     match &stability.verdict {
         Verdict::Asymptotic(all) if all.is_empty() => "Asymptotically stable: all deviations die away.",

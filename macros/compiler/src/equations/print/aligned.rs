@@ -6,7 +6,7 @@ use std::str::Chars;
 
 /// Width of a line, in tenths of a character: about the width of a page.
 const ROOM: usize = 1000;
-/// Sides of equations up to this width get no line of their own.
+/// Maximum width of an equation's side that gets no line of its own.
 const SHORT: usize = 240;
 /// Start of a continuation line.
 const INDENT: &str = "\\quad {} ";
@@ -18,20 +18,22 @@ const INDENTED: usize = 30;
 /// that of another ends.
 pub fn aligned(lines: &[String]) -> String {
     // At the start of a column a minus sign would be typeset as a binary operator.
-    let first = |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
-    let broken = |line: &String| {
+    let protect_leading_minus =
+        |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
+    let break_line = |line: &String| {
         let parts = broken(line);
         let parts = parts.iter().enumerate();
-        let parts = parts.map(|(k, part)| if k == 0 { first(part) } else { format!("{INDENT}{part}") });
+        let parts = parts
+            .map(|(k, part)| if k == 0 { protect_leading_minus(part) } else { format!("{INDENT}{part}") });
         parts.map(|part| format!("& {part}")).collect::<Vec<_>>().join(" \\\\\n")
     };
-    let all: Vec<String> = lines.iter().map(broken).collect();
+    let all: Vec<String> = lines.iter().map(break_line).collect();
     format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}\n", all.join(" \\\\\n"))
 }
 
 /// A part of a line that begins at a sign.
 struct Part {
-    /// End of the part in the line.
+    /// End of the part, as an index of characters in the line.
     end: usize,
     /// Nesting depth of parentheses at its first sign.
     depth: usize,

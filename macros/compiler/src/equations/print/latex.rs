@@ -1,4 +1,4 @@
-//! LaTeX output for math mode with `amsmath`.
+//! Printing of equations for the math mode of LaTeX with `amsmath`.
 
 use super::names::{Glyph, Name};
 use super::style::{Argument, Factor, Number, Style};
@@ -11,7 +11,7 @@ pub struct Latex<'a> {
     pub name: &'a dyn Fn(Symbol) -> (Name, u8),
 }
 
-/// Space between factors.
+/// Space that is printed between factors.
 const SPACE: &str = "\\,";
 
 impl Style for Latex<'_> {
@@ -25,11 +25,11 @@ impl Style for Latex<'_> {
             Number::Fraction(p, q) if *q != 1 => format!("\\tfrac{{{p}}}{{{q}}}"),
             Number::Pi(p, q, power) => {
                 let pi = if power.abs() == 2 { "\\pi^{2}" } else { "\\pi" };
-                let times = |k: &u32| if *k == 1 { String::new() } else { k.to_string() };
+                let coefficient_or_empty = |k: &u32| if *k == 1 { String::new() } else { k.to_string() };
                 match (*power > 0, q) {
-                    (true, 1) => format!("{}{pi}", times(p)),
-                    (true, q) => format!("\\tfrac{{{}{pi}}}{{{q}}}", times(p)),
-                    (false, q) => format!("\\tfrac{{{p}}}{{{}{pi}}}", times(q)),
+                    (true, 1) => format!("{}{pi}", coefficient_or_empty(p)),
+                    (true, q) => format!("\\tfrac{{{}{pi}}}{{{q}}}", coefficient_or_empty(p)),
+                    (false, q) => format!("\\tfrac{{{p}}}{{{}{pi}}}", coefficient_or_empty(q)),
                 }
             }
             Number::Root(p, q, root) => {
@@ -115,10 +115,10 @@ fn factor(factor: &Factor) -> String {
 /// Puts a text in parentheses of matching height. `\left` is only used for the tallest texts, since it adds
 /// space around the parentheses.
 fn fenced(text: &str) -> String {
-    let has = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
-    if has(&["\\frac", "\\left", "\\sqrt", "\\bigl"]) {
+    let contains_any = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
+    if contains_any(&["\\frac", "\\left", "\\sqrt", "\\bigl"]) {
         format!("\\left({text}\\right)")
-    } else if has(&["\\tfrac"]) {
+    } else if contains_any(&["\\tfrac"]) {
         format!("\\bigl({text}\\bigr)")
     } else {
         format!("({text})")
@@ -129,7 +129,7 @@ fn exponent(power: u8) -> String {
     if power == 1 { String::new() } else { format!("^{{{power}}}") }
 }
 
-/// Formats a name with dots above it.
+/// Formats a name with dots above it, one for each time derivative.
 pub fn spelled(name: &Name, dots: u8) -> String {
     let base = glyph(&name.base);
     let base = match dots {

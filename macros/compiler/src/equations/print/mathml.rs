@@ -48,12 +48,12 @@ fn pieces(line: &str, breaks: &[char]) -> Vec<String> {
     line.split(*outer).flat_map(|piece| pieces(piece, inner)).collect()
 }
 
-/// Removes the marks of possible line breaks.
+/// Removes the marks of possible line breaks from a text.
 fn whole(text: &str) -> String {
     text.replace(BREAKS, "")
 }
 
-/// Estimates the number of visible characters.
+/// Estimates the number of visible characters of a formula.
 fn width(text: &str) -> usize {
     let (mut inside, mut count) = (false, 0);
     for c in text.chars() {
@@ -67,7 +67,7 @@ fn width(text: &str) -> usize {
     count
 }
 
-/// Wraps a text in a single element.
+/// Wraps a formula in a single MathML element.
 fn row(text: &str) -> String {
     format!("<mrow>{}</mrow>", whole(text))
 }
@@ -98,23 +98,26 @@ impl Style for MathMl<'_> {
     }
 
     fn number(&self, number: &Number) -> String {
-        let digits = |n: &dyn std::fmt::Display| format!("<mn>{n}</mn>");
-        let times = |k: &u32, of: String| if *k == 1 { of } else { format!("<mrow><mn>{k}</mn>{of}</mrow>") };
-        let fraction = |above: String, q: &u32| match q {
+        let number_element = |n: &dyn std::fmt::Display| format!("<mn>{n}</mn>");
+        let multiple_of_term =
+            |k: &u32, of: String| if *k == 1 { of } else { format!("<mrow><mn>{k}</mn>{of}</mrow>") };
+        let fraction_element = |above: String, q: &u32| match q {
             1 => above,
             q => format!("<mfrac>{above}<mn>{q}</mn></mfrac>"),
         };
         match number {
-            Number::Fraction(p, q) => fraction(digits(p), q),
+            Number::Fraction(p, q) => fraction_element(number_element(p), q),
             Number::Pi(p, q, power) => {
                 let pi = to_power("<mi>π</mi>", power.unsigned_abs());
                 match *power > 0 {
-                    true => fraction(times(p, pi), q),
-                    false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", times(q, pi)),
+                    true => fraction_element(multiple_of_term(p, pi), q),
+                    false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", multiple_of_term(q, pi)),
                 }
             }
-            Number::Root(p, q, root) => fraction(times(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q),
-            Number::Decimal(text) => digits(text),
+            Number::Root(p, q, root) => {
+                fraction_element(multiple_of_term(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q)
+            }
+            Number::Decimal(text) => number_element(text),
             Number::Scientific(text, power) => {
                 let sign = if power.starts_with('-') { "<mo>−</mo>" } else { "" };
                 let power = power.trim_start_matches('-');
@@ -234,14 +237,14 @@ mod tests {
         let term = "<mi>alpha</mi><mi>beta</mi>";
         let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));
-        let parts = |text: &str| pieces(text, &BREAKS);
-        assert_eq!(parts(&sum).len(), 8);
+        let break_into_pieces = |text: &str| pieces(text, &BREAKS);
+        assert_eq!(break_into_pieces(&sum).len(), 8);
         let product = format!("<mi>m</mi>{}", fenced(&sum));
-        assert_eq!(parts(&product).len(), 8);
-        assert!(parts(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
+        assert_eq!(break_into_pieces(&product).len(), 8);
+        assert!(break_into_pieces(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
         // Short parentheses remain in one piece, and so do fractions.
         let short = [term; 2].join(style.sign(false, true));
-        assert_eq!(parts(&format!("{}{}", fenced(&short), fraction(&sum, &sum))).len(), 1);
+        assert_eq!(break_into_pieces(&format!("{}{}", fenced(&short), fraction(&sum, &sum))).len(), 1);
         assert!(!page(&[sum]).contains(BREAKS));
     }
 }

@@ -1,7 +1,7 @@
 //! Splitting of names for typesetting: `theta2` becomes θ with an index, `k_spring` becomes k with a word as
 //! subscript.
 
-/// A name, split into base and subscripts.
+/// Name of a symbol, split into base and subscripts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// Part of the name that is typeset on the line.
@@ -10,12 +10,12 @@ pub struct Name {
     pub indices: Vec<Glyph>,
 }
 
-/// An indivisible part of a name.
+/// Indivisible part of a name.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Glyph {
     Letter(char),
-    /// English name and letter.
+    /// Greek letter: its English name and its character.
     Greek(&'static str, char),
     Digits(String),
     Word(String),
@@ -90,14 +90,14 @@ impl Name {
         let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
         let (stem, digits) = numbered(head);
         let base = Glyph::from_word(stem);
-        let index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
+        let digits_of_index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
         if let Glyph::Letter(_) | Glyph::Greek(..) = base {
-            let indices = index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
+            let indices = digits_of_index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
             return Name { base, indices };
         }
         let (stem, digits) = numbered(text);
         let stem = stem.trim_end_matches('_');
-        Name { base: Glyph::Word(stem.to_string()), indices: index(digits).into_iter().collect() }
+        Name { base: Glyph::Word(stem.to_string()), indices: digits_of_index(digits).into_iter().collect() }
     }
 
     /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities

@@ -8,20 +8,20 @@ use std::fmt;
 /// A text in all output formats. Empty if there are no equations.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
-    /// Text without markup.
+    /// Equations as text without markup.
     pub plain: String,
-    /// Text for the math mode of LaTeX.
+    /// Equations for the math mode of LaTeX.
     pub latex: String,
-    /// HTML with MathML, in one line.
+    /// Equations as HTML with MathML, in one line.
     pub mathml: String,
 }
 
-/// An output format of polynomials.
+/// Output format of polynomials.
 pub trait Style {
     /// Formats a symbol raised to a power.
     fn symbol(&self, symbol: Symbol, power: u8) -> String;
 
-    /// Formats a number without sign.
+    /// Formats the absolute value of a number.
     fn number(&self, number: &Number) -> String {
         number.to_string()
     }
@@ -47,15 +47,15 @@ pub trait Style {
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String;
 }
 
-/// A formatted factor of a product.
+/// Formatted factor of a product.
 pub enum Factor {
-    /// A factor that needs no parentheses.
+    /// Factor that needs no parentheses.
     Single(String),
     /// A sum that needs parentheses, still without them.
     Sum(String),
 }
 
-/// A formatted argument of a function.
+/// Formatted argument of a function.
 pub struct Argument {
     /// Text of the argument.
     pub text: String,
@@ -76,7 +76,7 @@ pub enum Number {
     Root(u32, u32, u32),
     /// Decimal digits, with or without a decimal point.
     Decimal(String),
-    /// Digits and the exponent of ten.
+    /// Decimal number: digits, and the exponent of ten.
     Scientific(String, String),
 }
 
@@ -192,13 +192,13 @@ impl Style for Plain<'_> {
     }
 
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
-        let text = |factor: &Factor| match factor {
+        let text_of_factor = |factor: &Factor| match factor {
             Factor::Single(text) => text.clone(),
             Factor::Sum(text) => format!("({text})"),
         };
         let number = number.map(|n| n.to_string());
-        let above: Vec<String> = number.into_iter().chain(factors.iter().map(text)).collect();
-        let below: Vec<String> = divisors.iter().map(text).collect();
+        let above: Vec<String> = number.into_iter().chain(factors.iter().map(text_of_factor)).collect();
+        let below: Vec<String> = divisors.iter().map(text_of_factor).collect();
         match below.as_slice() {
             [] => above.join(" "),
             [one] if !one.contains(' ') || one.ends_with(')') => format!("{}/{one}", above.join(" ")),

@@ -1,4 +1,4 @@
-//! Tests of numbers, grouping and line breaks.
+//! Tests of the printing of numbers, of grouping and of line breaks.
 
 use super::*;
 use crate::algebra::normal::Normal;
@@ -136,11 +136,11 @@ fn latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
     let mut normal = Normal::new(&graph, rank);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
-    let name = |s: Symbol| {
+    let name_with_primes = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
         (Name::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
-    Writer::styled(&normal.ring, Latex { name: &name }).polynomial(&p)
+    Writer::styled(&normal.ring, Latex { name: &name_with_primes }).polynomial(&p)
 }
 
 #[test]
@@ -206,10 +206,10 @@ fn latex_names() {
 #[test]
 fn names_are_kept_apart() {
     let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
-    let spelled = |text| super::latex::spelled(&names.get(text), 0);
-    assert_eq!(spelled("m1"), r"\mathrm{m1}");
-    assert_eq!(spelled("m_1"), r"\mathrm{m\_1}");
-    assert_eq!(spelled("table.x"), r"\mathrm{table.x}");
-    assert_eq!(spelled("x_table"), r"\mathrm{x\_table}");
-    assert_eq!(spelled("m2"), "m_{2}");
+    let spell_in_latex = |text| super::latex::spelled(&names.get(text), 0);
+    assert_eq!(spell_in_latex("m1"), r"\mathrm{m1}");
+    assert_eq!(spell_in_latex("m_1"), r"\mathrm{m\_1}");
+    assert_eq!(spell_in_latex("table.x"), r"\mathrm{table.x}");
+    assert_eq!(spell_in_latex("x_table"), r"\mathrm{x\_table}");
+    assert_eq!(spell_in_latex("m2"), "m_{2}");
 }

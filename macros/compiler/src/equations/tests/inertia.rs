@@ -11,8 +11,8 @@ const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: 
     #[acts(on = body, about = body.x)] wheel: Torque,
     #[acts(between = (ground, body), mu = mu)] pull: Gravity }";
 
-/// The left sides are those of a free body, which other tests compare with both derivations. The right sides
-/// are symbols.
+/// Checks that the left sides are those of a free body, which other tests compare with two derivations, and
+/// that the right sides are symbols.
 #[test]
 fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
     let text = with_model("0 * z", SATELLITE, |model| {

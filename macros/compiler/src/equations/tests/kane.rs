@@ -12,7 +12,7 @@ const SLEIGH: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
     #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
 
-/// Chaplygin's sleigh in generalized speeds along and across its blade.
+/// Declaration of Chaplygin's sleigh in generalized speeds along and across its blade.
 const SLEIGH_IN_SPEEDS: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[body(mass = m, com = a * x, inertia = diagonal(1, 1, j))] sled: Body,
     #[joint(ground -> sled, about = z)] pose: Planar,
@@ -31,7 +31,7 @@ const WHEEL: &str = "struct Wheel { m: f64, r: f64,
     #[constraint(rate(py) = r * rate(roll) * sin(heading))] second: Nonholonomic,
     #[acts(on = roll)] drive: Torque, #[acts(on = heading)] steer: Torque }";
 
-/// A ball that rolls on a plane.
+/// Declaration of a ball that rolls on a plane.
 const ROLLING: &str = "struct Ball { m: f64, r: f64,
     #[body(mass = m, inertia = sphere(m, r))] ball: Body,
     #[joint(ground -> ball)] pose: Free,
@@ -47,7 +47,7 @@ const DISK: &str = "struct Disk { m: f64, r: f64,
     #[constraint(rate(px) = r * rate(roll) * cos(heading))] first: Nonholonomic,
     #[constraint(rate(py) = r * rate(roll) * sin(heading))] second: Nonholonomic }";
 
-/// A slide coupled to another one by a constraint that is driven in time.
+/// Declaration of a slide coupled to another slide by a constraint that is driven in time.
 const CAM: &str = "struct Cam { m: f64, l: f64, w: f64,
     #[particle(mass = m)] one: Particle, #[particle(mass = 2 * m)] two: Particle,
     #[joint(ground -> one, along = x)] first: Sleeve, #[joint(ground -> two, along = y)] second: Sleeve,
@@ -93,8 +93,9 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
         let rates = eval(&[rows.concat(), constraints::rates(native)].concat(), &at);
         let (j, rate) = rates.split_at(nv * nc);
         let gram = (0..nc).map(|i| {
-            let entry = |k: usize| (0..nv).map(|c| j[i * nv + c] * j[k * nv + c]).sum::<f64>();
-            (0..nc).map(entry).chain([rate[i]]).collect()
+            let product_of_jacobian_rows =
+                |k: usize| (0..nv).map(|c| j[i * nv + c] * j[k * nv + c]).sum::<f64>();
+            (0..nc).map(product_of_jacobian_rows).chain([rate[i]]).collect()
         });
         let shares = solve(gram.collect());
         let v: Vec<f64> = (0..nv)
@@ -103,11 +104,11 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 own - (0..nc).map(|i| shares[i] * j[i * nv + c]).sum::<f64>()
             })
             .collect();
-        let moving = |s: Symbol| match Quantity::from_symbol(s) {
+        let value_with_velocities = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             _ => at(s),
         };
-        let values = eval(&all, &moving);
+        let values = eval(&all, &value_with_velocities);
         let (mass, rest) = values.split_at(nv * nv);
         let (bias, rest) = rest.split_at(nv);
         let (tau, rest) = rest.split_at(nv);
@@ -129,7 +130,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
             None => (v, a),
             Some(speeds) => {
                 let of_rates: Vec<Expr<'_>> = speeds.of_rates().concat();
-                let y = eval(&of_rates, &moving);
+                let y = eval(&of_rates, &value_with_velocities);
                 let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
                 let in_speeds = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => w[k],
@@ -142,18 +143,19 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 (w, rates)
             }
         };
-        let values = |s: Symbol| match Quantity::from_symbol(s) {
+        let value_with_accelerations = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             Quantity::Acceleration(k) => a[k],
             _ => at(s),
         };
         for (motion, force) in found.motion.iter().zip(&found.forces) {
-            let sides = [motion, force].map(|p| found.ring.evaluate(p, &values));
+            let sides = [motion, force].map(|p| found.ring.evaluate(p, &value_with_accelerations));
             let size = motion.terms.iter().map(|t| Polynomial { terms: vec![*t] });
-            let size = size.map(|p| found.ring.evaluate(&p, &values).abs()).fold(1.0, f64::max);
+            let size =
+                size.map(|p| found.ring.evaluate(&p, &value_with_accelerations).abs()).fold(1.0, f64::max);
             assert!((sides[0] - sides[1]).abs() <= 1e-10 * size, "{sides:?}, state {seed}: {text}");
         }
-        let by_name = by_name(named, &values);
+        let by_name = by_name(named, &value_with_accelerations);
         let lines = printed(&text);
         assert!(lines.len() >= nv, "{text}");
         for (left, right) in &lines {

@@ -1,4 +1,4 @@
-//! Tests of equations as LaTeX.
+//! Tests of equations printed as LaTeX.
 
 use super::*;
 
@@ -32,7 +32,7 @@ const COMMANDS: [&str; 27] = [
     "omega",
     "quad",
 ];
-/// Allowed one-character commands: thin spaces, an underscore, the end of a line.
+/// One-character commands of LaTeX that may occur: thin spaces, an underscore, the end of a line.
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
 
 fn latex_of(gravity: &str, item: &str) -> String {
@@ -109,11 +109,11 @@ fn all_mechanisms_are_well_formed() {
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
             let plain = with_model(&gravity, item, |model| crate::equations(&model));
-            let equations = |text: &str, sign: &str| text.matches(sign).count();
-            assert_eq!(equations(&text, " = "), equations(&plain, " = "), "{text}");
-            let lines = equations(&text, "\n& ") - equations(&text, "\n& \\quad");
-            assert_eq!(lines, equations(&plain, " = "), "{text}");
-            assert_eq!(equations(&text, "&"), equations(&text, " \\\\\n") + 1, "{text}");
+            let count_equations = |text: &str, sign: &str| text.matches(sign).count();
+            assert_eq!(count_equations(&text, " = "), count_equations(&plain, " = "), "{text}");
+            let lines = count_equations(&text, "\n& ") - count_equations(&text, "\n& \\quad");
+            assert_eq!(lines, count_equations(&plain, " = "), "{text}");
+            assert_eq!(count_equations(&text, "&"), count_equations(&text, " \\\\\n") + 1, "{text}");
         }
     }
     assert_eq!(latex_of("-9.81 * z", SKEW), "");

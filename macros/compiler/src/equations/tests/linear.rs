@@ -29,59 +29,62 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     let states = at.states.len();
     let joints = crate::kinematics::joints(model);
     let lagrange = lagrange::derive(model, &joints);
-    let parameter = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
-    let rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter);
+    let parameter_value = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
+    let value_at_rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter_value);
     let (q, u): (Vec<f64>, Vec<f64>) =
-        (at.configuration.iter().map(rest).collect(), at.inputs.iter().map(rest).collect());
+        (at.configuration.iter().map(value_at_rest).collect(), at.inputs.iter().map(value_at_rest).collect());
     // Lagrange's equations of this reference have no multipliers: their forces, and their geometric
     // stiffness, are omitted.
     let right = right_sides(model, &joints);
     let mut balance: Vec<Expr<'_>> = lagrange.bias.iter().zip(&right).map(|(a, b)| *a - *b).collect();
     balance.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
     balance.extend(at.states.iter().map(|state| -state.rate));
-    let value = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
+    let balance_values = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
         eval(&balance, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
             Quantity::Input(k) => u[k],
             Quantity::Given(..) | Quantity::Time => 0.0,
             Quantity::Parameter(k) if at.states.first().is_some_and(|s| s.parameter == k) => x,
-            _ => parameter(s),
+            _ => parameter_value(s),
         })
     };
     let h = 1e-4;
-    let slope = |f: &dyn Fn(f64) -> Vec<f64>| -> Vec<f64> {
+    let central_difference = |f: &dyn Fn(f64) -> Vec<f64>| -> Vec<f64> {
         let ((a, b), (c, d)) = ((f(h), f(-h)), (f(2.0 * h), f(-2.0 * h)));
         (0..a.len()).map(|k| (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h)).collect()
     };
-    let displaced = |list: &[f64], k: usize, by: f64| {
+    let displaced_list = |list: &[f64], k: usize, by: f64| {
         let mut list = list.to_vec();
         list[k] += by;
         list
     };
     let still = vec![0.0; nv];
-    let coefficients = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
-        let one = |s: Symbol| match Quantity::from_symbol(s) {
-            Quantity::Parameter(_) => parameter(s),
+    let coefficients_of_quantity = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
+        let indicator_of_quantity = |s: Symbol| match Quantity::from_symbol(s) {
+            Quantity::Parameter(_) => parameter_value(s),
             _ => f64::from(u8::from(s == what.symbol())),
         };
-        sides.iter().map(|p| found.ring.evaluate(p, &one)).collect()
+        sides.iter().map(|p| found.ring.evaluate(p, &indicator_of_quantity)).collect()
     };
     for k in 0..nv {
         // All coordinates are plain here.
-        let by_q = slope(&|d| value(&displaced(&q, k, d), &still, &u, 0.0));
-        assert_small(&coefficients(linear::deviation(k), &found.motion), &by_q, "stiffness");
-        let by_v = slope(&|d| value(&q, &displaced(&still, k, d), &u, 0.0));
-        assert_small(&coefficients(Quantity::Velocity(k), &found.motion), &by_v, "damping");
+        let by_q = central_difference(&|d| balance_values(&displaced_list(&q, k, d), &still, &u, 0.0));
+        assert_small(&coefficients_of_quantity(linear::deviation(k), &found.motion), &by_q, "stiffness");
+        let by_v = central_difference(&|d| balance_values(&q, &displaced_list(&still, k, d), &u, 0.0));
+        assert_small(&coefficients_of_quantity(Quantity::Velocity(k), &found.motion), &by_v, "damping");
     }
     for k in 0..nu {
         let by_u: Vec<f64> =
-            slope(&|d| value(&q, &still, &displaced(&u, k, d), 0.0)).iter().map(|x| -x).collect();
-        assert_small(&coefficients(Quantity::Input(k), &found.forces), &by_u, "inputs");
+            central_difference(&|d| balance_values(&q, &still, &displaced_list(&u, k, d), 0.0))
+                .iter()
+                .map(|x| -x)
+                .collect();
+        assert_small(&coefficients_of_quantity(Quantity::Input(k), &found.forces), &by_u, "inputs");
     }
     if states > 0 {
-        let by_x = slope(&|d| value(&q, &still, &u, d));
-        assert_small(&coefficients(linear::deviation(nv), &found.motion), &by_x, "states");
+        let by_x = central_difference(&|d| balance_values(&q, &still, &u, d));
+        assert_small(&coefficients_of_quantity(linear::deviation(nv), &found.motion), &by_x, "states");
     }
 }
 
@@ -109,7 +112,7 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
 #[test]
 fn a_pendulum() {
     let pendulum_at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
-    let contains = |equilibrium: &str, lines: &'static [&'static str]| {
+    let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
         with_linear("-g * y", &pendulum_at(equilibrium), |model, found, plain, _| {
             check_rows(model, found);
             for line in lines {
@@ -117,14 +120,14 @@ fn a_pendulum() {
             }
         });
     };
-    contains(
+    assert_lines_contained(
         "#[equilibrium] down: Equilibrium",
         &[
             "m l² hinge'' + c hinge' + g m l hinge = motor\n",
             "Asymptotically stable where\n    g l > 0\n    c > 0\n",
         ],
     );
-    contains(
+    assert_lines_contained(
         "#[equilibrium(hinge = pi)] up: Equilibrium",
         &[
             "m l² hinge'' + c hinge' - g m l hinge = motor\n",
@@ -133,11 +136,11 @@ fn a_pendulum() {
         ],
     );
     // At a right angle gravity has no stiffness.
-    contains(
+    assert_lines_contained(
         "#[equilibrium(hinge = pi / 2, motor = m * g * l)] held: Equilibrium",
         &["m l² hinge'' + c hinge' = motor\n", "One root is s = 0"],
     );
-    contains(
+    assert_lines_contained(
         "#[equilibrium(hinge = pi / 3, motor = m * g * l * sin(pi / 3))] held: Equilibrium",
         &["+ 1/2 g m l hinge = motor\n"],
     );

@@ -9,7 +9,7 @@ fn text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
     let own_text = || node.text().unwrap_or("").to_string();
     let child_text = |k: usize| text(children[k]);
-    let sub = |index: String| index.replace(',', ".");
+    let subscript_with_dots = |index: String| index.replace(',', ".");
     match node.tag_name().name() {
         "math" | "mrow" => row(&children),
         "mn" | "mi" => own_text(),
@@ -24,8 +24,10 @@ fn text(node: Node<'_, '_>) -> String {
             other => other.to_string(),
         },
         "mover" => child_text(0) + &child_text(1),
-        "msub" => format!("{}_{}", child_text(0), sub(child_text(1))),
-        "msubsup" => format!("{}_{}{}", child_text(0), sub(child_text(1)), power(&child_text(2))),
+        "msub" => format!("{}_{}", child_text(0), subscript_with_dots(child_text(1))),
+        "msubsup" => {
+            format!("{}_{}{}", child_text(0), subscript_with_dots(child_text(1)), power(&child_text(2)))
+        }
         "msup" => child_text(0) + &power(&child_text(1)),
         "mfrac" => format!("({})/({})", child_text(0), child_text(1)),
         "msqrt" => format!("sqrt({})", child_text(0)),

@@ -1,4 +1,4 @@
-//! Descriptions of small mechanisms.
+//! Declarations of small mechanisms, whose equations are tested.
 
 /// A cart with a pole.
 pub const CART_POLE: &str = "

@@ -15,10 +15,11 @@ use text::{Text, Values, value};
 #[track_caller]
 fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
     let n = names.len();
-    let column = |name: &str, mark: &str| text.column(&format!("{name}{mark}"), false, parameters);
-    let mass: Vec<Vec<f64>> = names.iter().map(|name| column(name, "''")).collect();
+    let coefficient_column =
+        |name: &str, mark: &str| text.column(&format!("{name}{mark}"), false, parameters);
+    let mass: Vec<Vec<f64>> = names.iter().map(|name| coefficient_column(name, "''")).collect();
     for (k, mark) in (0..2 * n).map(|k| (k, if k < n { "" } else { "'" })) {
-        let force = column(names[k % n], mark);
+        let force = coefficient_column(names[k % n], mark);
         // The products of inertia and accelerations by finite differences balance the forces.
         let size = force.iter().chain(&[1.0]).map(|x| x.abs()).fold(0.0, f64::max);
         for i in 0..n {
@@ -39,13 +40,13 @@ fn read<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Numbers<'g>, Vec<Te
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints(&model);
         let mass = crba::mass_matrix(&model, &joints);
-        let text = |at| {
+        let text_of_equilibrium = |at| {
             let mut cx = Diagnostics::new();
             let found = super::super::linear::linear(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
             Text::parse(&super::super::linear::written_linear(&model, at, &found).plain)
         };
-        let texts = model.equilibria.iter().map(text).collect();
+        let texts = model.equilibria.iter().map(text_of_equilibrium).collect();
         f(Numbers::new(&model), texts)
     })
 }
@@ -269,8 +270,8 @@ const HOOP: &str = "struct Hoop {
     side: Equilibrium,
 }";
 
-/// Textbook result for the frequency of a bead on a spinning hoop: `ω² = Ω² − g²/(R² Ω²)` about the
-/// equilibrium at the side, `g/R − Ω²` about the one at the bottom.
+/// Checks the textbook frequencies of a bead on a spinning hoop: `ω² = Ω² − g²/(R² Ω²)` about the equilibrium
+/// at the side, `g/R − Ω²` about the one at the bottom.
 #[test]
 fn a_bead_oscillates_about_both_equilibria() {
     let names = ["g", "m", "radius", "spin"];
@@ -283,9 +284,12 @@ fn a_bead_oscillates_about_both_equilibria() {
             let above = spin * spin * radius > g;
             assert_eq!([texts[0].holds(&parameters), texts[1].holds(&parameters)], [!above, above]);
             let [below, side] = [g / radius - spin * spin, spin * spin - (g / (radius * spin)).powi(2)];
-            let square = |text: &Text| value(&text.frequency, &parameters).powi(2);
-            let (found, expected) =
-                if above { (square(&texts[1]), side) } else { (square(&texts[0]), below) };
+            let squared_frequency = |text: &Text| value(&text.frequency, &parameters).powi(2);
+            let (found, expected) = if above {
+                (squared_frequency(&texts[1]), side)
+            } else {
+                (squared_frequency(&texts[0]), below)
+            };
             assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
             let angle = if above { (g / (spin * spin * radius)).acos() } else { 0.0 };
             let roots = eigenvalues(&numbers.linear(&[angle], &[], &values));
@@ -338,7 +342,7 @@ fn a_lag_makes_control_unstable() {
     });
 }
 
-/// A ladder that slides on a wall and on the floor: two constraints, one degree of freedom.
+/// Declaration of a ladder that slides on a wall and on the floor: two constraints, one degree of freedom.
 const LADDER: &str = "struct Ladder {
     m: f64,
     l: f64,

@@ -135,14 +135,15 @@ fn lagranges_equations_hold_for_the_routhian() {
             let cyclic = routh::cyclic(&model, &joints);
             let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
             let g = model.graph;
-            let derivative = |quantity: Quantity| {
+            let routhian_derivative = |quantity: Quantity| {
                 crate::expr::diff::Derivative::with_respect_to(quantity.symbol(), g)
                     .differentiate(reduced.routhian)
             };
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-            let momenta: Vec<Expr<'_>> = others.iter().map(|k| derivative(Quantity::Velocity(*k))).collect();
+            let momenta: Vec<Expr<'_>> =
+                others.iter().map(|k| routhian_derivative(Quantity::Velocity(*k))).collect();
             let slopes: Vec<Expr<'_>> =
-                others.iter().map(|k| derivative(Quantity::Configuration(*k))).collect();
+                others.iter().map(|k| routhian_derivative(Quantity::Configuration(*k))).collect();
             let all = crate::mechanics::passive::passive_forces(&model, true);
             let of_potentials = crate::mechanics::passive::passive_forces(&model, false);
             let lost: Vec<Expr<'_>> = others.iter().map(|k| all[*k] - of_potentials[*k]).collect();
@@ -154,7 +155,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 let value = state_values(&model, seed, &p, &tau);
                 let (a, w) = (acceleration.values(&value), velocity.values(&value));
                 let displaced_value = |h: f64| {
-                    let value = |s: Symbol| match Quantity::from_symbol(s) {
+                    let value_along_motion = |s: Symbol| match Quantity::from_symbol(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
                                 .iter()
@@ -167,7 +168,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                         }
                         _ => value(s),
                     };
-                    momenta.values(&value)
+                    momenta.values(&value_along_motion)
                 };
                 let h = 1e-3;
                 let ((b, c), (d, e)) = (
@@ -176,13 +177,15 @@ fn lagranges_equations_hold_for_the_routhian() {
                 );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
-                let full = |s: Symbol| match Quantity::from_symbol(s) {
+                let value_with_cyclic_velocities = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => {
                         cyclic.iter().position(|c| *c == k).map_or_else(|| value(s), |c| w[c])
                     }
                     _ => value(s),
                 };
-                for ((rate, slope), lost) in rate.iter().zip(slopes.values(&value)).zip(lost.values(&full)) {
+                for ((rate, slope), lost) in
+                    rate.iter().zip(slopes.values(&value)).zip(lost.values(&value_with_cyclic_velocities))
+                {
                     let size = 1.0 + rate.abs() + slope.abs();
                     assert!(
                         (rate - slope + lost).abs() < 1e-8 * size,
@@ -214,13 +217,16 @@ fn printed_reduction_is_that_of_the_functions() {
                 let tau = eval(&inputs, &symbol);
                 let symbol = state_values(&model, seed, &p, &tau);
                 let a = eval(&functions.acceleration, &symbol);
-                let one = |s: Symbol| match Quantity::from_symbol(s) {
+                let value_with_unit_inertias = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(_) => 1.0,
                     _ => symbol(s),
                 };
-                let inertias: Vec<f64> =
-                    printed.determinants.iter().map(|d| printed.ring.evaluate(d, &one)).collect();
-                let value = |s: Symbol| match Quantity::from_symbol(s) {
+                let inertias: Vec<f64> = printed
+                    .determinants
+                    .iter()
+                    .map(|d| printed.ring.evaluate(d, &value_with_unit_inertias))
+                    .collect();
+                let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(k) => inertias[k],
                     Quantity::Acceleration(k) => {
                         others.iter().position(|o| *o == k).map_or(f64::NAN, |o| a[o])
@@ -228,14 +234,22 @@ fn printed_reduction_is_that_of_the_functions() {
                     Quantity::Velocity(k) if cyclic.contains(&k) => f64::NAN,
                     _ => symbol(s),
                 };
-                let values = |list: &[Polynomial]| -> Vec<f64> {
-                    list.iter().map(|p| printed.ring.evaluate(p, &value)).collect()
+                let values_of_polynomials = |list: &[Polynomial]| -> Vec<f64> {
+                    list.iter().map(|p| printed.ring.evaluate(p, &value_of_symbol)).collect()
                 };
                 // The ring also evaluates atoms that no polynomial contains.
-                assert_near(&values(&printed.motion), &values(&printed.forces), &model.name);
-                assert_near(&values(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
                 assert_near(
-                    &values(std::slice::from_ref(&printed.routhian)),
+                    &values_of_polynomials(&printed.motion),
+                    &values_of_polynomials(&printed.forces),
+                    &model.name,
+                );
+                assert_near(
+                    &values_of_polynomials(&printed.velocity),
+                    &eval(&functions.velocity, &symbol),
+                    "velocities",
+                );
+                assert_near(
+                    &values_of_polynomials(std::slice::from_ref(&printed.routhian)),
                     &eval(&[functions.routhian], &symbol),
                     "R",
                 );

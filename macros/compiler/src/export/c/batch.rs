@@ -5,14 +5,14 @@ use super::function::{Outline, about, is_passed, public_name};
 use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
 
-/// Array that a function reads or writes for one state.
+/// Array that a C function reads or writes for one state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Array {
-    /// Name of the argument.
+    /// Name of the array argument.
     pub name: String,
-    /// Number of entries.
+    /// Number of entries of the array.
     pub length: usize,
-    /// Meaning and size, for the documentation.
+    /// Meaning and size of the array, for the documentation.
     pub about: String,
     /// Whether the function takes the value of the only entry instead of an array.
     pub is_value: bool,
@@ -21,17 +21,17 @@ pub struct Array {
 /// Signature of a function that a program can call.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// Name without the prefix.
+    /// Name of the function without the prefix.
     pub name: String,
     /// Arguments after the parameters and the index of the frame.
     pub arguments: Vec<Array>,
     /// Results, in the order of the arguments that receive them.
     pub results: Vec<Array>,
-    /// Whether the function returns its only result.
+    /// Whether the function has a single result and returns it.
     pub returns: bool,
     /// Whether the function takes the index of a frame.
     pub of_frame: bool,
-    /// Documentation, one paragraph per entry.
+    /// Documentation of the function, one paragraph per entry.
     pub docs: Vec<String>,
 }
 
@@ -73,11 +73,12 @@ impl Batch {
 
     /// Returns the signature of a function on vectors.
     pub fn plain(name: &str, arguments: &[(&str, usize)], results: &[(&str, usize)]) -> Batch {
-        let arrays = |list: &[(&str, usize)]| list.iter().map(|(name, n)| Array::new(name, *n)).collect();
+        let arrays_from_names =
+            |list: &[(&str, usize)]| list.iter().map(|(name, n)| Array::new(name, *n)).collect();
         Batch {
             name: name.to_string(),
-            arguments: arrays(arguments),
-            results: arrays(results),
+            arguments: arrays_from_names(arguments),
+            results: arrays_from_names(results),
             returns: false,
             of_frame: false,
             docs: Vec::new(),
@@ -86,7 +87,7 @@ impl Batch {
 }
 
 impl Array {
-    /// Returns a vector.
+    /// Returns the description of a vector argument.
     pub fn new(name: &str, length: usize) -> Array {
         Array { name: name.to_string(), length, about: docs::numbers(length), is_value: false }
     }

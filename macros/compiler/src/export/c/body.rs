@@ -19,11 +19,11 @@ const TOGETHER: usize = 4;
 /// Map from the index of an output to its assignment target; `None` for outputs that are not stored.
 pub type Places<'a> = &'a dyn Fn(usize) -> Option<String>;
 
-/// Names that a body may use.
+/// Names that the body of a C function may use.
 pub struct Scope<'a> {
     /// Arguments of the function, and results of functions that it calls first.
     pub arguments: &'a [Argument],
-    /// Members of the parameter struct.
+    /// Names of the members of the parameter struct.
     pub parameters: &'a [String],
     /// Members of the parameter struct that are tables.
     pub tables: &'a [String],
@@ -139,7 +139,8 @@ impl Writer<'_> {
         self.program.outputs.clone().into_iter().for_each(|o| self.read(o));
     }
 
-    /// Reads an argument or parameter if an operand is one that has not been read.
+    /// Adds the statement that reads an argument or parameter, if the operand is one that has not been read
+    /// yet.
     fn read(&mut self, operand: Operand) {
         if let Operand::Symbol(symbol) = operand
             && !self.read.contains(&symbol)

@@ -13,11 +13,11 @@ use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// Contents of the CasADi source file.
+/// Data from which the CasADi source file is written.
 pub struct Shapes<'a> {
     /// Sizes and names of the mechanism.
     pub o: &'a Outline<'a>,
-    /// Public functions.
+    /// Functions that are public in the C source.
     pub public: &'a [&'a Function],
     /// Names of the frames.
     pub frames: &'a [String],
@@ -25,7 +25,7 @@ pub struct Shapes<'a> {
     pub fixed: &'a [Option<f64>],
     /// Whether all coordinates are plain numbers.
     pub is_plain: bool,
-    /// Whether forces depend on accelerations.
+    /// Whether forces of the mechanism depend on accelerations.
     pub is_accelerating: bool,
     /// Whether the mechanism has integration steps, and whether these have Jacobians.
     pub steps: [bool; 2],
@@ -51,7 +51,7 @@ fn dense(name: &str, rows: usize, columns: usize) -> Entry {
 }
 
 impl Shapes<'_> {
-    /// Returns the text of the file.
+    /// Returns the text of the CasADi source file.
     pub fn text(&self) -> String {
         let p = &self.o.prefix;
         let mut text = format!(
@@ -209,18 +209,20 @@ impl Shapes<'_> {
         vec![dense("q", self.o.nq, 1), dense("v", self.o.nv, 1)]
     }
 
-    /// Returns the Jacobians of forward or inverse dynamics, if they are exact.
+    /// Returns the functions for the Jacobians of forward or inverse dynamics, if exact Jacobians exist.
     fn jacobian_of(&self, id: Id) -> Option<External> {
         let n = self.o.nv;
-        let has = |id: Id| self.public.iter().any(|f| f.id == id);
+        let has_function = |id: Id| self.public.iter().any(|f| f.id == id);
         let (name, third, calls) = match id {
-            Id::ForwardDynamics if has(Id::ForwardDynamicsDerivatives) => (
+            Id::ForwardDynamics if has_function(Id::ForwardDynamicsDerivatives) => (
                 "forward_dynamics",
                 "tau",
                 vec![("forward_dynamics_derivatives", vec!["q", "v", "tau"], vec!["r0", "r1", "r2"])],
             ),
             Id::InverseDynamics
-                if !self.is_accelerating && has(Id::InverseDynamicsDerivatives) && has(Id::MassMatrix) =>
+                if !self.is_accelerating
+                    && has_function(Id::InverseDynamicsDerivatives)
+                    && has_function(Id::MassMatrix) =>
             {
                 (
                     "inverse_dynamics",
@@ -243,7 +245,7 @@ impl Shapes<'_> {
         Some(self.external(format!("jac_casadi_{name}"), inputs, outputs, body.collect()))
     }
 
-    /// Returns a step of an integration method, with its Jacobians if they are known.
+    /// Returns the functions for a step of an integration method and, if they exist, its Jacobians.
     fn step(&self, method: &str) -> Vec<External> {
         let (n, m) = (self.o.nv, self.o.nu);
         if !self.steps[0] {
@@ -339,19 +341,26 @@ impl Shapes<'_> {
         let x = 2 * n;
         let own = if self.o.has_own() { "&self, " } else { "" };
         let free = self.free().len();
-        let external = |name: &str,
-                        inputs: &[(&str, usize, usize)],
-                        outputs: &[(&str, usize, usize)],
-                        has_h: bool,
-                        work: usize,
-                        body: String| {
-            let entries = |list: &[(&str, usize, usize)]| {
+        let external_function = |name: &str,
+                                 inputs: &[(&str, usize, usize)],
+                                 outputs: &[(&str, usize, usize)],
+                                 has_h: bool,
+                                 work: usize,
+                                 body: String| {
+            let dense_entries = |list: &[(&str, usize, usize)]| {
                 list.iter().map(|(name, r, c)| dense(name, *r, *c)).collect::<Vec<_>>()
             };
-            let mut inputs = entries(inputs);
+            let mut inputs = dense_entries(inputs);
             inputs.push(dense("p", free + usize::from(has_h), 1));
             let parameters = if has_h { "p + 1" } else { "p" };
-            External { name: name.to_string(), inputs, outputs: entries(outputs), body, work, parameters }
+            External {
+                name: name.to_string(),
+                inputs,
+                outputs: dense_entries(outputs),
+                body,
+                work,
+                parameters,
+            }
         };
         let system = format!(
             "    casadi_real *by_state = extra, *by_input = extra + {};\n    {p}_linearize({own}x, x + {n}, \
@@ -388,8 +397,8 @@ impl Shapes<'_> {
         );
         let (state, inputs) = (("x", x, 1), ("u", m, 1));
         vec![
-            external("expl_ode_fun", &[state, inputs], &[("f", x, 1)], false, 0, rates.clone()),
-            external(
+            external_function("expl_ode_fun", &[state, inputs], &[("f", x, 1)], false, 0, rates.clone()),
+            external_function(
                 "expl_vde_forw",
                 &[state, ("sx", x, x), ("su", x, m), inputs],
                 &[("f", x, 1), ("sx_rate", x, x), ("su_rate", x, m)],
@@ -397,7 +406,7 @@ impl Shapes<'_> {
                 x * x + x * m,
                 forward,
             ),
-            external(
+            external_function(
                 "expl_vde_adj",
                 &[state, ("lambda", x, 1), inputs],
                 &[("adjoint", x + m, 1)],
@@ -405,8 +414,8 @@ impl Shapes<'_> {
                 x * x + x * m,
                 adjoint,
             ),
-            external("dyn_disc_phi_fun", &[state, inputs], &[("phi", x, 1)], true, 0, step),
-            external(
+            external_function("dyn_disc_phi_fun", &[state, inputs], &[("phi", x, 1)], true, 0, step),
+            external_function(
                 "dyn_disc_phi_fun_jac",
                 &[state, inputs],
                 &[("phi", x, 1), ("jac_ut_xt", m + x, x)],
@@ -468,14 +477,16 @@ impl Shapes<'_> {
         if self.o.has_own() {
             let _ = writeln!(rest, "    const struct {} self = lw_own({});", self.o.prefix, f.parameters);
         }
-        let list = |entries: &[Entry]| -> [String; 2] {
+        let quoted_names_and_shapes = |entries: &[Entry]| -> [String; 2] {
             let names: Vec<String> = entries.iter().map(|(name, ..)| format!("\"{name}\"")).collect();
             let shapes: Vec<String> = entries.iter().map(sparsity).collect();
             // Arrays in C have at least one element.
-            let joined = |all: Vec<String>| if all.is_empty() { "0".to_string() } else { all.join(", ") };
-            [joined(names), joined(shapes)]
+            let joined_or_zero =
+                |all: Vec<String>| if all.is_empty() { "0".to_string() } else { all.join(", ") };
+            [joined_or_zero(names), joined_or_zero(shapes)]
         };
-        let ([names_in, shapes_in], [names_out, shapes_out]) = (list(&f.inputs), list(&f.outputs));
+        let ([names_in, shapes_in], [names_out, shapes_out]) =
+            (quoted_names_and_shapes(&f.inputs), quoted_names_and_shapes(&f.outputs));
         let _ = writeln!(
             text,
             "int {name}(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) \

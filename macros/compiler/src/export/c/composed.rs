@@ -7,7 +7,7 @@ use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// Writes the body of a function.
+/// Writes the body of a C function whose result is assembled from the outputs of its program.
 pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>, support: &mut Support) {
     match f.shape {
         Shape::Inverse(n) => {
@@ -86,13 +86,13 @@ impl<'a> Parts<'a> {
         }
         let _ = writeln!(body, "    static const int trunk[{}] = {{{}}};", trunk.len(), trunk.join(", "));
         if let InverseForm::BlockArrow { limbs, .. } = self.form {
-            let limb = |k: usize| {
+            let index_of_limb = |k: usize| {
                 limbs
                     .iter()
                     .position(|limb| limb.contains(&k))
                     .map_or("-1".to_string(), |limb| limb.to_string())
             };
-            let all: Vec<String> = (0..self.n).map(limb).collect();
+            let all: Vec<String> = (0..self.n).map(index_of_limb).collect();
             let _ = writeln!(body, "    static const int limb[{}] = {{{}}};", self.n, all.join(", "));
         }
         let _ = writeln!(body, "    double beside[{}];", self.count());
@@ -108,7 +108,7 @@ impl<'a> Parts<'a> {
         Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
     }
 
-    /// Writes the statements that complete the inverse from its representation.
+    /// Writes the statements that complete the inverse mass matrix from its factored form.
     fn finish(&self, body: &mut String, inverse: &str, support: &mut Support) {
         let (n, width) = (self.n, self.trunk().len());
         let _ = match self.form {

@@ -1,9 +1,9 @@
-//! Comments in the header.
+//! Documentation comments of the C header.
 
 use super::function::{Given, Outline};
 use crate::catalogue::Argument;
 
-/// Maximum width of lines, in characters.
+/// Maximum width of comment lines, in characters.
 const WIDTH: usize = 100;
 
 /// Returns a text that is valid inside a comment: without comment marks, trigraphs and control characters.
@@ -79,7 +79,7 @@ pub fn argument(a: Argument) -> &'static str {
     }
 }
 
-/// Returns a count of numbers in words.
+/// Returns a count of numbers in words, such as `3 numbers`.
 pub fn numbers(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
@@ -92,12 +92,12 @@ pub fn function(docs: &[String], arguments: &[Argument], results: &[Given], o: &
         text.push_str(&wrapped(&without_links(paragraph), first, " * "));
     }
     text.push_str(" *\n");
-    let sizes = |a: &Argument| match a {
+    let array_length_text = |a: &Argument| match a {
         Argument::T => String::new(),
         a => format!(", {}", numbers(o.length(*a))),
     };
     for a in arguments.iter().filter(|a| !matches!(a, Argument::Into(..) | Argument::Called(_))) {
-        let line = format!("{}{}", argument(*a), sizes(a));
+        let line = format!("{}{}", argument(*a), array_length_text(a));
         text.push_str(&wrapped(&line, &format!(" * {:9} ", a.name()), " *           "));
     }
     for (name, rows, columns) in results {

@@ -60,7 +60,7 @@ fn signature(o: &Outline<'_>, access: &Access) -> String {
     format!("{}int frame, {}", &spelled[..at], &spelled[at..])
 }
 
-/// Returns the indices of the frames.
+/// Returns the C macros for the indices of the frames.
 pub fn indices(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     let mut text = String::new();
     if frames.is_empty() {
@@ -88,10 +88,10 @@ pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     text
 }
 
-/// Returns the functions of frames.
+/// Returns the signatures of the functions of frames.
 pub fn batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
     let accesses = ACCESSES.iter().filter(|_| !output.frames.is_empty());
-    let batch = |access: &Access| {
+    let batch_of_access = |access: &Access| {
         let size = match access.name {
             "frame_placement" => 12,
             "frame_jacobian" => 6 * o.nv,
@@ -103,10 +103,10 @@ pub fn batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
             ..Batch::written(access.name, &arguments, &[("result", size)], access.docs, o)
         }
     };
-    accesses.map(batch).collect()
+    accesses.map(batch_of_access).collect()
 }
 
-/// Returns the definitions.
+/// Returns the definitions of the functions of frames.
 pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
     let (links, frames) = (&output.links, &output.frames);
     if frames.is_empty() {
@@ -129,9 +129,9 @@ pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String
 
 /// Writes the tables of parent links, and the function for the path from the ground to a frame.
 fn write_tables(text: &mut String, links: &[LinkSteps], frames: &[FrameSteps]) {
-    let number = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
-    let parents: Vec<String> = links.iter().map(|link| number(link.parent)).collect();
-    let carriers: Vec<String> = frames.iter().map(|frame| number(frame.link)).collect();
+    let optional_link_number = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
+    let parents: Vec<String> = links.iter().map(|link| optional_link_number(link.parent)).collect();
+    let carriers: Vec<String> = frames.iter().map(|frame| optional_link_number(frame.link)).collect();
     let _ = writeln!(text, "static const int lw_parent_of[{}] = {{{}}};", parents.len(), parents.join(", "));
     let _ =
         writeln!(text, "static const int lw_link_of[{}] = {{{}}};\n", carriers.len(), carriers.join(", "));
@@ -189,7 +189,7 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
 
 fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support: &mut Support) {
     use Argument::{A, Q, V};
-    let argument = |n| Argument::Given("p", Supplied::Parent, n);
+    let parent_argument = |n| Argument::Given("p", Supplied::Parent, n);
     let programs =
         |program: fn(&LinkSteps) -> &Program| links.iter().map(|link| (program(link), false)).collect();
     let steps = [
@@ -200,12 +200,12 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
         },
         Step {
             name: "link_twist",
-            arguments: [o.timed(&[Q, V]), vec![argument(6)]].concat(),
+            arguments: [o.timed(&[Q, V]), vec![parent_argument(6)]].concat(),
             programs: programs(|l| &l.twist),
         },
         Step {
             name: "link_acceleration",
-            arguments: [o.timed(&[Q, V, A]), vec![argument(12)]].concat(),
+            arguments: [o.timed(&[Q, V, A]), vec![parent_argument(12)]].concat(),
             programs: programs(|l| &l.acceleration),
         },
         Step {
@@ -234,17 +234,17 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
 }
 
 fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, support: &mut Support) {
-    let argument = |n| vec![Argument::Given("p", Supplied::Parent, n)];
+    let parent_argument = |n| vec![Argument::Given("p", Supplied::Parent, n)];
     let programs =
         |program: fn(&FrameSteps) -> &Program| frames.iter().map(|frame| (program(frame), false)).collect();
     let placements =
         frames.iter().map(|frame| (&frame.placement, frame.is_link && frame.link.is_some())).collect();
     let steps = [
-        Step { name: "placement_on_link", arguments: argument(12), programs: placements },
-        Step { name: "twist_on_link", arguments: argument(18), programs: programs(|f| &f.twist) },
+        Step { name: "placement_on_link", arguments: parent_argument(12), programs: placements },
+        Step { name: "twist_on_link", arguments: parent_argument(18), programs: programs(|f| &f.twist) },
         Step {
             name: "acceleration_on_link",
-            arguments: argument(24),
+            arguments: parent_argument(24),
             programs: programs(|f| &f.acceleration),
         },
     ];
@@ -331,7 +331,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     body
 }
 
-/// Writes a loop that copies `n` values.
+/// Writes a C loop that copies `n` values from one array to another.
 fn copy(body: &mut String, indent: &str, to: &str, from: &str, n: usize) {
     let _ =
         writeln!(body, "{indent}for (int i = 0; i < {n}; ++i) {{\n{indent}    {to} = {from};\n{indent}}}");

@@ -11,9 +11,9 @@ use crate::lower::Operand;
 use crate::mechanism::Quantity;
 use std::fmt::Write;
 
-/// Sizes and names that all functions share.
+/// Sizes and names that all exported functions share.
 pub struct Outline<'a> {
-    /// Prefix of all names.
+    /// Prefix of all names of the mechanism in C.
     pub prefix: String,
     /// Members of the parameter struct; empty if there are no parameters.
     pub parameters: &'a [String],
@@ -29,13 +29,13 @@ pub struct Outline<'a> {
     pub time: bool,
     /// Number of passive forces that other functions call, and number of their derivatives.
     pub passive: [usize; 2],
-    /// Whether derivatives of the dynamics exist.
+    /// Whether the derivatives of the dynamics are exported.
     pub derivatives: bool,
     /// Whether velocities are declared generalized speeds.
     pub speeds: bool,
 }
 
-/// Result array: name, rows and columns.
+/// Result array of a C function: name, rows and columns.
 pub type Given = (&'static str, usize, usize);
 
 /// Returns the arrays that receive the results of a function; empty for a function that returns a number.
@@ -138,7 +138,7 @@ const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the i
 const CONTACT_LAWS: &str =
     "Coefficients of friction, restitution and static friction of each contact, in the order of the gaps.";
 
-/// Returns the documentation of a function.
+/// Returns the documentation of a generated function in C.
 pub fn about(f: &Function) -> Vec<String> {
     match f.id {
         Id::InputDerivatives => vec![INPUT_DERIVATIVES.to_string()],
@@ -195,14 +195,14 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
 
-/// Returns a declaration with its documentation.
+/// Returns the declaration of a function, preceded by its documentation.
 pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     let results = results(f.shape);
     let docs = docs::function(&about(f), &f.arguments, &results, o);
     format!("{docs}{};\n", o.signature(&public_name(f), &f.arguments, f.shape))
 }
 
-/// Returns the array element for an output; the arrays `results` follow one another.
+/// Returns the array element to which output `k` is written; the arrays of `results` follow one another.
 pub fn place(results: &[Given], mut k: usize) -> Option<String> {
     for (name, rows, columns) in results {
         if k < rows * columns {

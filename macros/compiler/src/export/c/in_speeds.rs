@@ -62,20 +62,20 @@ fn all(o: &Outline<'_>) -> impl Iterator<Item = &'static Space> {
     SPACE.iter().chain(derivatives)
 }
 
-/// Returns the functions.
+/// Returns the signatures of the functions on the configuration space in generalized speeds.
 pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
-    let batch = |of: &Space| {
-        let size = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
-        let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, size(name))).collect();
-        let result = |name: &&str| match (of.name, *name) {
+    let batch_of_space = |of: &Space| {
+        let length_of_argument = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
+        let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, length_of_argument(name))).collect();
+        let result_array = |name: &&str| match (of.name, *name) {
             ("integrate", name) => Array::new(name, o.nq),
             (_, "result") => Array::new("result", o.nv),
             (_, name) => Array::matrix(name, o.nv, o.nv),
         };
-        let results = of.results.iter().map(result).collect();
+        let results = of.results.iter().map(result_array).collect();
         Batch { results, docs: vec![of.docs.to_string()], ..Batch::plain(of.name, &arguments, &[]) }
     };
-    all(o).map(batch).collect()
+    all(o).map(batch_of_space).collect()
 }
 
 fn signature(o: &Outline<'_>, of: &Space) -> String {
@@ -85,7 +85,7 @@ fn signature(o: &Outline<'_>, of: &Space) -> String {
     format!("void {}_{}({}{})", o.prefix, of.name, self_parameter(o), list.join(", "))
 }
 
-/// Returns the declarations.
+/// Returns the declarations of the functions on the configuration space in generalized speeds.
 pub fn declare(o: &Outline<'_>) -> String {
     let mut text = String::new();
     for of in all(o) {
@@ -95,7 +95,7 @@ pub fn declare(o: &Outline<'_>) -> String {
     text
 }
 
-/// Writes the definitions.
+/// Writes the definitions of the functions on the configuration space in generalized speeds.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     if o.derivatives {
         support.sums = true;

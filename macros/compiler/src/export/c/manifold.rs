@@ -1,4 +1,5 @@
-//! Functions of the configuration manifold: `integrate`, `difference`, `tangent_rate` and their derivatives.
+//! C code of the functions on the configuration manifold: `integrate`, `difference`, `tangent_rate` and their
+//! derivatives.
 
 use super::batch::{Array, Batch};
 use super::docs;
@@ -33,15 +34,15 @@ fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
-/// Returns the functions of the configuration manifold.
+/// Returns the signatures of the functions on the configuration manifold.
 pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
     if o.speeds {
         return in_speeds::batches(o);
     }
-    let size = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
+    let length_of_argument = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
     let plain = MANIFOLD.iter().map(|(name, arguments, docs)| {
         let result = if *name == "integrate" { o.nq } else { o.nv };
-        let arguments = arguments.map(|argument| (argument, size(argument)));
+        let arguments = arguments.map(|argument| (argument, length_of_argument(argument)));
         Batch { docs: vec![docs.to_string()], ..Batch::plain(name, &arguments, &[("result", result)]) }
     });
     let derivatives = TO_FIRST_ORDER.iter().filter(|_| o.derivatives).map(|of| {
@@ -58,8 +59,13 @@ pub fn bodies_of_plain_charts(charts: &[Chart], o: &Outline<'_>) -> Vec<(Batch, 
     if o.speeds || charts.iter().any(|chart| !matches!(chart, Chart::Plain(..))) {
         return Vec::new();
     }
-    let body = |batch: &Batch| charts.iter().map(|chart| plain_statement(*chart, &batch.name)).collect();
-    batches(o).into_iter().take(MANIFOLD.len()).map(|batch| (batch.clone(), body(&batch))).collect()
+    let statements_of_charts =
+        |batch: &Batch| charts.iter().map(|chart| plain_statement(*chart, &batch.name)).collect();
+    batches(o)
+        .into_iter()
+        .take(MANIFOLD.len())
+        .map(|batch| (batch.clone(), statements_of_charts(&batch)))
+        .collect()
 }
 
 /// Returns the statement of a function for a plain coordinate.
@@ -110,7 +116,7 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
     }
 }
 
-/// Writes the definitions of the derivatives.
+/// Writes the definitions of the derivatives of the functions on the configuration manifold.
 pub fn define_all_derivatives(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
 }
@@ -210,7 +216,7 @@ fn of_joints(name: &str) -> String {
     format!("joints_{name}")
 }
 
-/// Returns the declarations.
+/// Returns the declarations of the functions on the configuration manifold.
 pub fn declare(o: &Outline<'_>) -> String {
     let mut text = String::new();
     if o.speeds {

@@ -105,7 +105,7 @@ const RESERVED: &[&str] = &[
     "math_errhandling",
 ];
 
-/// Functions and macros of the included headers, except those that the code calls.
+/// Names of functions and macros in the included headers, except those that the generated code calls.
 const OF_HEADERS: &[&str] = &[
     "abs",
     "acosh",

@@ -1,6 +1,6 @@
 //! Expressions and statements of a function body, as text.
 
-/// Text of an expression.
+/// C expression with the instructions on which it depends.
 #[derive(Clone, Default)]
 pub struct Piece {
     /// Text of the expression in C.
@@ -23,10 +23,10 @@ impl Piece {
     }
 }
 
-/// Statement that defines values.
+/// C statement that defines the values of instructions.
 pub struct Statement {
     /// Indices of the instructions whose values the statement defines.
     pub names: Vec<usize>,
-    /// Lines of the statement.
+    /// Text of the statement, one or several lines.
     pub text: String,
 }

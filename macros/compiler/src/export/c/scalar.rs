@@ -1,7 +1,7 @@
 //! Scalar type of the code. All code is written for `double` and converted to `float` on request, token by
 //! token.
 
-/// Functions of `math.h` that the code uses.
+/// Functions of `math.h` that generated code calls.
 pub const FUNCTIONS: &[&str] = &[
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
     "fabs", "copysign", "pow", "fmin", "fmax", "fma",
@@ -15,7 +15,7 @@ const WORDS: &[(&str, &str)] = &[
     ("HUGE_VAL", "HUGE_VALF"),
 ];
 
-/// Returns a numeric literal.
+/// Returns the C literal of a number.
 pub fn constant(c: f64) -> String {
     format!("{c:?}")
 }

@@ -14,13 +14,13 @@ use crate::mechanism::Model;
 
 /// Code in C that kernels for other processors are made from.
 pub struct CodeParts {
-    /// Prefix of all names.
+    /// Prefix of all names of the mechanism in C.
     pub prefix: String,
     /// Description of the mechanism: lines of a comment.
     pub about: String,
     /// Sizes, types of parameters and tables, indices of frames.
     pub types: String,
-    /// Helper functions, then all functions.
+    /// Definitions of the helper functions, followed by those of all functions.
     pub definitions: String,
     /// Functions that a program can call.
     pub functions: Vec<Batch>,
@@ -90,7 +90,7 @@ fn signatures(
 
 /// Names and signatures of a mechanism in C.
 pub struct Signatures {
-    /// Prefix of all names.
+    /// Prefix of all names of the mechanism in C.
     pub prefix: String,
     /// Functions that a program can call.
     pub functions: Vec<Batch>,

@@ -1,4 +1,4 @@
-//! Source file and header of a mechanism.
+//! Text of the C source file and of the header of a mechanism.
 
 use super::batch::Batch;
 use super::casadi::Shapes;
@@ -13,7 +13,7 @@ use crate::lower::{Op, Program};
 use crate::mechanism::{Model, Quantity, Supplied};
 use std::fmt::Write;
 
-/// Options of the export.
+/// Options of the export to C.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Prefix of all names. If it is empty, the mechanism's name in lower case is used.
@@ -22,14 +22,14 @@ pub struct Options {
     pub single: bool,
     /// Parameters to fix in an additional source file with CasADi's interface; `None` for no such file.
     pub casadi: Option<Vec<(String, f64)>>,
-    /// Further lines of [`Files::left_out`].
+    /// Lines that are added to [`Files::left_out`].
     pub left_out: Vec<String>,
 }
 
-/// Texts of the files, and functions that they do not contain.
+/// Texts of the exported files, and names of functions that they lack.
 #[derive(Clone, Debug)]
 pub struct Files {
-    /// Prefix of names and files.
+    /// Prefix of the names in the files and of the file names.
     pub prefix: String,
     /// Header `PREFIX.h`.
     pub header: String,
@@ -52,7 +52,7 @@ pub enum Unfit {
     Missing,
     /// The parameter to be fixed does not exist.
     NoParameter(String),
-    /// CasADi supports only double precision.
+    /// CasADi is requested with single precision, which it does not support.
     SingleCasadi,
 }
 
@@ -108,10 +108,10 @@ pub fn write(
     }
     let texts = support.text(model.nv(), &o.prefix);
     let _ = writeln!(source, "\n{texts}\n{}", bodies.trim_end());
-    let single = |text: String| if options.single { in_single_precision(&text) } else { text };
+    let convert_to_precision = |text: String| if options.single { in_single_precision(&text) } else { text };
     Ok(Files {
-        header: single(header),
-        source: single(source),
+        header: convert_to_precision(header),
+        source: convert_to_precision(source),
         casadi,
         left_out: chosen.left_out,
         prefix: o.prefix.clone(),
@@ -126,7 +126,7 @@ pub struct Named {
 }
 
 impl Named {
-    /// Converts the names of a mechanism.
+    /// Converts the names of a mechanism to identifiers of C.
     pub fn from_model(model: &Model<'_>, tables: &[String], prefix: &str) -> Named {
         let prefix = match prefix {
             "" => names::prefix_identifier(&names::prefix(&model.name)),
@@ -207,14 +207,14 @@ fn write_casadi(
     Ok(shapes.text())
 }
 
-/// Rejects programs with vector lanes.
+/// Returns an error if a program contains vector lanes, which C code cannot have.
 pub fn check(output: &Output) -> Result<(), Unfit> {
-    let has = |program: &Program, wanted: fn(&Op) -> bool| program.instructions.iter().any(wanted);
+    let has_operation = |program: &Program, wanted: fn(&Op) -> bool| program.instructions.iter().any(wanted);
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
     let steps = steps.chain(output.frames.iter().flat_map(|f| [&f.placement, &f.twist, &f.acceleration]));
     let all = output.functions.iter().map(|f| (f.name.as_str(), &f.program));
     for (name, program) in all.chain(steps.map(|program| ("frames", program))) {
-        let lanes = has(program, |op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..)));
+        let lanes = has_operation(program, |op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..)));
         if lanes || !program.gathers.is_empty() || !program.tuples.is_empty() {
             return Err(Unfit::Lanes(name.to_string()));
         }
@@ -226,18 +226,18 @@ pub fn check(output: &Output) -> Result<(), Unfit> {
 pub struct Selection<'a> {
     /// Functions that a program can call.
     pub public: Vec<&'a Function>,
-    /// Functions that others call, in the order of their definitions.
+    /// Functions that only other functions call, in the order of their definitions.
     hidden: Vec<&'a Function>,
     /// Outputs that contain reactions.
     pub reactions: Vec<&'a Function>,
-    /// Function for the limits of joints.
+    /// Function that returns the limits of the joints, if there is one.
     pub limits: Option<&'a Function>,
     /// Functions that C does not have, with reasons.
     pub left_out: Vec<String>,
 }
 
 impl<'a> Selection<'a> {
-    /// Selects the functions of a mechanism.
+    /// Sorts the functions of a mechanism by how they are exported.
     pub fn new(output: &'a Output) -> Selection<'a> {
         let mut chosen = Selection {
             public: Vec::new(),
@@ -354,7 +354,7 @@ fn reaction(out: &mut String, f: &Function, model: &Model<'_>, o: &Outline<'_>, 
 
 /// Bodies in C of functions without calls of other functions and without loops.
 pub struct StraightBodies {
-    /// Prefix of all names.
+    /// Prefix of all names of the mechanism in C.
     pub prefix: String,
     /// Description of the mechanism: lines of a comment.
     pub about: String,
@@ -362,7 +362,7 @@ pub struct StraightBodies {
     pub functions: Vec<(Batch, String)>,
     /// Members of the parameter struct.
     pub parameters: Vec<String>,
-    /// Functions that are not available, with reasons.
+    /// Names of functions that C does not have, with reasons.
     pub left_out: Vec<String>,
 }
 
@@ -428,8 +428,9 @@ fn body_without_calls(f: &Function, o: &Outline<'_>, support: &mut Support) -> O
         shape => shape.calls(),
     };
     let calls = f.program.symbols().iter().any(|s| {
-        let called = |called: &Called| Argument::Called(*called).index(Quantity::from_symbol(*s)).is_some();
-        Called::ALL.iter().any(called)
+        let is_called_argument =
+            |called: &Called| Argument::Called(*called).index(Quantity::from_symbol(*s)).is_some();
+        Called::ALL.iter().any(is_called_argument)
     });
     if is_composed || calls {
         return None;
@@ -447,7 +448,7 @@ fn body_without_calls(f: &Function, o: &Outline<'_>, support: &mut Support) -> O
     Some(body)
 }
 
-/// Results of the function for limits.
+/// Names of the results of the function that returns the limits.
 pub const LIMITS: [&str; 4] = ["lower", "upper", "speed", "effort"];
 
 /// Writes the function for the bounds of coordinates, velocities and forces.
@@ -518,7 +519,7 @@ pub fn sizes(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
     text
 }
 
-/// Returns the types of tables and parameters.
+/// Returns the C types of tables and of the parameter struct.
 pub fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
     let mut text = tables::kind(o);
     if o.has_own() {

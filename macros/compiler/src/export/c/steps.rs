@@ -34,12 +34,12 @@ const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            b
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
 
-/// Available steps of a mechanism.
+/// Integration steps that are exported for a mechanism.
 pub struct Steps<'a> {
     charts: &'a [Chart],
     /// False for mechanisms with constraints or contacts, whose steps are not supported in C.
     pub has_steps: bool,
-    /// Whether steps have Jacobians.
+    /// Whether the Jacobians of the steps are exported.
     pub has_transitions: bool,
     /// Arguments of the function for the inputs' forces; `None` without inputs.
     inputs: Option<&'static [&'static str]>,
@@ -50,17 +50,19 @@ pub struct Steps<'a> {
 impl<'a> Steps<'a> {
     /// Determines the available steps of a mechanism.
     pub fn new(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
-        let find = |id: Id| output.functions.iter().find(|f| f.id == id);
+        let find_function_by_id = |id: Id| output.functions.iter().find(|f| f.id == id);
         let taken = output.functions.iter().any(|f| {
             METHODS.iter().any(|(method, _)| {
                 [format!("{method}_step"), format!("{method}_transition")].contains(&f.name)
             })
         });
-        let has_steps =
-            find(Id::ForwardDynamics).is_some() && model.contacts.is_empty() && !taken && model.nv() > 0;
+        let has_steps = find_function_by_id(Id::ForwardDynamics).is_some()
+            && model.contacts.is_empty()
+            && !taken
+            && model.nv() > 0;
         let nv = model.nv();
-        let derivatives = find(Id::InputDerivatives);
-        let changing = |first: usize| {
+        let derivatives = find_function_by_id(Id::InputDerivatives);
+        let has_nonzero_block = |first: usize| {
             derivatives.is_some_and(|f| (first..first + nv * nv).any(|k| !super::function::is_zero(f, k)))
         };
         Steps {
@@ -68,17 +70,17 @@ impl<'a> Steps<'a> {
             has_steps,
             has_transitions: has_steps
                 && derivatives.is_some()
-                && find(Id::ForwardDynamicsDerivatives).is_some(),
+                && find_function_by_id(Id::ForwardDynamicsDerivatives).is_some(),
             inputs: (model.nu() > 0).then_some(if model.velocity_inputs {
                 &["q", "v", "u"]
             } else {
                 &["q", "u"]
             }),
-            changing: [changing(nv), changing(nv + nv * nv)],
+            changing: [has_nonzero_block(nv), has_nonzero_block(nv + nv * nv)],
         }
     }
 
-    /// Returns the functions.
+    /// Returns the signatures of the integration steps.
     pub fn batches(&self, o: &Outline<'_>) -> Vec<Batch> {
         let mut all = Vec::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
@@ -86,19 +88,20 @@ impl<'a> Steps<'a> {
             let docs = format!("One step of {about}; `h` seconds long, under inputs `u` that are held.");
             let mut step = Batch::written(&format!("{method}_step"), &arguments, &[], &docs, o);
             step.arguments.push(Array::value("h", "step size, s"));
-            let array = |(name, rows, columns): (&str, usize, usize)| Array::matrix(name, rows, columns);
-            step.results = next(o).into_iter().map(array).collect();
+            let matrix_array =
+                |(name, rows, columns): (&str, usize, usize)| Array::matrix(name, rows, columns);
+            step.results = next(o).into_iter().map(matrix_array).collect();
             let docs = format!("The step of `{method}_step` with its Jacobians along displacements.");
             let mut transition = Batch { docs: vec![docs], ..step.clone() };
             transition.name = format!("{method}_transition");
-            transition.results = transition_results(o).into_iter().map(array).collect();
+            transition.results = transition_results(o).into_iter().map(matrix_array).collect();
             all.push(step);
             all.extend(self.has_transitions.then_some(transition));
         }
         all
     }
 
-    /// Returns the declarations.
+    /// Returns the declarations of the integration steps.
     pub fn declare(&self, o: &Outline<'_>) -> String {
         let mut text = String::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
@@ -124,7 +127,7 @@ impl<'a> Steps<'a> {
         text
     }
 
-    /// Writes the definitions.
+    /// Writes the definitions of the integration steps.
     pub fn define(&self, out: &mut String, o: &Outline<'_>, support: &mut Support) {
         if !self.has_steps {
             return;

@@ -1,8 +1,8 @@
-//! Helper functions that bodies call in addition to those of the mathematical library. Each is written only
-//! if it is called. Their names begin with `lw_`, which no name of a mechanism does
+//! Helper functions of generated bodies that the mathematical library does not have. Each helper is written
+//! only if it is called. Helper names begin with `lw_`, which no name of a mechanism does
 //! (`names::prefix_identifier`).
 
-/// Helper functions that a file needs.
+/// Set of the helper functions that a file needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Support {
     /// Whether numbers have single precision.
@@ -19,7 +19,7 @@ pub struct Support {
     pub completed: bool,
     /// Whether the blockwise inversion of a mass matrix is needed.
     pub inverted: bool,
-    /// Whether the solution of linear systems with such an inverse is needed.
+    /// Whether a helper that solves linear systems with such an inverse is needed.
     pub solved: bool,
     /// Whether functions of ball joints are needed.
     pub balls: bool,
@@ -54,14 +54,14 @@ impl Support {
         Support { is_kernel: true, ..Support::default() }
     }
 
-    /// Returns the function for sines and cosines of one or four angles.
+    /// Returns the helper for sines and cosines of one or four angles, and marks it as needed.
     pub fn angles(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
         if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
-    /// Returns the function for signs.
+    /// Returns the helper for signs, and marks it as needed.
     pub fn signum(&mut self) -> String {
         self.signum = true;
         "lw_signum".to_string()

@@ -1,10 +1,10 @@
-//! Functions that launch the kernels, for C++.
+//! C++ functions that launch the CUDA kernels.
 
 use super::Kernels;
 use crate::export::c::{Batch, wrapped};
 use std::fmt::Write;
 
-/// Returns the header.
+/// Returns the text of the header that launches the kernels.
 pub fn text(kernels: &Kernels<'_>) -> String {
     let p = &kernels.parts.prefix;
     let upper = p.to_ascii_uppercase();
@@ -30,11 +30,11 @@ fn launch(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
     text.push_str(" */\n");
     let mut declared = vec!["long long states".to_string()];
     let mut passed = vec!["states".to_string()];
-    let view = |kind: &str, name: &str| {
+    let view_argument = |kind: &str, name: &str| {
         (format!("lw_view<{kind}> {name}"), format!("{name}.at, {name}.entry_of(states), {name}.state"))
     };
     if kernels.has_own() {
-        let (argument, values) = view("const double", "parameters");
+        let (argument, values) = view_argument("const double", "parameters");
         declared.push(argument);
         passed.push(values);
     }
@@ -46,8 +46,8 @@ fn launch(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
         declared.push("int frame".to_string());
         passed.push("frame".to_string());
     }
-    let arguments = f.arguments.iter().map(|a| view("const double", &a.name));
-    for (argument, values) in arguments.chain(f.results.iter().map(|a| view("double", &a.name))) {
+    let arguments = f.arguments.iter().map(|a| view_argument("const double", &a.name));
+    for (argument, values) in arguments.chain(f.results.iter().map(|a| view_argument("double", &a.name))) {
         declared.push(argument);
         passed.push(values);
     }

@@ -19,7 +19,7 @@ pub struct Products<'a> {
 const NAMES: [&str; 2] = ["inverse_dynamics_vjp", "forward_dynamics_vjp"];
 
 impl<'a> Products<'a> {
-    /// Determines the products of a mechanism.
+    /// Determines the vector–Jacobian products that a mechanism has.
     pub fn from_model(model: &Model<'_>, output: &Output, parts: &'a CodeParts) -> Products<'a> {
         let has_function = |name: &str| parts.functions.iter().any(|f| f.name == name);
         let is_plain = model.acceleration_forces.is_empty();
@@ -44,7 +44,7 @@ impl<'a> Products<'a> {
         reason.map(|why| format!("{}: {why}", NAMES.join(" and "))).collect()
     }
 
-    /// Returns the signatures.
+    /// Returns the signatures of the vector–Jacobian products.
     pub fn batches(&self) -> Vec<Batch> {
         let mut all = Vec::new();
         for (k, name) in NAMES.iter().enumerate().filter(|(k, _)| self.has[*k]) {
@@ -64,7 +64,7 @@ impl<'a> Products<'a> {
         all
     }
 
-    /// Writes the definitions.
+    /// Writes the definitions of the vector–Jacobian products.
     pub fn define(&self, out: &mut String) {
         let p = &self.parts.prefix;
         let has_own = !(self.parts.parameters.is_empty() && self.parts.tables.is_empty());

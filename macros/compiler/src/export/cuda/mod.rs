@@ -14,10 +14,10 @@ use crate::derive::Output;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// Texts of the files, and functions that they do not contain.
+/// Texts of the CUDA files, and names of functions that they lack.
 #[derive(Clone, Debug)]
 pub struct KernelFiles {
-    /// Prefix of names and files.
+    /// Prefix of the names in the files and of the file names.
     pub prefix: String,
     /// Kernels, `PREFIX.cu`.
     pub kernels: String,
@@ -29,7 +29,7 @@ pub struct KernelFiles {
     pub left_out: Vec<String>,
 }
 
-/// Kernels of a mechanism.
+/// CUDA kernels of a mechanism, to be written as text.
 struct Kernels<'a> {
     parts: &'a CodeParts,
     functions: Vec<Batch>,
@@ -53,13 +53,13 @@ pub fn write(
     functions.extend(products.batches());
     let scalar = if options.single { "float" } else { "double" };
     let kernels = Kernels { parts: &parts, functions, scalar };
-    let single = |text: String| if options.single { in_single_precision(&text) } else { text };
+    let convert_to_precision = |text: String| if options.single { in_single_precision(&text) } else { text };
     let mut left_out = parts.left_out.clone();
     left_out.extend(products.left_out());
     Ok(KernelFiles {
         prefix: parts.prefix.clone(),
-        kernels: kernels.text(&products, &single),
-        host: single(host::text(&kernels)),
+        kernels: kernels.text(&products, &convert_to_precision),
+        host: convert_to_precision(host::text(&kernels)),
         python: python::text(&kernels),
         left_out,
     })
@@ -145,18 +145,18 @@ impl Kernels<'_> {
         !(self.parts.parameters.is_empty() && self.parts.tables.is_empty())
     }
 
-    /// Returns the arguments of a kernel.
+    /// Returns the parameters of a kernel's definition.
     fn parameters(&self, f: &Batch) -> Vec<String> {
         let p = &self.parts.prefix;
-        let array = |kind: &str, name: &str| {
+        let array_parameters = |kind: &str, name: &str| {
             format!("{kind} *LW_RESTRICT {name}, long long {name}_entry, long long {name}_state")
         };
         let mut list = vec!["long long states".to_string()];
-        list.extend(self.has_own().then(|| array("const double", "parameters")));
+        list.extend(self.has_own().then(|| array_parameters("const double", "parameters")));
         list.extend(self.parts.tables.iter().map(|name| format!("{p}_device::{p}_table table_{name}")));
         list.extend(f.of_frame.then(|| "int frame".to_string()));
-        list.extend(f.arguments.iter().map(|a| array("const double", &a.name)));
-        list.extend(f.results.iter().map(|a| array("double", &a.name)));
+        list.extend(f.arguments.iter().map(|a| array_parameters("const double", &a.name)));
+        list.extend(f.results.iter().map(|a| array_parameters("double", &a.name)));
         list
     }
 }
@@ -166,12 +166,12 @@ fn entries(array: &Array) -> String {
     format!("lw_entries_of({0}, {0}_entry, i * {0}_state)", array.name)
 }
 
-/// Returns the macros of a text.
+/// Returns the lines of a text that are macros (sizes and indices).
 fn sizes_only(types: &str) -> String {
     types.lines().filter(|line| line.starts_with('#')).map(|line| format!("{line}\n")).collect()
 }
 
-/// Returns a text without its macros.
+/// Returns the lines of a text that are not macros.
 fn without_sizes(types: &str) -> String {
     types.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect()
 }

@@ -27,7 +27,7 @@ const SOURCES: [(&str, &str); 7] = [
     (MAIN, include_str!("templates/lw_fmi3.c")),
 ];
 
-/// Source file that includes all headers.
+/// Name of the source file that includes all others.
 const MAIN: &str = "lw_fmi3.c";
 
 /// Texts of the files of an FMU, and features that it does not have.
@@ -35,9 +35,9 @@ const MAIN: &str = "lw_fmi3.c";
 pub struct FmuFiles {
     /// Identifier of the model.
     pub identifier: String,
-    /// Paths in the FMU, with the texts.
+    /// Paths within the FMU, with the text of each file.
     pub files: Vec<(String, String)>,
-    /// Sources to be compiled.
+    /// Names of the source files that an importer compiles.
     pub sources: [String; 2],
     /// Functions and features that the FMU does not have, with reasons.
     pub left_out: Vec<String>,
@@ -49,12 +49,12 @@ const SIMULATE: &str = "compliant contacts (`stiffness = …`) may have friction
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
 pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
     use crate::catalogue::Id;
-    let has = |id: Id| output.functions.iter().any(|f| f.id == id);
-    if model.kinematic || model.nv() == 0 || !has(Id::MassMatrix) {
+    let has_function = |id: Id| output.functions.iter().any(|f| f.id == id);
+    if model.kinematic || model.nv() == 0 || !has_function(Id::MassMatrix) {
         let what = "an FMU is for mechanisms that move, and this one has no equations of motion";
         return Some((what.to_string(), "give its bodies masses and joints"));
     }
-    if has(Id::SlippingResponse) {
+    if has_function(Id::SlippingResponse) {
         return Some(("FMUs have no constraints with friction".to_string(), SIMULATE));
     }
     let contact =
@@ -108,11 +108,11 @@ pub fn write(
 
 /// Returns a token that identifies the model: a hash of its texts, in the form of a UUID.
 fn token(texts: &[&str]) -> String {
-    let hash = |seed: u64| {
+    let hash_of_texts = |seed: u64| {
         let bytes = texts.iter().flat_map(|text| text.bytes());
         bytes.fold(seed, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
     };
-    let (a, b) = (hash(0xcbf2_9ce4_8422_2325), hash(0x6c62_272e_07bb_0142));
+    let (a, b) = (hash_of_texts(0xcbf2_9ce4_8422_2325), hash_of_texts(0x6c62_272e_07bb_0142));
     format!(
         "{{{:08x}-{:04x}-{:04x}-{:04x}-{:012x}}}",
         a >> 32,

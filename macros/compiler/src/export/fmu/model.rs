@@ -8,7 +8,7 @@ use crate::derive::Output;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;
 
-/// Writer of the header.
+/// Writer of the header that adapts the exported C functions to the FMU's interface.
 struct HeaderWriter<'a> {
     signatures: &'a Signatures,
     text: String,
@@ -45,9 +45,9 @@ pub fn text(
 }
 
 impl HeaderWriter<'_> {
-    /// Writes the numbers of variables and rows.
+    /// Writes the constants for the numbers of variables and of rows.
     fn sizes(&mut self, model: &Model<'_>, variables: &Variables, start: &StartValues) {
-        let length = |name: &str| self.result_length(name);
+        let length_of_result = |name: &str| self.result_length(name);
         let outputs = variables.all.iter().filter(|v| v.role == VariableRole::Output).count();
         let balls = model.charts.iter().filter(|chart| chart.quaternion().is_some()).count();
         let sizes = [
@@ -59,7 +59,7 @@ impl HeaderWriter<'_> {
             ("NY", outputs),
             ("NUMERIC", variables.numeric()),
             ("RESULTS", start.states.len() + outputs - variables.numeric()),
-            ("CONSTRAINTS", length("constraint_rates")),
+            ("CONSTRAINTS", length_of_result("constraint_rates")),
             ("CONTACTS", model.contacts.len()),
             ("PLAINS", model.charts.len() - balls),
             ("BALLS", balls),
@@ -77,7 +77,8 @@ impl HeaderWriter<'_> {
         found.map_or(0, |f| f.results.iter().map(|array| array.length).sum())
     }
 
-    /// Writes the positions of the coordinates, and those of quaternions, angular velocities and positions.
+    /// Writes the indices of plain coordinates, and of the quaternions, angular velocities and positions of
+    /// ball and free joints.
     fn charts(&mut self, charts: &[Chart]) {
         let (mut plains, mut balls) = (Vec::new(), Vec::new());
         for chart in charts {
@@ -142,7 +143,7 @@ impl HeaderWriter<'_> {
         self.define("lw_put_parameters", "lw_mechanism *m", &["x", "p"], &[], &body);
     }
 
-    /// Writes the functions of the configuration.
+    /// Writes the adapters of functions of the configuration.
     fn kinematics(&mut self, model: &Model<'_>) {
         let body = match model.speeds.is_some() {
             true => self.call("rates_of_speeds", &["w"]),
@@ -153,7 +154,7 @@ impl HeaderWriter<'_> {
         self.adapter("lw_integrate", &["q", "dv"], &["result"], &body);
     }
 
-    /// Writes the functions of forces and accelerations.
+    /// Writes the adapters of functions of forces and accelerations.
     fn dynamics(&mut self, variables: &Variables) {
         let forces = self.call("generalized_forces", &["tau"]);
         let forces = match forces.is_empty() {
@@ -171,7 +172,7 @@ impl HeaderWriter<'_> {
         }
     }
 
-    /// Writes the functions of constraints and contacts.
+    /// Writes the adapters of functions of constraints and contacts.
     fn rows(&mut self, model: &Model<'_>) {
         let results = ["residuals", "velocities", "biases", "jacobian"];
         let kinds = [
@@ -212,7 +213,7 @@ impl HeaderWriter<'_> {
         self.adapter("lw_results", &["t", "q", "v", "a", "u"], &["rates", "outputs"], &body);
     }
 
-    /// Writes the functions for derivatives.
+    /// Writes the adapters of functions for derivatives.
     fn derivatives(&mut self, variables: &Variables) {
         let mut body = self.call("forward_dynamics_derivatives", &["by_q", "by_v", "by_tau"]);
         body.push_str(&self.call("forward_dynamics_by_parameters", &["by_constants"]));
@@ -278,19 +279,19 @@ impl HeaderWriter<'_> {
         }
     }
 
-    /// Writes a function of the mechanism.
+    /// Writes an adapter that calls a function of the mechanism.
     fn adapter(&mut self, name: &str, arguments: &[&str], results: &[&str], body: &str) {
         self.define(name, "const lw_mechanism *m", arguments, results, body);
     }
 
     /// Writes a function. Unused arguments give no warnings.
     fn define(&mut self, name: &str, own: &str, arguments: &[&str], results: &[&str], body: &str) {
-        let argument = |name: &&str| match *name {
+        let argument_declaration = |name: &&str| match *name {
             "t" => "double t".to_string(),
             name => format!("const double *{name}"),
         };
         let mut list = vec![own.to_string()];
-        list.extend(arguments.iter().map(argument));
+        list.extend(arguments.iter().map(argument_declaration));
         list.extend(results.iter().map(|name| format!("double *{name}")));
         let names = ["m"].iter().chain(arguments).chain(results);
         let unused: String =
@@ -308,14 +309,14 @@ fn escaped(c: char) -> Vec<char> {
     }
 }
 
-/// Returns the definition of an array.
+/// Returns the C definition of an array of numbers.
 fn array(name: &str, values: &[f64]) -> String {
     let list: Vec<String> = values.iter().map(|x| format!("{x:?}")).collect();
     let list = if list.is_empty() { "0.0".to_string() } else { list.join(", ") };
     format!("static const double {name}[] = {{{list}}};\n")
 }
 
-/// Returns the definition of a table and of its arrays.
+/// Returns the C definition of a table and of its arrays.
 fn table(prefix: &str, name: &str, values: &TableValues) -> String {
     let mut text = String::new();
     let (mut axes, mut points) = (Vec::new(), Vec::new());

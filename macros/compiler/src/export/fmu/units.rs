@@ -1,12 +1,12 @@
 //! Conversion of units to their definition in base units.
 
-/// Exponents of kilogram, metre, second and radian.
+/// Exponents of kilogram, metre, second and radian in a unit.
 pub type Exponents = [i32; 4];
 
 /// Base units, in the order of the exponents.
 pub const BASES: [&str; 4] = ["kg", "m", "s", "rad"];
 
-/// Units with a name.
+/// Units that have a name, with their exponents.
 const NAMED: [(&str, Exponents); 11] = [
     ("1", [0, 0, 0, 0]),
     ("kg", [1, 0, 0, 0]),
@@ -51,8 +51,9 @@ fn split_power(word: &str) -> Option<(&str, i32)> {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let Some(at) = word.find(|c: char| DIGITS.contains(&c)) else { return Some((word, 1)) };
     let (name, power) = word.split_at(at);
-    let digit = |c: char| DIGITS.iter().position(|d| *d == c).and_then(|d| i32::try_from(d).ok());
-    power.chars().try_fold(0, |sum, c| Some(sum * 10 + digit(c)?)).map(|power| (name, power))
+    let value_of_superscript =
+        |c: char| DIGITS.iter().position(|d| *d == c).and_then(|d| i32::try_from(d).ok());
+    power.chars().try_fold(0, |sum, c| Some(sum * 10 + value_of_superscript(c)?)).map(|power| (name, power))
 }
 
 /// Returns the unit of the rate of a quantity.

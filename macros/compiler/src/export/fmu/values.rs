@@ -1,6 +1,6 @@
-//! Start values of FMUs.
+//! Start values of the variables of an FMU.
 
-/// Values of a table on a grid.
+/// Values of a table on its grid.
 #[derive(Clone, Debug, Default)]
 pub struct TableValues {
     /// Grid points along each axis.
@@ -13,18 +13,18 @@ pub struct TableValues {
     pub extrapolated: bool,
 }
 
-/// Start values of the variables.
+/// Start values of all variables of an FMU.
 #[derive(Clone, Debug, Default)]
 pub struct StartValues {
     /// Parameters, among them the states of first order.
     pub parameters: Vec<f64>,
-    /// Configuration.
+    /// Initial configuration.
     pub q: Vec<f64>,
-    /// Velocity.
+    /// Initial velocity.
     pub v: Vec<f64>,
-    /// Inputs.
+    /// Values of the inputs at the start.
     pub u: Vec<f64>,
-    /// Tables, which are constant.
+    /// Tables of the mechanism, which are constant.
     pub tables: Vec<TableValues>,
     /// States of first order: their indices among the parameters.
     pub states: Vec<usize>,

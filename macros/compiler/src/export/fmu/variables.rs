@@ -5,7 +5,7 @@ use super::units;
 use super::values::StartValues;
 use crate::mechanism::Model;
 
-/// VariableRole of a variable.
+/// Role of a variable in the FMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VariableRole {
     Time,
@@ -18,37 +18,37 @@ pub enum VariableRole {
     Indicator,
 }
 
-/// A scalar variable.
+/// Scalar variable of an FMU.
 #[derive(Clone, Debug)]
 pub struct ScalarVariable {
     pub name: String,
-    /// Unit; `any` if it is unknown.
+    /// Unit of the variable; `any` if it is unknown.
     pub unit: String,
     pub role: VariableRole,
     /// Start value of states, inputs and parameters.
     pub start: f64,
 }
 
-/// An output with its functions.
+/// Output of the mechanism with the C functions that compute it.
 #[derive(Clone, Debug)]
 pub struct OutputFunction {
     /// Name of the function in C.
     pub name: String,
-    /// Number of values.
+    /// Number of values of the output.
     pub size: usize,
     /// Whether there are functions for its derivatives.
     pub is_differentiable: bool,
 }
 
-/// All variables of a mechanism.
+/// All variables of an FMU.
 pub struct Variables {
-    /// Variables by value reference.
+    /// All variables, in the order of their value references.
     pub all: Vec<ScalarVariable>,
     /// Functions for the rates of states of first order.
     pub rates: Vec<OutputFunction>,
     /// Outputs in the order of the variables: those with derivatives first.
     pub outputs: Vec<OutputFunction>,
-    /// Parameters that are no states: their indices.
+    /// Indices of the parameters that are not states of first order.
     pub parameters: Vec<usize>,
     /// Whether derivatives of rates and outputs are provided.
     pub is_differentiable: bool,
@@ -58,24 +58,25 @@ pub struct Variables {
     pub is_constrained: bool,
 }
 
-/// Energies, which follow the outputs.
+/// Names of the energies, which follow the outputs.
 pub const ENERGIES: [&str; 2] = ["kinetic_energy", "potential_energy"];
 
 impl Variables {
     /// Lists the variables of a mechanism.
     pub fn new(model: &Model<'_>, signatures: &Signatures, start: &StartValues) -> Variables {
-        let find = |name: &str| signatures.functions.iter().find(|f| f.name == name);
-        let is_constrained = find("constraint_jacobian").is_some();
-        let function = |name: &String| {
-            let size = find(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
+        let find_function = |name: &str| signatures.functions.iter().find(|f| f.name == name);
+        let is_constrained = find_function("constraint_jacobian").is_some();
+        let output_function = |name: &String| {
+            let size = find_function(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
             let has_parameters =
-                signatures.parameters.is_empty() || find(&format!("{name}_by_parameters")).is_some();
-            let is_differentiable = find(&format!("{name}_derivatives")).is_some() && has_parameters;
+                signatures.parameters.is_empty() || find_function(&format!("{name}_by_parameters")).is_some();
+            let is_differentiable = find_function(&format!("{name}_derivatives")).is_some() && has_parameters;
             OutputFunction { name: name.clone(), size, is_differentiable }
         };
-        let rate_of = |k: &usize| format!("{}_rate", signatures.parameters[*k]);
-        let rates: Vec<OutputFunction> = start.states.iter().map(|k| function(&rate_of(k))).collect();
-        let mut outputs: Vec<OutputFunction> = signatures.outputs.iter().map(function).collect();
+        let name_of_state_rate = |k: &usize| format!("{}_rate", signatures.parameters[*k]);
+        let rates: Vec<OutputFunction> =
+            start.states.iter().map(|k| output_function(&name_of_state_rate(k))).collect();
+        let mut outputs: Vec<OutputFunction> = signatures.outputs.iter().map(output_function).collect();
         outputs.retain(|output| rates.iter().all(|rate| rate.name != output.name));
         outputs.sort_by_key(|output| !output.is_differentiable);
         let needed = [
@@ -85,7 +86,7 @@ impl Variables {
         ];
         let is_needed = [true, model.nu() > 0, !signatures.parameters.is_empty()];
         let has_derivatives =
-            needed.iter().zip(is_needed).all(|(name, needed)| !needed || find(name).is_some());
+            needed.iter().zip(is_needed).all(|(name, needed)| !needed || find_function(name).is_some());
         let is_differentiable = has_derivatives
             && rates.iter().all(|rate| rate.is_differentiable)
             && model.contacts.is_empty()
@@ -106,7 +107,7 @@ impl Variables {
         variables
     }
 
-    /// Lists all variables.
+    /// Lists all variables in the order of their value references.
     fn list(&mut self, model: &Model<'_>, start: &StartValues) {
         let u = &model.units;
         self.add("time".to_string(), "s", VariableRole::Time, 0.0);

@@ -8,10 +8,10 @@ use crate::derive::Output;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// Texts of the files, and functions that they do not contain.
+/// Texts of the WGSL files, and names of functions that they lack.
 #[derive(Clone, Debug)]
 pub struct ShaderFiles {
-    /// Prefix of names and files.
+    /// Prefix of the names in the files and of the file names.
     pub prefix: String,
     /// Shaders, `PREFIX.wgsl`.
     pub shaders: String,
@@ -21,8 +21,8 @@ pub struct ShaderFiles {
     pub left_out: Vec<String>,
 }
 
-/// Functions in C with another name in WGSL. Sines, cosines and powers are helper functions: those of WGSL
-/// are inaccurate, or undefined for negative bases.
+/// C functions that have another name in WGSL. Sines, cosines and powers are helper functions instead, since
+/// those of WGSL are inaccurate, or undefined for negative bases.
 const FUNCTIONS: [(&str, &str); 6] = [
     ("fabs", "abs"),
     ("fmin", "min"),
@@ -99,7 +99,7 @@ fn shader(p: &str, batch: &Batch, body: &str, parameters: &[String]) -> Result<S
     Ok(text)
 }
 
-/// Converts statements of a function.
+/// Converter of the C statements of a function to WGSL.
 struct Converter<'a> {
     batch: &'a Batch,
     parameters: &'a [String],
@@ -136,13 +136,13 @@ impl Converter<'_> {
         let mut out = String::new();
         let mut rest = code;
         while let Some(first) = rest.chars().next() {
-            let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+            let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if first.is_ascii_digit() {
                 let (number, after) = rest.split_at(c::number_length(rest));
                 out.push_str(&literal(number)?);
                 rest = after;
-            } else if is_word(first) {
-                let (word, after) = rest.split_at(rest.find(|c| !is_word(c)).unwrap_or(rest.len()));
+            } else if is_word_character(first) {
+                let (word, after) = rest.split_at(rest.find(|c| !is_word_character(c)).unwrap_or(rest.len()));
                 rest = self.word(&mut out, word, after)?;
             } else {
                 out.push(first);
@@ -191,18 +191,18 @@ impl Converter<'_> {
 
     /// Returns the buffer of an array, and the index of its first entry.
     fn offset(&self, name: &str) -> Option<(&'static str, usize)> {
-        let first = |list: &[Array]| {
+        let offset_in_arrays = |list: &[Array]| {
             let at = list.iter().position(|array| array.name == name)?;
             Some(list[..at].iter().map(|array| array.length).sum())
         };
-        match first(&self.batch.arguments) {
+        match offset_in_arrays(&self.batch.arguments) {
             Some(at) => Some(("arguments", at)),
-            None => first(&self.batch.results).map(|at| ("results", at)),
+            None => offset_in_arrays(&self.batch.results).map(|at| ("results", at)),
         }
     }
 }
 
-/// Returns a literal of single precision.
+/// Returns a WGSL literal of single precision.
 fn literal(number: &str) -> Result<String, String> {
     match number.parse::<f64>() {
         Ok(x) if (x as f32).is_finite() => Ok(format!("{:?}f", x as f32)),
@@ -210,15 +210,21 @@ fn literal(number: &str) -> Result<String, String> {
     }
 }
 
-/// Returns the module for Python.
+/// Returns the text of the Python module that runs the shaders.
 fn python(p: &str, functions: &[&Batch], parameters: &[String]) -> String {
-    let arrays = |list: &[Array]| {
+    let format_array_list = |list: &[Array]| {
         let entries: Vec<String> = list.iter().map(|a| format!("({:?}, {})", a.name, a.length)).collect();
         format!("[{}]", entries.join(", "))
     };
     let mut all = String::new();
     for f in functions {
-        let _ = writeln!(all, "    {:?}: ({}, {}),", f.name, arrays(&f.arguments), arrays(&f.results));
+        let _ = writeln!(
+            all,
+            "    {:?}: ({}, {}),",
+            f.name,
+            format_array_list(&f.arguments),
+            format_array_list(&f.results)
+        );
     }
     let names: Vec<String> = parameters.iter().map(|name| format!("{name:?}")).collect();
     include_str!("templates/wgpu.py")
@@ -236,7 +242,7 @@ mod tests {
         let batch = Batch::plain("f", &[("q", 2), ("v", 2)], &[("by_q", 4), ("by_v", 4)]);
         assert_eq!(batch.arguments[0], Array::new("q", 2));
         let converter = Converter { batch: &batch, parameters: &["mass".to_string()] };
-        let convert = |line: &str| {
+        let convert_statement = |line: &str| {
             let mut out = String::new();
             converter.statement(&mut out, line).map(|()| out)
         };
@@ -251,10 +257,10 @@ mod tests {
                 "    let p_mass = parameters[0 * sizes.parameter_entry + i * sizes.parameter_state];\n",
             ),
         ] {
-            assert_eq!(convert(c), Ok(wgsl.to_string()));
+            assert_eq!(convert_statement(c), Ok(wgsl.to_string()));
         }
         assert_eq!(
-            convert("    q0 = 1e300;"),
+            convert_statement("    q0 = 1e300;"),
             Err("the constant 1e300 is beyond single precision".to_string())
         );
     }

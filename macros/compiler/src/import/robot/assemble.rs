@@ -1,4 +1,4 @@
-//! Assembles bodies and joints of the language from the links and joints of a file, their order and their
+//! Assembly of the language's bodies and joints from the links and joints of a file, their order and their
 //! motions.
 
 use super::couplings;
@@ -15,7 +15,7 @@ use crate::syntax::{
     ROOT_JOINT,
 };
 
-/// Assembles the mechanism. Bodies are in the order of the joints whose children they are.
+/// Assembles the mechanism. Each body is placed in the list like the joint whose child it is.
 pub(in crate::import) fn assemble(
     robot: Robot,
     order: &Order,
@@ -82,18 +82,19 @@ pub(in crate::import) fn assemble(
 /// Returns the joint between ground and root, which URDF files do not contain.
 fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
-    let names = || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
-    let text = unused(ROOT_JOINT, |text| names().any(|name| name == text));
-    let name = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
+    let names_in_robot =
+        || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
+    let text = unused(ROOT_JOINT, |text| names_in_robot().any(|name| name == text));
+    let name_at_link = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
     };
-    let mut ground = end_at(name(GROUND));
+    let mut ground = end_at(name_at_link(GROUND));
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
         (ground.at, ground.rotated) = (origin.position(), origin.rotated());
     }
-    bare_joint(name(&text), kind, ground, end_at(link.clone()))
+    bare_joint(name_at_link(&text), kind, ground, end_at(link.clone()))
 }
 
 /// Returns an endpoint at the origin of a body.
@@ -101,7 +102,7 @@ pub(in crate::import) fn end_at(body: Name) -> Endpoint {
     Endpoint { body, at: None, rotated: Vec::new() }
 }
 
-/// Returns the child's endpoint of a joint.
+/// Returns the endpoint of a joint on its child link.
 fn place_at(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
     let at = (anchor != [0.0; 3]).then(|| Expr::vector(anchor, &given.origin.xyz.place));
     Endpoint { at, ..end_at(given.child.clone()) }
@@ -126,7 +127,7 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
     }
 }
 
-/// Returns the parent's endpoint of a joint.
+/// Returns the endpoint of a joint on its parent link.
 fn parent_of(given: &FileJoint) -> Endpoint {
     Endpoint { body: given.parent.clone(), at: given.origin.position(), rotated: given.origin.rotated() }
 }

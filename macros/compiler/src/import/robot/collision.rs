@@ -8,9 +8,9 @@ use crate::syntax::{Collision, Endpoint, Name, Shape};
 pub(in crate::import) struct FileCollision {
     /// Pose of the shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// Shape and its lengths, m.
+    /// Shape of the geometry with its lengths, m.
     pub(in crate::import) shape: Shape,
-    /// Source position in the file.
+    /// Source position of the geometry in the file.
     pub(in crate::import) place: Place,
 }
 

@@ -6,7 +6,8 @@ use crate::import::context::{Cx, quote};
 use crate::syntax::{BinaryOp, Constraint, Expr, ExprKind};
 use std::collections::BTreeMap;
 
-/// Tolerance of residuals of constraints without moving joints, relative to the sum of their terms.
+/// Tolerance of the residual of a constraint without moving joints, relative to the sum of the magnitudes of
+/// its terms.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns the constraints on moving joints. A constraint on locked joints alone is dropped if it is

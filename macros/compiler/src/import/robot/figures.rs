@@ -1,5 +1,5 @@
-//! The option `parameters`: values of the file become fields of the mechanism. Each value is replaced by a
-//! reference to its field.
+//! Conversion of values of a file to fields of the mechanism, for the option `parameters`. Each value is
+//! replaced by a reference to its field.
 
 use super::names::unused;
 use crate::diag::Place;
@@ -36,14 +36,16 @@ fn inertials(
     (fields, link): (&mut Vec<FileField>, &str),
     cx: &mut Cx<'_>,
 ) {
-    let stands = |body: &Body| standing.contains(&body.name.text);
+    let is_fixed_to_ground = |body: &Body| standing.contains(&body.name.text);
     let names: Vec<String> = bodies.iter().map(|body| body.name.text.clone()).collect();
     let chosen = chosen(figures, &names, link, cx);
     let mut found = false;
     for body in bodies {
         let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
         let missing = match () {
-            () if stands(body) => Some("is fixed to the ground: its mass properties appear in no equation"),
+            () if is_fixed_to_ground(body) => {
+                Some("is fixed to the ground: its mass properties appear in no equation")
+            }
             () if body.mass.is_none() => Some("has no mass properties in the file"),
             () => None,
         };
@@ -64,13 +66,17 @@ fn inertials(
         let of = &body.name.text;
         let e = add(FileFieldKind::Inertial, of, "", about, (values, units), &name.place, fields);
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz] = e.as_slice() else { continue };
-        let array = |items: [&Expr; 3]| Expr {
+        let array_expression = |items: [&Expr; 3]| Expr {
             kind: ExprKind::Array(items.map(Clone::clone).to_vec()),
             place: name.place.clone(),
         };
         body.mass = Some(mass.clone());
-        body.com = Some(array([x, y, z]));
-        body.inertia = Some(array([&array([xx, xy, xz]), &array([xy, yy, yz]), &array([xz, yz, zz])]));
+        body.com = Some(array_expression([x, y, z]));
+        body.inertia = Some(array_expression([
+            &array_expression([xx, xy, xz]),
+            &array_expression([xy, yy, yz]),
+            &array_expression([xz, yz, zz]),
+        ]));
     }
     if !found && figures.of.is_none() {
         let message = format!("no {link} that moves has mass properties in the file");
@@ -86,16 +92,17 @@ fn of_joints(
 ) {
     let word = figures.word.text.as_str();
     // The joint between ground and root is not in the file.
-    let of_file = |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
-    let fits = |joint: &Joint| match word {
-        PLACEMENT => of_file(joint),
+    let has_placement_in_file =
+        |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
+    let is_supported_joint = |joint: &Joint| match word {
+        PLACEMENT => has_placement_in_file(joint),
         _ => matches!(joint.kind, JointKind::Pin | JointKind::Sleeve),
     };
     let names: Vec<String> = joints.iter().map(|joint| joint.name.text.clone()).collect();
     let chosen = chosen(figures, &names, "joint", cx);
     for joint in joints {
         let Some(name) = chosen.iter().find(|name| name.text == joint.name.text) else { continue };
-        if !fits(joint) {
+        if !is_supported_joint(joint) {
             if figures.of.is_some() {
                 let message = format!("joint {} has no {word}", quote(&name.text));
                 cx.error(&name.place, message, |d| match word {
@@ -106,18 +113,18 @@ fn of_joints(
             continue;
         }
         let of = &joint.name.text;
-        let description = |what: &str| format!("{what} of the joint `{of}`.");
+        let describe_joint_parameter = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
             let Some(values) = placement(joint) else {
                 cx.report_lost(&joint.name);
                 continue;
             };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
-            let description = description(&format!("Place, on the parent {link},"));
+            let description = describe_joint_parameter(&format!("Place, on the parent {link},"));
             let e =
                 add(FileFieldKind::Placement, of, word, description, (values, units), &name.place, fields);
-            let place = |e| Expr { kind: e, place: name.place.clone() };
-            joint.parent.at = Some(place(ExprKind::Array(e[..3].to_vec())));
+            let expression_at_name = |e| Expr { kind: e, place: name.place.clone() };
+            joint.parent.at = Some(expression_at_name(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
             joint.parent.rotated =
                 turns.map(|(axis, k)| Expr::call(axis, vec![e[k].clone()], &name.place)).to_vec();
@@ -139,7 +146,7 @@ fn of_joints(
             FileFieldKind::Number,
             of,
             word,
-            description(what),
+            describe_joint_parameter(what),
             (vec![value], vec![unit]),
             &name.place,
             fields,
@@ -152,8 +159,8 @@ fn of_joints(
 /// names.
 fn chosen(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
     let Some(of) = &figures.of else {
-        let name = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
-        return known.iter().map(name).collect();
+        let name_at_option = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
+        return known.iter().map(name_at_option).collect();
     };
     for (k, name) in of.iter().enumerate() {
         if !known.contains(&name.text) {
@@ -168,7 +175,7 @@ fn chosen(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_
     of.clone()
 }
 
-/// Adds a field, and returns one expression per value of the field.
+/// Adds a field for several values of the file, and returns one expression for each value.
 fn add(
     kind: FileFieldKind,
     of: &str,
@@ -178,8 +185,8 @@ fn add(
     place: &Place,
     fields: &mut Vec<FileField>,
 ) -> Vec<Expr> {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let mut name: String = of.chars().map(plain).collect();
+    let identifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let mut name: String = of.chars().map(identifier_character).collect();
     if !word.is_empty() {
         name = format!("{name}_{word}");
     }
@@ -191,8 +198,8 @@ fn add(
     }
     let ident = unused(&name, |name| fields.iter().any(|field| field.ident == name));
     let field = FileField { ident, kind, of: of.to_string(), about, values, units };
-    let name = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
-    let expressions = field.members().into_iter().map(name).collect();
+    let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
+    let expressions = field.members().into_iter().map(name_expression).collect();
     fields.push(field);
     expressions
 }
@@ -206,7 +213,7 @@ fn properties(body: &Body) -> Option<Vec<f64>> {
     Some([mass].into_iter().chain(com).chain(entries).collect())
 }
 
-/// Returns the three numbers of a vector.
+/// Returns the three numbers of a vector, if all components are numbers.
 fn numbers(e: &Expr) -> Option<Vector> {
     let ExprKind::Array(items) = &e.kind else { return None };
     let numbers: Option<Vec<f64>> = items.iter().map(Expr::literal).collect();
@@ -235,7 +242,7 @@ fn turn(e: &Expr) -> Option<(usize, f64)> {
     Some((axis, arguments.first()?.literal()?))
 }
 
-/// Returns the matrix of rotations about body-fixed axes, one after the other.
+/// Returns the matrix of successive rotations about body-fixed axes.
 fn rotation(rotations: &[Expr]) -> Option<Matrix> {
     rotations.iter().try_fold(IDENTITY, |whole, e| Some(product(&whole, &one_rotation(e)?)))
 }
@@ -254,7 +261,7 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
     Some(m)
 }
 
-/// Returns position, roll, pitch and yaw of the joint's frame. A joint that is held at a coordinate other
+/// Returns position, roll, pitch and yaw of the frame of a joint. A joint that is held at a coordinate other
 /// than zero has one more rotation than its frame.
 fn placement(joint: &Joint) -> Option<Vec<f64>> {
     let rotations = &joint.parent.rotated;

@@ -5,7 +5,7 @@ use super::origin::Origin;
 use crate::import::imported::Placed;
 use crate::syntax::{Expr, JointKind, Mimic, Name};
 
-/// Joint as its file describes it.
+/// Joint as the robot file describes it.
 pub(in crate::import) struct FileJoint {
     /// Name of the joint.
     pub(in crate::import) name: Name,
@@ -24,7 +24,7 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) anchor: [f64; 3],
     /// Joint axis, nonzero but not normalised; unused by welds and free joints.
     pub(in crate::import) axis: Placed<[f64; 3]>,
-    /// Leader and coefficients of a joint that follows another one; `None` if the user's options ignore
+    /// Leader and coefficients of a joint that follows another joint; `None` if the user's options ignore
     /// `mimic`.
     pub(in crate::import) mimic: Option<Mimic>,
     /// Coordinate at which the file locks the joint.
@@ -33,25 +33,25 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) lead: Option<Expr>,
     /// Limits of the coordinate, velocity and force.
     pub(in crate::import) limits: FileLimits,
-    /// Coefficient of viscous damping; `None` for zero.
+    /// Coefficient of viscous damping; `None` for no damping.
     pub(in crate::import) damping: Option<Expr>,
-    /// Coulomb friction; `None` for zero.
+    /// Coulomb friction force or torque; `None` for no friction.
     pub(in crate::import) friction: Option<Expr>,
 }
 
 impl FileJoint {
-    /// Returns true if the joint has exactly one coordinate that limits and locks refer to.
+    /// Returns whether the joint has exactly one coordinate, to which limits and locks refer.
     pub(in crate::import) fn has_coordinate(&self) -> bool {
         has_coordinate(self.kind)
     }
 
-    /// Returns true if the joint moves about or along its axis.
+    /// Returns whether the joint moves about or along an axis.
     pub(in crate::import) fn has_axis(&self) -> bool {
         has_axis(self.kind)
     }
 }
 
-/// Returns true if joints of this type have exactly one coordinate that limits and locks refer to.
+/// Returns whether joints of this type have exactly one coordinate, to which limits and locks refer.
 pub(in crate::import) fn has_coordinate(kind: JointKind) -> bool {
     kind.rotates().is_some()
 }

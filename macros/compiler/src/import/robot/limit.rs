@@ -10,9 +10,9 @@ pub(in crate::import) struct FileLimits {
     pub(in crate::import) lower: Option<Placed<f64>>,
     /// Upper bound of the coordinate.
     pub(in crate::import) upper: Option<Placed<f64>>,
-    /// Maximum speed.
+    /// Maximum speed of the coordinate.
     pub(in crate::import) velocity: Option<Placed<f64>>,
-    /// Maximum force or torque.
+    /// Maximum force or torque on the coordinate.
     pub(in crate::import) effort: Option<Placed<f64>>,
 }
 
@@ -21,7 +21,7 @@ pub(in crate::import) const IGNORE_LIMITS: &str =
     "to ignore limits, write `#[mechanism(…, limits = ignore)]`";
 
 impl FileLimits {
-    /// Returns true if any limit is specified.
+    /// Returns whether any limit is specified.
     pub(in crate::import) fn bounds(&self) -> bool {
         [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
     }

@@ -1,5 +1,5 @@
-//! Resolves locks and `mimic` elements: determines for each joint whether it moves freely, follows another
-//! one or is locked.
+//! Resolution of locks and `mimic` elements: for each joint, whether it moves freely, follows another joint
+//! or is locked.
 
 use super::joint::FileJoint;
 use crate::import::context::{Cx, quote, quote_all};
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub(in crate::import) enum Motion {
     /// Joint that moves independently.
     Own,
-    /// Joint that follows an independent joint.
+    /// Joint that follows an independent joint by a linear relation.
     Follows(Mimic),
     /// Joint that is locked at this coordinate.
     Frozen(f64),
@@ -87,7 +87,7 @@ fn find_leader(
 const MOVE_ALONE: &str =
     "to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
 
-/// Reports cycles of joints that follow one another, each cycle once.
+/// Reports each cycle of joints that follow one another once.
 fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {
     for start in 0..joints.len() {
         let walk = std::iter::successors(leaders[start], |k| leaders[*k]);

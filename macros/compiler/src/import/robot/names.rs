@@ -53,7 +53,7 @@ pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> 
     text
 }
 
-/// Reports repeated names of elements of one kind.
+/// Reports names that occur more than once among the elements of one kind.
 pub(in crate::import) fn check_unique<'a>(
     names: impl Iterator<Item = &'a Name>,
     what: &str,
@@ -110,7 +110,7 @@ fn report_two_parents(first: &FileJoint, second: &FileJoint, format: FileFormat,
     });
 }
 
-/// Reports unknown joints in `lock`.
+/// Reports names in the option `lock` that no joint has.
 pub(in crate::import) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
     for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());

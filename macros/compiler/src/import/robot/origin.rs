@@ -5,7 +5,7 @@ use crate::syntax::Expr;
 
 /// Pose of a frame as a file specifies it.
 pub(in crate::import) struct Origin {
-    /// Position of the origin.
+    /// Position of the origin in its reference frame.
     pub(in crate::import) xyz: Placed<[f64; 3]>,
     /// Roll, pitch and yaw, rad: rotations about the fixed x, y and z axes, in this order.
     pub(in crate::import) rpy: Placed<[f64; 3]>,

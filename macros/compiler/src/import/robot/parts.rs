@@ -12,9 +12,9 @@ pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
 /// Contents of a robot file, in the order of the file.
 #[derive(Default)]
 pub(in crate::import) struct Robot {
-    /// Links.
+    /// Links of the robot, as bodies.
     pub(in crate::import) links: Vec<Body>,
-    /// Joints of the tree.
+    /// Joints of the kinematic tree.
     pub(in crate::import) joints: Vec<FileJoint>,
     /// Pose of the root relative to the ground; `None` for the identity.
     pub(in crate::import) root: Option<Origin>,
@@ -34,13 +34,13 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) dissipations: Vec<(Name, Expr)>,
     /// Gravitational acceleration, m/s²; `None` if the format does not specify one.
     pub(in crate::import) gravity: Option<Expr>,
-    /// Descriptions of the rounded values.
+    /// Descriptions of the values that were rounded.
     pub(in crate::import) snapped: Vec<String>,
     /// Descriptions of contents of the file that the mechanism does not represent.
     pub(in crate::import) left_out: Vec<String>,
 }
 
-/// Returns a link without mass properties.
+/// Returns a body for a link without mass properties.
 pub(in crate::import) fn bare_link(name: Name) -> Body {
     Body { name, mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }

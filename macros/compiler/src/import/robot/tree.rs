@@ -8,16 +8,17 @@ use std::collections::BTreeMap;
 pub(in crate::import) struct Order {
     /// Index of the link that is no joint's child.
     pub(in crate::import) root: usize,
-    /// Indices of each joint and its child link, depth first. Joints of one parent are sorted by name.
+    /// Pairs of the index of a joint and of its child link, depth first. Joints of one parent are sorted by
+    /// name.
     pub(in crate::import) joints: Vec<(usize, usize)>,
 }
 
 /// Orders the joints. Names must have been checked before. Returns `None` with the error in `cx` if the links
 /// do not form a single tree.
 pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
-    let index = |(k, name): (usize, &str)| (name.to_string(), k);
+    let name_with_index = |(k, name): (usize, &str)| (name.to_string(), k);
     let links: BTreeMap<String, usize> =
-        robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(index).collect();
+        robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(name_with_index).collect();
     let ends: Option<Vec<(usize, usize)>> = robot
         .joints
         .iter()
@@ -33,7 +34,7 @@ pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<
     Some(Order { root, joints: depth_first(robot, root, &ends) })
 }
 
-/// Returns the link without a parent. Without such a link there is a cycle, which is reported separately.
+/// Returns the link without a parent. Returns `None` if there is a cycle, which is reported separately.
 fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<usize> {
     let mut roots = (0..above.len()).filter(|link| above[*link].is_none());
     let root = roots.next()?;
@@ -73,11 +74,11 @@ fn report_cycle(
     link: usize,
     cx: &mut Cx<'_>,
 ) {
-    let up = |from: &usize| above[*from].map(|joint| ends[joint].0);
+    let parent_link = |from: &usize| above[*from].map(|joint| ends[joint].0);
     let Some(joint) = above[link].map(|joint| &robot.joints[joint]) else {
         return;
     };
-    let rest = std::iter::successors(up(&link), up).take_while(|l| *l != link);
+    let rest = std::iter::successors(parent_link(&link), parent_link).take_while(|l| *l != link);
     let links = std::iter::once(link).chain(rest).map(|l| robot.links[l].name.text.as_str());
     let message = format!("links {} form a cycle", quote_all(links));
     let help = format!("joint {} closes the cycle; a tree has a root", quote(&joint.name.text));

@@ -1,4 +1,4 @@
-//! Visual shapes of links.
+//! Visual shapes of the links of a robot file.
 
 use super::origin::Origin;
 use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
@@ -7,7 +7,7 @@ use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
 pub(in crate::import) struct FileVisual {
     /// Pose of the shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// Shape and its lengths, m.
+    /// Shape of the geometry with its lengths, m.
     pub(in crate::import) shape: Shape,
     /// Triangles of a mesh; `None` for other shapes.
     pub(in crate::import) mesh: Option<Mesh>,

@@ -7,7 +7,7 @@ use crate::import::element::{Node, check_attributes, children, content, elements
 use crate::import::robot::FileCollision;
 use crate::syntax::{Name, Shape};
 
-/// Supported shapes.
+/// Shapes of collision geometry that are supported.
 pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
 /// Reads all collision geometry of a link.
@@ -75,7 +75,7 @@ pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     }
 }
 
-/// Reads positive lengths, m.
+/// Reads positive lengths of a shape, m.
 fn lengths<const N: usize>(
     child: Option<Node<'_>>,
     shape: Node<'_>,

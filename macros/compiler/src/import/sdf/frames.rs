@@ -21,7 +21,7 @@ const MAX_DEPTH: usize = 1024;
 pub(super) struct Frame {
     /// Full name of the frame that the pose is relative to.
     pub(super) base: Name,
-    /// Pose relative to `base`.
+    /// Pose of the frame relative to `base`.
     pub(super) pose: Pose,
     /// Frame that this frame is attached to; `None` for links.
     pub(super) attached: Option<Name>,
@@ -31,7 +31,7 @@ pub(super) struct Frame {
 /// model.
 #[derive(Default)]
 pub(super) struct Frames {
-    /// Frames by full name.
+    /// Frames by their full names.
     pub(super) known: BTreeMap<String, Frame>,
 }
 
@@ -65,15 +65,15 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
 
 /// Returns the attribute of a `<pose>` that names its reference frame.
 pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
-    let written = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
-    let old = written("frame");
+    let non_blank_attribute = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
+    let old = non_blank_attribute("frame");
     if let Some(found) = old.filter(|_| !is_before(pose, RELATIVE_TO)) {
         let at = cx.place(found.range().start);
         cx.error(&at, "`frame` of a pose has another name since version 1.7 of SDF", |d| {
             d.help(format!("write `relative_to=\"{}\"`", found.value().trim()))
         });
     }
-    old.or_else(|| written("relative_to"))
+    old.or_else(|| non_blank_attribute("relative_to"))
 }
 
 /// Returns the full name of the frame `name` if the link or joint around a pose declares this frame inside
@@ -139,11 +139,11 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     if !degrees {
         check_radians(&[roll, pitch, yaw], &found.place, RADIANS, cx);
     }
-    let angle = |angle: f64| if degrees { angle.to_radians() } else { angle };
+    let angle_in_radians = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
     let axes = turns
         .into_iter()
-        .fold(IDENTITY, |whole, (axis, turn)| product(&whole, &axis_rotation(axis, angle(turn))));
+        .fold(IDENTITY, |whole, (axis, turn)| product(&whole, &axis_rotation(axis, angle_in_radians(turn))));
     Some(Pose { at: [x, y, z], axes })
 }
 
@@ -199,6 +199,6 @@ impl Frames {
 
 /// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
-    let placed = |value| Placed { value, place: place.clone() };
-    Origin { xyz: placed(pose.at.map(|x| x + 0.0)), rpy: placed(roll_pitch_yaw(&pose.axes)) }
+    let value_at_pose = |value| Placed { value, place: place.clone() };
+    Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
 }

@@ -14,10 +14,10 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Child elements of `<include>`.
+/// Child elements that `<include>` may have.
 const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placement_frame"];
 
-/// Range of bytes in a file.
+/// Half-open range of bytes in a file.
 type Range = std::ops::Range<usize>;
 
 /// Step of the expansion. The list of steps is a stack: the last step is executed first.
@@ -26,7 +26,7 @@ enum Step {
     Copy(usize, Range),
     /// Inserted text, attributed to a byte of a file: text, index of the file, offset.
     Put(String, usize, usize),
-    /// Expansion of an included file.
+    /// Start of the expansion of an included file.
     Include(Box<Include>),
     /// End of an included file. A later `<include>` of the same file is a repetition, not a cycle.
     Leave,
@@ -44,7 +44,7 @@ struct Include {
     depth: usize,
 }
 
-/// Reads a file with all included files.
+/// Reads a file together with all files that it includes.
 pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
     let mut whole = Whole::new(text, path, name);
     let mut places = vec![name.clone()];
@@ -114,9 +114,9 @@ fn scan(
         Some(include) => {
             let model = only_model(root, cx)?;
             open_model(&mut steps, model, file, include);
-            let inner = |child: Option<Node<'_>>| child.map(|child| child.range());
-            let first = inner(model.first_child()).map_or(model.range().end, |range| range.start);
-            let last = inner(model.last_child()).map_or(first, |range| range.end);
+            let range_of_child = |child: Option<Node<'_>>| child.map(|child| child.range());
+            let first = range_of_child(model.first_child()).map_or(model.range().end, |range| range.start);
+            let last = range_of_child(model.last_child()).map_or(first, |range| range.end);
             (model, first, last)
         }
     };
@@ -177,8 +177,8 @@ fn in_world(node: Node<'_>) -> bool {
     node.parent().is_some_and(|parent| parent.tag_name().name() == "world")
 }
 
-/// Adds the start tag of an included model. Name and pose are those of the `<include>`, or else the model's
-/// own.
+/// Adds the start tag of an included model. Name and pose are those of the `<include>` if it has them,
+/// otherwise those of the model.
 fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
     let text_step = |text: &str| Step::Put(text.to_string(), file, start);
@@ -194,8 +194,8 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
         steps.push(Step::Copy(file, version.range_value()));
         steps.push(text_step("\""));
     }
-    let is_own = |name: &str| name != "name" && name != version::OF_INCLUDED;
-    for attribute in model.attributes().filter(|attribute| is_own(attribute.name())) {
+    let is_own_attribute = |name: &str| name != "name" && name != version::OF_INCLUDED;
+    for attribute in model.attributes().filter(|attribute| is_own_attribute(attribute.name())) {
         steps.push(text_step(&format!(" {}=\"", attribute.name())));
         steps.push(Step::Copy(file, attribute.range_value()));
         steps.push(text_step("\""));
@@ -235,14 +235,14 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
     let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
     let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
     for child in elements(node) {
-        let inside = || contents(child).find(Node::is_text).map(trimmed);
+        let text_of_child = || contents(child).find(Node::is_text).map(trimmed);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
             report_second(child, Some(first), cx);
         }
         match kind {
             "uri" => uri = word(child, cx),
-            "name" => own_name = inside(),
+            "name" => own_name = text_of_child(),
             "pose" => pose = Some(child.range()),
             "plugin" => plugins.push(child.range()),
             "static" if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) => {
@@ -290,14 +290,14 @@ fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     for file in [by, 0] {
         let Some(read) = files.get(file) else { continue };
         for above in ["", ".."] {
-            let sibling = |base: &Path| base.with_file_name(above).join(named);
-            let (path, shown) = (sibling(&read.path), sibling(Path::new(&read.shown)));
+            let sibling_path = |base: &Path| base.with_file_name(above).join(named);
+            let (path, shown) = (sibling_path(&read.path), sibling_path(Path::new(&read.shown)));
             let inside = if path.is_dir() { Some(model_of(&path)) } else { None };
-            let whole = |base: PathBuf| match &inside {
+            let path_of_model = |base: PathBuf| match &inside {
                 Some(inside) => base.join(inside),
                 None => base,
             };
-            found.push((whole(path.clone()), whole(shown).to_string_lossy().into_owned()));
+            found.push((path_of_model(path.clone()), path_of_model(shown).to_string_lossy().into_owned()));
         }
     }
     found

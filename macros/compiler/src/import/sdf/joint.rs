@@ -44,7 +44,7 @@ const AXIS_HELP: &str = "an axis has `<xyz>`, `<limit>` with `<lower>`, `<upper>
 /// axes of the model.
 const IN_JOINT: (u32, u32) = (1, 5);
 
-/// First version without `<use_parent_model_frame>`.
+/// First version of SDF that lacks `<use_parent_model_frame>`.
 const EXPRESSED_IN: (u32, u32) = (1, 7);
 
 /// Returns the full name of the frame at one end of a joint.
@@ -157,7 +157,7 @@ fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: 
     Some(Expr::number(lead, &found.place))
 }
 
-/// Returns a fixed joint.
+/// Returns a joint that fixes two links to each other.
 pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
     let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
     FileJoint {
@@ -178,7 +178,7 @@ pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> Fil
     }
 }
 
-/// Data for reading one axis of a joint.
+/// Data from which one axis of a joint is read.
 struct Said<'n> {
     node: Node<'n>,
     named: &'n Name,
@@ -293,11 +293,11 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
             cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
         }
     }
-    let expression = |found: Option<Placed<[f64; 1]>>| {
+    let nonzero_expression = |found: Option<Placed<[f64; 1]>>| {
         let found = found.filter(|found| found.value != [0.0])?;
         Some(Expr::number(found.value[0], &found.place))
     };
-    (joint.damping, joint.friction) = (expression(damping), expression(friction));
+    (joint.damping, joint.friction) = (nonzero_expression(damping), nonzero_expression(friction));
     if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.value != [0.0]) {
         let law =
             DriveLaw::Spring { stiffness: stiffness.value[0], free: free.map_or(0.0, |free| free.value[0]) };
@@ -312,20 +312,24 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
     let found = children(node, ["lower", "upper", "velocity", "effort"], cx);
     misplaced::check(node, &["lower", "upper", "velocity", "effort", "stiffness"], AXIS_HELP, cx);
-    let endless = |part: Node<'_>, cx: &Cx<'_>| {
+    let is_infinite_limit = |part: Node<'_>, cx: &Cx<'_>| {
         word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
     let mut number = |part: Option<Node<'_>>| {
-        let part = part.filter(|part| !endless(*part, cx))?;
+        let part = part.filter(|part| !is_infinite_limit(*part, cx))?;
         let found = content::<1>(part, cx)?;
         Some(Placed { value: found.value[0], place: found.place }).filter(|found| found.value.abs() < ENDLESS)
     };
     let [lower, upper, velocity, effort] = found.map(&mut number);
-    let end = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
+    let limit_unless_continuous = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
     // Negative limits mean that there is no limit.
-    let size = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
-    let limits =
-        FileLimits { lower: end(lower), upper: end(upper), velocity: size(velocity), effort: size(effort) };
+    let nonnegative_limit = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
+    let limits = FileLimits {
+        lower: limit_unless_continuous(lower),
+        upper: limit_unless_continuous(upper),
+        velocity: nonnegative_limit(velocity),
+        effort: nonnegative_limit(effort),
+    };
     if let (Some(low), Some(high)) = (&limits.lower, &limits.upper)
         && low.value > high.value
     {

@@ -1,4 +1,4 @@
-//! `<link>` → [`Body`].
+//! Conversion of a `<link>` element to a [`Body`].
 
 use super::frames::{Frames, pose_in, reference};
 use super::scope::Scope;
@@ -22,7 +22,7 @@ const LINK: [&str; 3] = ["inertial", "pose", "velocity_decay"];
 
 const PARTS_HELP: &str = "expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
 
-/// First version in which the pose of an `<inertial>` is always relative to its link.
+/// First version of SDF in which the pose of an `<inertial>` is always relative to its link.
 const IN_LINK: (u32, u32) = (1, 7);
 
 /// Reads a link. The defaults of the format apply to missing mass properties: mass 1 kg, and inertia 1 kg·m²

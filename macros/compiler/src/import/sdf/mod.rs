@@ -29,13 +29,13 @@ mod scope;
 mod version;
 mod visual;
 
-/// Child elements of a model.
+/// Child elements that a model may have.
 const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
 
 const MODEL_HELP: &str = "a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
 
-/// Child elements of a world.
+/// Child elements that a world may have.
 const WORLD_PARTS: [&str; 20] = [
     "model",
     "joint",
@@ -84,7 +84,7 @@ const ASIDE: [(&str, &str); 12] = [
 struct Reader<'a> {
     frames: Frames,
     links: Vec<(Node<'a>, Name, Scope)>,
-    /// Frames from `<frame>` elements.
+    /// Names of the frames that `<frame>` elements define.
     marks: Vec<Name>,
     joints: Vec<(Node<'a>, Name, Scope)>,
 }
@@ -92,9 +92,9 @@ struct Reader<'a> {
 /// Models of the mechanism, each with the prefix of the full names of its elements.
 struct Models<'a> {
     moving: Vec<(Node<'a>, String)>,
-    /// Static models of the same world.
+    /// Static models in the world of the mechanism.
     fixed: Vec<(Node<'a>, String)>,
-    /// World of the models, if the file has one.
+    /// World that contains the models, if the file has one.
     world: Option<Node<'a>>,
 }
 
@@ -109,7 +109,7 @@ pub(super) fn import(
     imported(whole, &options.path, FileFormat::Sdf, cx, |root, cx| read(root, options, cx))
 }
 
-/// Reads the root element.
+/// Reads the root element of an SDF file.
 fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     let top = find_models(root_node, cx)?;
     let mut reader = Reader::default();
@@ -200,11 +200,13 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
         });
         return None;
     }
-    let children = |node: Node<'a>, what: &str| -> Vec<Node<'a>> {
+    let children_with_tag = |node: Node<'a>, what: &str| -> Vec<Node<'a>> {
         elements(node).filter(|child| child.tag_name().name() == what).collect()
     };
-    let mut found = children(root, "model");
-    found.extend(children(root, "world").into_iter().flat_map(|world| children(world, "model")));
+    let mut found = children_with_tag(root, "model");
+    found.extend(
+        children_with_tag(root, "world").into_iter().flat_map(|world| children_with_tag(world, "model")),
+    );
     // If another model moves, static models of a world are not part of the mechanism.
     let mut fixed = Vec::new();
     if found.len() > 1 {
@@ -213,22 +215,26 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     let world_of =
         |model: &Node<'a>| model.parent_element().filter(|above| above.tag_name().name() == "world");
     let world = found.first().and_then(world_of);
-    let has = |kind: &str| world.is_some_and(|world| !children(world, kind).is_empty());
-    let is_joined = has("joint") && found.iter().all(|model| world_of(model) == world);
-    let prefixed = |models: Vec<Node<'a>>, before: &str| -> Vec<(Node<'a>, String)> {
-        let prefix = |model: Node<'a>| format!("{before}{}::", model.attribute("name").unwrap_or_default());
-        models.into_iter().map(|model| (model, prefix(model))).collect()
+    let has_child_of_kind =
+        |kind: &str| world.is_some_and(|world| !children_with_tag(world, kind).is_empty());
+    let is_joined = has_child_of_kind("joint") && found.iter().all(|model| world_of(model) == world);
+    let models_with_prefix = |models: Vec<Node<'a>>, before: &str| -> Vec<(Node<'a>, String)> {
+        let name_prefix =
+            |model: Node<'a>| format!("{before}{}::", model.attribute("name").unwrap_or_default());
+        models.into_iter().map(|model| (model, name_prefix(model))).collect()
     };
     match found.as_slice() {
         [one] => {
-            fixed.retain(|model| world_of(model) == world && (has("joint") || has("frame")));
-            let fixed = prefixed(fixed, &format!("{WORLD}::"));
+            fixed.retain(|model| {
+                world_of(model) == world && (has_child_of_kind("joint") || has_child_of_kind("frame"))
+            });
+            let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
             return Some(Models { moving: vec![(*one, String::new())], fixed, world });
         }
         [_, _, ..] if is_joined => {
             fixed.retain(|model| world_of(model) == world);
-            let fixed = prefixed(fixed, &format!("{WORLD}::"));
-            return Some(Models { moving: prefixed(found, ""), fixed, world });
+            let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
+            return Some(Models { moving: models_with_prefix(found, ""), fixed, world });
         }
         [] => cx.error(&place(root, cx), "SDF file without a model", |d| {
             d.help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
@@ -248,7 +254,7 @@ fn first<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
     elements(node).find(|child| child.tag_name().name() == kind)
 }
 
-/// Returns true for a static model.
+/// Returns whether a model is static.
 fn is_static(model: Node<'_>) -> bool {
     let text = first(model, "static").and_then(|said| contents(said).find_map(|text| text.text()));
     text.is_some_and(|word| matches!(word.trim(), "true" | "1"))
@@ -373,14 +379,14 @@ impl<'a> Reader<'a> {
         };
         let mut frame = read_frame(node, scope, &base, cx);
         let at = place(node, cx);
-        let as_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let name_at_element = |text: &str| Name { text: text.to_string(), place: at.clone() };
         frame.attached = match kind {
-            "link" => is_fixed.then(|| as_name(WORLD)),
-            _ => Some(as_name(&base)),
+            "link" => is_fixed.then(|| name_at_element(WORLD)),
+            _ => Some(name_at_element(&base)),
         };
         for own in own_frames(node) {
             let mut frame = read_frame(own, scope, &part.text, cx);
-            frame.attached = Some(as_name(&part.text));
+            frame.attached = Some(name_at_element(&part.text));
             self.frames
                 .known
                 .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);

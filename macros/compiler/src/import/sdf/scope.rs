@@ -18,7 +18,7 @@ pub(super) enum Scope {
     World(Rc<World>),
 }
 
-/// Names of a world.
+/// Names that a world defines.
 #[derive(Debug, Default)]
 pub(super) struct World {
     /// Prefix of the full names of each model's parts.
@@ -38,7 +38,7 @@ impl World {
             bare.flat_map(|(model, _)| elements(*model)).filter_map(|part| name(&part)).collect();
         let parts = node.into_iter().flat_map(elements);
         let parts = parts.filter(|part| matches!(part.tag_name().name(), "frame" | "joint"));
-        let whole = |name: String| match taken.contains(&name) {
+        let name_with_full_path = |name: String| match taken.contains(&name) {
             true => (name.clone(), format!("{WORLD}::{name}")),
             false => (name.clone(), name),
         };
@@ -47,7 +47,7 @@ impl World {
                 .iter()
                 .filter_map(|(model, prefix)| Some((name(model)?, prefix.clone())))
                 .collect(),
-            parts: parts.filter_map(|part| name(&part)).map(whole).collect(),
+            parts: parts.filter_map(|part| name(&part)).map(name_with_full_path).collect(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, place};
 
-/// Attribute of an included model that stores the version of its file.
+/// Attribute in which an included model stores the version of its own file.
 pub(super) const OF_INCLUDED: &str = "sdf_version";
 
 /// First version in which links, joints and poses are elements with text.
@@ -20,7 +20,7 @@ pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
     version.and_then(parse).is_some_and(|version| version < number)
 }
 
-/// Reports an invalid or unsupported version.
+/// Reports an invalid or unsupported version of SDF.
 pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     let is_sdf = root.tag_name().name() == "sdf";
     let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };

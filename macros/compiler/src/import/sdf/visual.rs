@@ -31,8 +31,9 @@ fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx
 }
 
 fn read_mesh(form: Node<'_>, cx: &mut Cx<'_>) -> Option<Mesh> {
-    let child = |name: &str| elements(form).find(|child| child.tag_name().name() == name);
-    let path = word(child("uri")?, cx)?.text;
-    let scale = child("scale").map_or(Some([1.0; 3]), |scale| content(scale, cx).map(|found| found.value))?;
+    let find_child_by_tag = |name: &str| elements(form).find(|child| child.tag_name().name() == name);
+    let path = word(find_child_by_tag("uri")?, cx)?.text;
+    let scale = find_child_by_tag("scale")
+        .map_or(Some([1.0; 3]), |scale| content(scale, cx).map(|found| found.value))?;
     Some(Mesh { path, scale })
 }

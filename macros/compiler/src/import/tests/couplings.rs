@@ -1,4 +1,4 @@
-//! MJCF: actuators, and couplings of joints.
+//! Tests of actuators and couplings of joints in MJCF files.
 
 use super::mjcf::{check_model, mjcf};
 use super::*;
@@ -24,14 +24,14 @@ fn servos_are_inputs_with_springs() {
 
 #[test]
 fn a_joint_follows_or_is_held() {
-    let model = |equality: &str| {
+    let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
              </body></body></worldbody><equality>{equality}</equality>"
         )
     };
     check_model(
-        &model("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
+        &model_with_equality("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
         "the root is the ground
          body b
          body c
@@ -39,7 +39,7 @@ fn a_joint_follows_or_is_held() {
          Sleeve k: b.at([0, 0, -2]) -> c along [0, 0, 1] = -3 j + 10",
     );
     check_model(
-        &model("<joint joint1='k' polycoef='5'/>"),
+        &model_with_equality("<joint joint1='k' polycoef='5'/>"),
         "the root is the ground
          body b
          body c
@@ -47,12 +47,12 @@ fn a_joint_follows_or_is_held() {
          Weld k: b.at([0, 0, 5]) -> c",
     );
     check_model(
-        &model("<joint joint1='k' joint2='jj'/>"),
+        &model_with_equality("<joint joint1='k' joint2='jj'/>"),
         "r.xml:2:180: unknown joint `jj`
          = help: did you mean `j`?",
     );
     check_model(
-        &model("<flex flex='b'/>"),
+        &model_with_equality("<flex flex='b'/>"),
         "r.xml:2:154: the coupling `<flex>` is not supported
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
@@ -60,14 +60,14 @@ fn a_joint_follows_or_is_held() {
 
 #[test]
 fn sums_and_polynomials_are_conditions() {
-    let model = |equality: &str| {
+    let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
              </body></body></worldbody><tendon><fixed name='s'><joint joint='j' coef='2'/><joint joint='k' coef='4'/></fixed>\
              <fixed name='t'><joint joint='k' coef='3'/></fixed></tendon><equality>{equality}</equality>"
         )
     };
-    let start = |follows: &str| {
+    let expected_start = |follows: &str| {
         format!(
             "the root is the ground
          body b
@@ -77,25 +77,25 @@ fn sums_and_polynomials_are_conditions() {
         )
     };
     // 2 (j − 1) + 4 (k − 2) = 6
-    check_model(&model("<tendon tendon1='s' polycoef='6'/>"), &start(" = -0.5 j + 4"));
+    check_model(&model_with_equality("<tendon tendon1='s' polycoef='6'/>"), &expected_start(" = -0.5 j + 4"));
     check_model(
-        &model("<tendon name='w' tendon1='s' tendon2='t' polycoef='5 6 7'/>"),
+        &model_with_equality("<tendon name='w' tendon1='s' tendon2='t' polycoef='5 6 7'/>"),
         &format!(
             "{}\nw: ((-10 + (2 * j)) + (4 * k)) = (5 + ((6 + (7 * (-6 + (3 * k)))) * (-6 + (3 * k))))",
-            start("")
+            expected_start("")
         ),
     );
     check_model(
-        &model("<joint joint1='j' joint2='k' polycoef='0 0 1'/>"),
+        &model_with_equality("<joint joint1='j' joint2='k' polycoef='0 0 1'/>"),
         &format!(
             "{}\njoint_coupling: (-1 + (1 * j)) = (0 + ((0 + (1 * (-2 + (1 * k)))) * (-2 + (1 * k))))",
-            start("")
+            expected_start("")
         ),
     );
     // Two constraints on one joint.
     check_model(
-        &model("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
-        &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", start(" = 1 j + 1")),
+        &model_with_equality("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
+        &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", expected_start(" = 1 j + 1")),
     );
     let help = "= help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`";
     for (equality, expected) in [
@@ -110,8 +110,9 @@ fn sums_and_polynomials_are_conditions() {
     ] {
         let cable = "<spatial name='u'><site site='o'/><site site='p'/></spatial></tendon>";
         let sites = "<worldbody><site name='o'/><site name='p'/>";
-        let model =
-            model(equality).replace("<worldbody>", sites).replace("</tendon><eq", &format!("{cable}<eq"));
+        let model = model_with_equality(equality)
+            .replace("<worldbody>", sites)
+            .replace("</tendon><eq", &format!("{cable}<eq"));
         check_model(&model, &expected);
     }
 }
@@ -183,7 +184,7 @@ fn defaults_of_actuators_are_one_record() {
 
 #[test]
 fn what_newer_versions_have_is_refused() {
-    let model = |joint: &str, motor: &str| {
+    let model_with_joint_and_motor = |joint: &str, motor: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>\
              <actuator><motor name='m' joint='j' {motor}/></actuator>"
@@ -193,16 +194,16 @@ fn what_newer_versions_have_is_refused() {
         "= help: to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
     let inputs =
         "= help: to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
-    let poly = |which: &str| {
+    let polynomial_message = |which: &str| {
         format!(
             "`{which}` is a polynomial, as MuJoCo reads it since version 3.7\n= help: expected one number: a \
              linear coefficient"
         )
     };
     for (joint, motor, expected) in [
-        ("damping='5 2 1'", "", format!("r.xml:2:52: {}\n{passive}", poly("damping"))),
-        ("stiffness='5 2'", "", format!("r.xml:2:54: {}\n{passive}", poly("stiffness"))),
-        ("", "damping='5 0 1'", format!("r.xml:2:109: {}\n{inputs}", poly("damping"))),
+        ("damping='5 2 1'", "", format!("r.xml:2:52: {}\n{passive}", polynomial_message("damping"))),
+        ("stiffness='5 2'", "", format!("r.xml:2:54: {}\n{passive}", polynomial_message("stiffness"))),
+        ("", "damping='5 0 1'", format!("r.xml:2:109: {}\n{inputs}", polynomial_message("damping"))),
         (
             "stiffness='5' springyield='1'",
             "",
@@ -213,13 +214,13 @@ fn what_newer_versions_have_is_refused() {
         ),
         ("", "delay='0.1'", format!("r.xml:2:107: `delay` of an actuator is not supported\n{inputs}")),
     ] {
-        check_model(&model(joint, motor), &expected);
+        check_model(&model_with_joint_and_motor(joint, motor), &expected);
     }
 }
 
 #[test]
 fn loops_are_closed() {
-    let model = |equality: &str| {
+    let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b' pos='1 0 0' euler='90 0 0'/><body name='c' mocap='true'/><body name='d' pos='0 0 2'>\
              <site name='s' pos='0 0 3'/></body></worldbody><equality>{equality}</equality>"
@@ -235,26 +236,29 @@ fn loops_are_closed() {
          Weld d_weld: ground.at([0, 0, 2]) -> d
          Weld s_weld: d.at([0, 0, 3]) -> s";
     check_model(
-        &model("<connect body1='b' body2='d' anchor='1 2 4'/>"),
+        &model_with_equality("<connect body1='b' body2='d' anchor='1 2 4'/>"),
         &format!("{start}\nBall connect1: b.at([1, 2, 4]) -> d.at([2, -4, 0])"),
     );
-    check_model(&model("<weld body1='d'/>"), &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"));
     check_model(
-        &model("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
+        &model_with_equality("<weld body1='d'/>"),
+        &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"),
+    );
+    check_model(
+        &model_with_equality("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
         &format!("{start}\nWeld w: d.at([1, 2, 3]) -> b"),
     );
     check_model(
-        &model("<connect site1='s' site2='s'/>"),
+        &model_with_equality("<connect site1='s' site2='s'/>"),
         "r.xml:2:194: body `d` closes a loop with itself
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
     check_model(
-        &model("<weld body1='c' body2='b'/>"),
+        &model_with_equality("<weld body1='c' body2='b'/>"),
         "r.xml:2:181: `c` is a mocap body, which does not move here
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
     check_model(
-        &model("<weld body1='e'/>"),
+        &model_with_equality("<weld body1='e'/>"),
         "r.xml:2:181: unknown body `e`
          = help: expected `b`, `c` or `d`",
     );
@@ -287,8 +291,8 @@ fn rotors_of_actuators() {
     );
 }
 
-/// The maximum effort of a joint is the sum over its actuators, or unlimited if one of them is. It is at most
-/// the joint's own limit.
+/// Checks that the maximum effort of a joint is the sum over its actuators, or unlimited if one of them has
+/// no limit, and at most the joint's own limit.
 #[test]
 fn efforts_of_several_actuators() {
     let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
@@ -329,14 +333,14 @@ fn efforts_of_several_actuators() {
 
 #[test]
 fn actuators_that_do_not_act() {
-    let model = |option: &str| {
+    let model_with_option = |option: &str| {
         format!(
             "<option {option}/><worldbody><body name='b'><joint name='j'/></body></worldbody>
              <actuator><motor name='m' joint='j' group='3' armature='0.5'/><motor name='n' joint='j'/></actuator>"
         )
     };
     check_model(
-        &model("actuatorgroupdisable='1 3'"),
+        &model_with_option("actuatorgroupdisable='1 3'"),
         "the root is the ground
          body b
          Pin j: ground -> b about [0, 0, 1]
@@ -345,14 +349,14 @@ fn actuators_that_do_not_act() {
          left out actuators of disabled groups: 1",
     );
     check_model(
-        &model("actuatorgroupdisable='1 31'"),
+        &model_with_option("actuatorgroupdisable='1 31'"),
         "r.xml:2:31: `actuatorgroupdisable` is `1 31`
          = help: expected numbers of groups from 0 to 30",
     );
 }
 
-/// Free lengths of fixed tendons are those of MuJoCo 4.0.0 (`tendon_lengthspring`). The spring of the joint
-/// is relaxed at 17°.
+/// Checks that the free lengths of fixed tendons are those of MuJoCo 4.0.0 (`tendon_lengthspring`). The
+/// spring of the joint is relaxed at 17°.
 #[test]
 fn springs_of_tendons_are_free_where_they_say() {
     let rest = 2.0 * 17.0_f64.to_radians();
@@ -381,7 +385,7 @@ fn springs_of_tendons_are_free_where_they_say() {
 /// `relpose` is the pose of the second body's anchor relative to the first body.
 #[test]
 fn a_weld_with_anchor_and_pose() {
-    let model = |said: &str| {
+    let model_with_weld = |said: &str| {
         format!(
             "<worldbody><body name='a'><joint name='j' type='slide'/></body><body name='b' pos='1 0 0'><joint name='k' type='slide'/>\
              </body></worldbody><equality><weld body1='a' body2='b' {said}/></equality>"
@@ -394,7 +398,7 @@ fn a_weld_with_anchor_and_pose() {
         ("anchor='0.2 0 0' relpose='0.5 0 0 0 0 0 0'", "a.at([1, 0, 0]) -> b"),
     ] {
         check_model(
-            &model(said),
+            &model_with_weld(said),
             &format!(
                 "the root is the ground\nbody a\nbody b\nSleeve j: ground -> a along [0, 0, 1]
                  Sleeve k: ground.at([1, 0, 0]) -> b along [0, 0, 1]\nWeld weld1: {ends}"
@@ -403,23 +407,23 @@ fn a_weld_with_anchor_and_pose() {
     }
 }
 
-/// A coupling that contradicts earlier ones is reported. A coupling of fixed joints that is satisfied is
-/// dropped.
+/// Checks that a coupling that contradicts earlier ones is reported, and that a coupling of fixed joints that
+/// is satisfied is dropped.
 #[test]
 fn couplings_of_joints_that_stand_still() {
-    let model = |last: &str| {
+    let model_with_last_coupling = |last: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide'/><body name='c'><joint name='k' type='slide'/></body></body></worldbody>
              <equality><joint name='e' joint1='j' polycoef='1'/><joint name='f' joint1='k' joint2='j'/>{last}</equality>"
         )
     };
     check_model(
-        &model("<joint name='g' joint1='k' polycoef='3'/>"),
+        &model_with_last_coupling("<joint name='g' joint1='k' polycoef='3'/>"),
         "r.xml:3:117: the coupling `g` contradicts others: the joints that it couples cannot move, and it is violated by -2
          = help: remove it, or the constraints that fix these joints",
     );
     check_model(
-        &model("<joint name='g' joint1='k' polycoef='1'/>"),
+        &model_with_last_coupling("<joint name='g' joint1='k' polycoef='1'/>"),
         "the root is the ground
          body b
          body c

@@ -1,4 +1,4 @@
-//! Reading of files.
+//! Tests of the reading of files.
 
 use crate::diag::Diagnostics;
 use crate::import::tests::{defaults, name};

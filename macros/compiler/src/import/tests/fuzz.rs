@@ -21,7 +21,7 @@ fn next(state: &mut u64) -> usize {
     (*state >> 16) as usize
 }
 
-/// Changes, removes, copies or inserts bytes.
+/// Changes, removes, copies or inserts random bytes of a file.
 fn damage(bytes: &mut Vec<u8>, state: &mut u64) {
     const SPICE: &[u8] = b"<>/=\"' &;!-[]?:.0e9-abcjk\x00\xc3\xa4\n";
     let at = next(state) % bytes.len();

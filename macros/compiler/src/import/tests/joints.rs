@@ -218,7 +218,7 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
     );
 }
 
-/// An axis may have any length.
+/// Checks that an axis may have any length.
 #[test]
 fn long_axes_are_rounded_by_their_direction() {
     let robot = chain(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
@@ -375,22 +375,22 @@ fn parts_of_joints_are_attributes_of_their_elements() {
 /// Limits of a joint with several coordinates, and the leader of a joint that the user locks, are listed.
 #[test]
 fn what_a_joint_cannot_have_is_listed() {
-    let list = |options: &FileOptions, text: &str| {
+    let ignored_elements = |options: &FileOptions, text: &str| {
         let imported = import_text(text, options, &mut Diagnostics::new()).expect("a robot");
         imported.left_out
     };
     let limits = chain(&[("planar", "<limit lower='-1' upper='1'/>"), ("floating", "<limit velocity='1'/>")]);
     assert_eq!(
-        list(&defaults(), &limits),
+        ignored_elements(&defaults(), &limits),
         ["limits of j1, which is `planar`", "limits of j2, which is `floating`"]
     );
     let follower = chain(&[("revolute", ""), ("revolute", "<mimic joint='j1' multiplier='2'/>")]);
-    assert_eq!(list(&locked(&["j2"]), &follower), ["the coupling of j2, which is locked"]);
-    assert_eq!(list(&locked(&["j1"]), &follower), [""; 0]);
+    assert_eq!(ignored_elements(&locked(&["j2"]), &follower), ["the coupling of j2, which is locked"]);
+    assert_eq!(ignored_elements(&locked(&["j1"]), &follower), [""; 0]);
 }
 
-/// A joint that follows a locked one is held at its offset, which its placement as a field contains: turned
-/// by 0.5 rad about the axis after roll, pitch and yaw.
+/// Checks a joint that follows a locked one: it is held at its offset, which its placement as a field
+/// contains, rotated by 0.5 rad about the axis after roll, pitch and yaw.
 #[test]
 fn placements_of_held_joints_have_their_rotation() {
     let figures = FileParameters { word: name("placement"), of: Some(vec![name("j2")]) };
@@ -410,7 +410,7 @@ fn placements_of_held_joints_have_their_rotation() {
         let options = FileOptions { parameters: vec![figures.clone()], ..locked(&["j1"]) };
         let imported = import_text(&text, &options, &mut Diagnostics::new()).expect("a robot");
         let [field] = imported.fields.as_slice() else { panic!("one field") };
-        let rotation = |[roll, pitch, yaw]: [f64; 3]| {
+        let rotation_from_rpy = |[roll, pitch, yaw]: [f64; 3]| {
             let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(f64::sin_cos);
             [
                 [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -420,8 +420,8 @@ fn placements_of_held_joints_have_their_rotation() {
         };
         let [x, y, z, angles @ ..] = field.values.as_slice() else { panic!("six values") };
         assert_eq!([*x, *y, *z], [1.0, 2.0, 3.0]);
-        let found = rotation(angles.try_into().expect("three angles"));
-        for (a, b) in found.as_flattened().iter().zip(rotation(expected).as_flattened()) {
+        let found = rotation_from_rpy(angles.try_into().expect("three angles"));
+        for (a, b) in found.as_flattened().iter().zip(rotation_from_rpy(expected).as_flattened()) {
             assert!((a - b).abs() < 1e-14, "{axis}: {found:?}");
         }
     }

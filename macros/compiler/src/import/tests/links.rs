@@ -1,4 +1,4 @@
-//! Links: mass, centre of mass, inertia.
+//! Tests of the import of links: mass, centre of mass, inertia.
 
 use super::*;
 
@@ -187,19 +187,21 @@ fn long_nonsense_is_shortened() {
 /// Links that are fixed to the ground need no valid mass properties, because these appear in no equation.
 #[test]
 fn links_on_the_ground_need_no_inertia() {
-    let bad = |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
-    let links = [bad("base"), bad("arms"), bad("hand")].join("\n");
+    let link_without_inertia =
+        |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
+    let links =
+        [link_without_inertia("base"), link_without_inertia("arms"), link_without_inertia("hand")].join("\n");
     let joints = [joint("a", "fixed", "base", "arms", ""), joint("b", "revolute", "arms", "hand", "")];
     let text = format!("<robot>\n{links}\n{}</robot>", joints.concat());
-    let missing = |line: u32| {
+    let missing_inertia_message = |line: u32| {
         format!(
             "r.urdf:{line}:19: `<inertial>` without `<inertia>`
                  = help: expected `<inertia ixx=\"…\" ixy=\"…\" ixz=\"…\" iyy=\"…\" iyz=\"…\" izz=\"…\"/>`\n"
         )
     };
-    check(&text, &missing(4));
+    check(&text, &missing_inertia_message(4));
     let free = FileOptions { base: Base::Free, ..defaults() };
-    check_with(&free, &text, &[2, 3, 4].map(missing).concat());
+    check_with(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
     check_with(
         &locked(&["b"]),
         &text,
@@ -266,21 +268,21 @@ fn parts_of_links_are_attributes_of_their_elements() {
     );
 }
 
-/// Unicode whitespace from keyboards and spreadsheets is accepted; columns in messages remain those of the
-/// file.
+/// Checks that Unicode whitespace from keyboards and spreadsheets is accepted, and that columns in messages
+/// remain those of the file.
 #[test]
 fn strange_blanks_are_blanks() {
-    let text = |blank: &str| {
+    let robot_with_blank = |blank: &str| {
         format!(
             "<robot{blank}name='r'>{blank}<link name='a'><inertial><origin{blank}xyz='0{blank}0 1{blank}'/>{blank}<mass value='{blank}2'/>\
              {INERTIA}</inertial></link>{blank}</robot>"
         )
     };
-    let expected = run(&defaults(), &text(" "));
+    let expected = run(&defaults(), &robot_with_blank(" "));
     assert!(expected.contains("com=[0, 0, 1]"), "{expected}");
     for blank in ["\u{a0}", " \u{feff}", "\u{2003}", "\u{200b}", "\u{3000}"] {
-        assert_eq!(run(&defaults(), &text(blank)), expected, "{blank:?}");
-        assert_eq!(run(&defaults(), &format!("\u{feff}{}", text(blank))), expected, "{blank:?}");
+        assert_eq!(run(&defaults(), &robot_with_blank(blank)), expected, "{blank:?}");
+        assert_eq!(run(&defaults(), &format!("\u{feff}{}", robot_with_blank(blank))), expected, "{blank:?}");
     }
     check(
         "<robot>\n<link\u{a0}name='a'\u{a0}/>\u{feff}<lnk/></robot>",
@@ -288,7 +290,7 @@ fn strange_blanks_are_blanks() {
     );
 }
 
-/// A geometry is one shape: a second one would be lost.
+/// Checks that a geometry with two shapes is an error, since one of them would be lost.
 #[test]
 fn second_shapes_of_a_geometry_are_errors() {
     let help = "= help: write a `<collision>` for each shape";

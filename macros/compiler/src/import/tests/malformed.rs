@@ -33,11 +33,14 @@ fn malformed_xml_has_a_place() {
 #[test]
 fn prefixes_need_no_declaration() {
     let extensions = "<drake:joint x='1'/><gazebo xsi:y='2'>\n<sensor:camera><ö:b/></sensor:camera></gazebo>";
-    let robot = |inside: &str| {
+    let robot_with_extensions = |inside: &str| {
         format!("<?xml version='1.0'?>\n<!-- <r> --> <robot name='r'>{extensions}{inside}</robot>")
     };
-    check(&robot("<link name='a'/>"), "body a\nWeld root_joint: ground -> a");
-    check(&robot("<link name='a'/>").replace(" name='r'", ""), "body a\nWeld root_joint: ground -> a");
+    check(&robot_with_extensions("<link name='a'/>"), "body a\nWeld root_joint: ground -> a");
+    check(
+        &robot_with_extensions("<link name='a'/>").replace(" name='r'", ""),
+        "body a\nWeld root_joint: ground -> a",
+    );
     for (inside, expected) in [
         ("<link name='a'/><lnk/>", "r.urdf:3:63: unknown element `<lnk>`\n= help: did you mean `<link>`?"),
         (
@@ -52,7 +55,7 @@ fn prefixes_need_no_declaration() {
              = help: expand the file first: `xacro robot.urdf.xacro > robot.urdf`",
         ),
     ] {
-        check(&robot(inside), expected);
+        check(&robot_with_extensions(inside), expected);
     }
     // Prefixes that are declared in some elements and used without declaration in others.
     check(

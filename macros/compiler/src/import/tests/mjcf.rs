@@ -1,4 +1,4 @@
-//! MJCF: results of valid files and errors of invalid ones.
+//! Tests of MJCF files: results of valid files and errors of invalid ones.
 
 use super::*;
 
@@ -53,25 +53,25 @@ fn what_has_no_name_gets_one() {
 #[test]
 fn classes_are_handed_down() {
     let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/><default class='c'><joint type='slide'/></default></default></default>";
-    let body = |inside: &str| {
+    let model_with_body = |inside: &str| {
         format!("{classes}<worldbody><body name='b' childclass='a'>{inside}{BALL}</body></worldbody>")
     };
     let ball = "body b mass=1 inertia=[[0.004000000000000001, 0, 0], [0, 0.004000000000000001, 0], [0, 0, 0.004000000000000001]]";
     let end = "left out geometry of bodies, for contact: 1 shapes";
     check_model(
-        &body("<joint name='j'/>"),
+        &model_with_body("<joint name='j'/>"),
         &format!(
             "the root is the ground\n{ball}\nPin j: ground -> b about [0, 0, 1] damping=1\nj: inerter 2 on 1 j\n{end}"
         ),
     );
     check_model(
-        &body("<joint name='j' class='c' damping='7'/>"),
+        &model_with_body("<joint name='j' class='c' damping='7'/>"),
         &format!(
             "the root is the ground\n{ball}\nSleeve j: ground -> b along [0, 0, 1] damping=7\nj: inerter 2 on 1 j\n{end}"
         ),
     );
     check_model(
-        &body("<joint name='j' class='d'/>"),
+        &model_with_body("<joint name='j' class='d'/>"),
         "r.xml:2:204: unknown class `d`
          = help: expected `a`, `c` or `main`",
     );
@@ -229,9 +229,9 @@ fn included_files_stand_in_the_place_of_their_elements() {
         ("b.xml", "<x>\n<include file='parts/../a.xml'/></x>"),
     ];
     let folder = Folder::new("includes", &files);
-    let model = |inside: &str| format!("<mujoco>\n{inside}</mujoco>");
+    let wrap_in_mujoco = |inside: &str| format!("<mujoco>\n{inside}</mujoco>");
     assert_eq!(
-        folder.answer(&mjcf(), &model("<include file='parts/arm.xml'/>")),
+        folder.answer(&mjcf(), &wrap_in_mujoco("<include file='parts/arm.xml'/>")),
         "the root is the ground\nbody hand\nPin j: ground -> hand about [0, 0, 1]\n2 files"
     );
     for (inside, expected) in [
@@ -255,7 +255,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
             "r.xml:2:10: unknown attribute `fil` of `<include>`\n\n= help: did you mean `file`?",
         ),
     ] {
-        let answer = folder.answer(&mjcf(), &model(inside));
+        let answer = folder.answer(&mjcf(), &wrap_in_mujoco(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -321,7 +321,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
 #[test]
 fn planes_are_touched() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
-    let contacts = |world: &str| {
+    let contacts_with_world = |world: &str| {
         let text = format!(
             "<mujoco><worldbody>{world}<body name='b'><freejoint/><geom name='a' size='1'/><geom size='1' condim='1' contype='2'/>\
              <geom size='1' priority='1' friction='0.2' contype='4' conaffinity='1'/></body></worldbody></mujoco>"
@@ -343,33 +343,35 @@ fn planes_are_touched() {
         }
     };
     assert_eq!(
-        contacts("<geom type='plane' friction='0.3' pos='1 0 0' zaxis='1 0 0' conaffinity='3'/>"),
+        contacts_with_world("<geom type='plane' friction='0.3' pos='1 0 0' zaxis='1 0 0' conaffinity='3'/>"),
         "a_contact: b.collision(0) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
          b_geom1_contact: b.collision(1) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
          b_geom2_contact: b.collision(2) ground.at([1, 0, 0]).plane([1, 0, 0]) 0.2\n"
     );
     assert_eq!(
-        contacts("<geom type='plane' condim='1' contype='0'/><geom name='up' type='plane'/>"),
+        contacts_with_world("<geom type='plane' condim='1' contype='0'/><geom name='up' type='plane'/>"),
         "a_plane1_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          a_up_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom1_up_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom2_up_contact: b.collision(2) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.2\n"
     );
     assert_eq!(
-        contacts("<geom type='plane' condim='4' friction='0.3 0.01' conaffinity='1' contype='0'/>"),
+        contacts_with_world(
+            "<geom type='plane' condim='4' friction='0.3 0.01' conaffinity='1' contype='0'/>"
+        ),
         "a_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1 0.01\n"
     );
     assert_eq!(
-        contacts(
+        contacts_with_world(
             "<geom type='plane' condim='6' priority='2' friction='0.3 0.01 0.002' conaffinity='2' contype='0'/>"
         ),
         "b_geom1_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.3 0.01 0.002\n"
     );
     for force in ["adhesion='1'", "surfacevel='1 0 0'"] {
-        let refused = contacts(&format!("<geom type='plane' {force}/>"));
+        let refused = contacts_with_world(&format!("<geom type='plane' {force}/>"));
         assert!(refused.contains("of a colliding shape is not supported"), "{refused}");
     }
-    let none = contacts("<geom type='box' size='1 1 1'/>");
+    let none = contacts_with_world("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
 }
 
@@ -386,11 +388,11 @@ fn every_beginning_of_a_file_gets_an_answer() {
     assert!(run(&mjcf(), FILE).contains("the root is"));
 }
 
-/// Flags of `<option>` disable what they name. The flag `constraint` disables couplings, limits and dry
-/// friction.
+/// Checks that flags of `<option>` disable the effects that they name. The flag `constraint` disables
+/// couplings, limits and dry friction.
 #[test]
 fn flags() {
-    let model = |flags: &str| {
+    let model_with_flags = |flags: &str| {
         format!(
             "<option><flag {flags}/></option><worldbody><body name='b'><joint name='j' range='-1 1' stiffness='5' damping='0.3' frictionloss='2'/>\
              <joint name='k'/></body></worldbody><tendon><fixed name='t' stiffness='7' damping='3' frictionloss='4'><joint joint='j' coef='2'/></fixed></tendon>\
@@ -411,14 +413,15 @@ fn flags() {
         ("constraint='disable'", vec![friction, friction2, follows]),
         ("contact='disable'", vec![]),
     ] {
-        let found = run(&mjcf(), &format!("<mujoco>\n{}\n</mujoco>", model(flags)));
+        let found = run(&mjcf(), &format!("<mujoco>\n{}\n</mujoco>", model_with_flags(flags)));
         for part in [spring, spring2, damper, damper2, friction, friction2, follows] {
             assert_eq!(found.contains(part), !off.contains(&part), "{flags}: {part}\n{found}");
         }
     }
     for (flags, limits) in [("limit='disable'", 0), ("constraint='disable'", 0), ("equality='disable'", 1)] {
         let mut cx = Diagnostics::new();
-        let imported = import_text(&format!("<mujoco>{}</mujoco>", model(flags)), &mjcf(), &mut cx);
+        let imported =
+            import_text(&format!("<mujoco>{}</mujoco>", model_with_flags(flags)), &mjcf(), &mut cx);
         assert_eq!(imported.map(|imported| imported.limits.len()), Some(limits), "{flags}");
     }
     let weightless = "<option><flag gravity='disable'/></option><option gravity='0 0 -1'/><worldbody/>";
@@ -482,34 +485,38 @@ fn lists_are_completed_by_defaults() {
     );
 }
 
-/// Input that MuJoCo rejects is rejected, with one error for each fault.
+/// Checks that files that MuJoCo rejects are rejected, with one error for each fault.
 #[test]
 fn what_mujoco_refuses() {
     let body =
         |joint: &str| format!("<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>");
-    let motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
-    let fixed = |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body(""));
+    let model_with_motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
+    let model_with_fixed_tendon =
+        |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body(""));
     for (text, message) in [
         (
             format!("<compiler autolimits='false'/>{}", body("range='0 1'")),
             "`range` without `limited` has no effect",
         ),
         (
-            format!("<compiler autolimits='false'/>{}", motor("joint='j' ctrlrange='0 1'")),
+            format!("<compiler autolimits='false'/>{}", model_with_motor("joint='j' ctrlrange='0 1'")),
             "`ctrlrange` without `ctrllimited` has no effect",
         ),
         (body("range='0 x' limited='true'"), "`x` is not a number"),
         (body("limited='true'"), "`limited=\"true\"` without `range`"),
-        (motor(""), "an actuator without a target"),
-        (motor("joint='j' site='s'"), "an actuator has one target, but here are `joint` and `site`"),
+        (model_with_motor(""), "an actuator without a target"),
         (
-            fixed("><joint joint='j' coef='1'/><joint joint='j' coef='2'/>"),
+            model_with_motor("joint='j' site='s'"),
+            "an actuator has one target, but here are `joint` and `site`",
+        ),
+        (
+            model_with_fixed_tendon("><joint joint='j' coef='1'/><joint joint='j' coef='2'/>"),
             "joint `j` occurs twice in one tendon",
         ),
-        (fixed(">"), "`<fixed>` without a joint"),
-        (fixed("armature='-1'><joint joint='j' coef='1'/>"), "negative armature `-1`"),
+        (model_with_fixed_tendon(">"), "`<fixed>` without a joint"),
+        (model_with_fixed_tendon("armature='-1'><joint joint='j' coef='1'/>"), "negative armature `-1`"),
         (
-            fixed("stiffness='1' springlength='1 0'><joint joint='j' coef='1'/>"),
+            model_with_fixed_tendon("stiffness='1' springlength='1 0'><joint joint='j' coef='1'/>"),
             "`springlength` from 1 to 0, which is below it",
         ),
         (

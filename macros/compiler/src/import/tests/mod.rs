@@ -56,7 +56,7 @@ impl Drop for Folder {
     }
 }
 
-/// Returns the default options of the attribute.
+/// Returns the default options of a robot file.
 fn defaults() -> FileOptions {
     FileOptions {
         format: FileFormat::Urdf,
@@ -83,12 +83,12 @@ fn locked(joints: &[&str]) -> FileOptions {
 
 /// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
 fn check_with(options: &FileOptions, text: &str, expected: &str) {
-    let trim = |text: &str| -> String {
+    let trim_lines = |text: &str| -> String {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         lines.map(|line| format!("{line}\n")).collect()
     };
     let actual = run(options, text);
-    assert!(trim(&actual) == trim(expected), "expected\n{expected}\nfound\n{actual}");
+    assert!(trim_lines(&actual) == trim_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
 fn check(text: &str, expected: &str) {
@@ -170,7 +170,7 @@ fn render_joint(joint: &Joint) -> String {
 }
 
 fn render_drive(drive: &Drive) -> String {
-    let numbers = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
+    let join_components = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
     let on = match &drive.on {
         DriveOn::Sum(terms) => {
             let terms: Vec<String> =
@@ -180,7 +180,7 @@ fn render_drive(drive: &Drive) -> String {
         DriveOn::Length(e) => render_expr(e),
         DriveOn::Wrench(wrench) => {
             let against = wrench.against.iter().map(|e| format!(" against {}", render_expr(e)));
-            let [force, torque] = [wrench.force, wrench.torque].map(numbers);
+            let [force, torque] = [wrench.force, wrench.torque].map(join_components);
             format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
         }
     };
@@ -233,12 +233,12 @@ fn render_expr(expr: &Expr) -> String {
     }
 }
 
-/// Returns a link without mass properties.
+/// Returns the URDF text of a link without mass properties.
 fn link(name: &str) -> String {
     format!("<link name=\"{name}\"/>")
 }
 
-/// Returns a joint with further elements inside.
+/// Returns the URDF text of a joint with further elements inside.
 fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\">\

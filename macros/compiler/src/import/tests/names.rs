@@ -162,17 +162,18 @@ fn a_link_hangs_from_one_joint() {
 #[test]
 fn joints_close_loops() {
     let options = FileOptions { close_loops: true, ..defaults() };
-    let file = |joints: &[String]| {
+    let robot_with_joints = |joints: &[String]| {
         format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(link).concat(), joints.concat())
     };
     let (ab, ac) = (joint("ab", "fixed", "a", "b", ""), joint("ac", "fixed", "a", "c", ""));
     let (bc, cb) = (joint("bc", "floating", "b", "c", ""), joint("cb", "continuous", "c", "b", ""));
-    let tree = |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
-    let last = tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &file(&[ab.clone(), ac, cb.clone()]), &last);
-    let first = tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &file(&[cb.clone(), ab, bc.clone()]), &first);
-    let without_root = run(&options, &file(&[bc, cb]));
+    let expected_tree =
+        |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
+    let last = expected_tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
+    check_with(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
+    let first = expected_tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
+    check_with(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
+    let without_root = run(&options, &robot_with_joints(&[bc, cb]));
     assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }
 

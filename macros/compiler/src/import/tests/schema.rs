@@ -17,7 +17,7 @@ const BODIES: &str = "<worldbody><site name='o'/><body name='b' euler='10 20 30'
     <tendon><fixed name='t'><joint joint='j' coef='2'/></fixed><fixed name='u'><joint joint='n' coef='3'/></fixed></tendon>\
     <equality><joint joint1='n' joint2='k'/></equality><actuator><motor joint='j' group='2'/></actuator>";
 
-/// Class of defaults with distinctive values.
+/// MJCF class of defaults with values that occur nowhere else.
 const CLASS: &str = "<default><default class='c'><joint stiffness='7'/><geom density='7'/><site pos='7 7 7'/><motor gear='9'/>\
     <tendon stiffness='7'/><equality active='false'/></default></default>";
 
@@ -36,7 +36,7 @@ const LISTS: [(&str, &str); 4] = [
     ("*target", "joint=k; jointinparent=k; site=s; slidersite=s; cranksite=s; tendon=t"),
 ];
 
-/// Elements that are rejected with all their attributes.
+/// MJCF elements that are rejected, with all their attributes.
 const REFUSED: [&str; 8] =
     ["intvelocity", "damper", "cylinder", "muscle", "adhesion", "orientation", "pid", "dcmotor"];
 
@@ -105,14 +105,18 @@ fn attributes_that_change_no_motion_are_accepted() {
     for (element, attribute) in
         [("joint", "margin"), ("geom", "rgba"), ("site", "user"), ("geom", "castshadow")]
     {
-        let text = |said: &str| {
+        let import_with_attribute = |said: &str| {
             answer(&format!(
                 "<mujoco><worldbody><body><joint/><geom size='1'/><{element} {said}/></body></worldbody>\
                  </mujoco>"
             ))
         };
         let said = format!("{attribute}=\"1\"");
-        assert_eq!(text(&said), text(&" ".repeat(said.len())), "{element} {attribute}");
+        assert_eq!(
+            import_with_attribute(&said),
+            import_with_attribute(&" ".repeat(said.len())),
+            "{element} {attribute}"
+        );
     }
 }
 

@@ -1,4 +1,4 @@
-//! SDF: results of valid files and errors of invalid ones.
+//! Tests of SDF files: results of valid files and errors of invalid ones.
 
 use super::*;
 
@@ -59,7 +59,7 @@ fn what_stands_in_the_world_is_listed() {
 
 #[test]
 fn poses_name_frames_that_there_are() {
-    let model = |pose: &str| {
+    let model_with_pose = |pose: &str| {
         format!(
             "<link name='a'>{pose}</link><frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"
         )
@@ -82,7 +82,8 @@ fn poses_name_frames_that_there_are() {
             "r.sdf:2:16: a quaternion of length 0 has no direction",
         ),
     ] {
-        let answer = run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model(pose)));
+        let answer =
+            run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_pose(pose)));
         let lines: Vec<&str> = answer.lines().filter(|line| !line.is_empty()).collect();
         let (found, expected) = (lines.join("\n"), expected.lines().collect::<Vec<_>>().join("\n"));
         assert!(found.starts_with(&expected), "{found}");
@@ -91,7 +92,7 @@ fn poses_name_frames_that_there_are() {
 
 #[test]
 fn what_is_not_supported_is_said() {
-    let joint = |inside: &str| {
+    let model_with_joint = |inside: &str| {
         format!(
             "<link name='a'/><link name='b'/><joint name='j' {inside}<parent>a</parent><child>b</child>\
              </joint>"
@@ -130,33 +131,35 @@ fn what_is_not_supported_is_said() {
         ("<lnk name='a'/>".to_string(), "r.sdf:2:1: unknown element `<lnk>`\n= help: did you mean `<link>`?"),
         (String::new(), "r.sdf:1:6: model without a link\n= help: expected `<link name=\"…\"/>`"),
         (
-            joint("type='gearbox'>"),
+            model_with_joint("type='gearbox'>"),
             "r.sdf:2:55: joint type `gearbox` is not supported\n= help: couple two joints by `<mimic>`",
         ),
         (
-            joint("type='revolut'>"),
+            model_with_joint("type='revolut'>"),
             "r.sdf:2:55: unknown joint type `revolut`\n= help: did you mean `revolute`?",
         ),
         (
-            joint("type='revolute'>"),
+            model_with_joint("type='revolute'>"),
             "r.sdf:2:33: a `revolute` joint without an axis\n= help: expected `<axis><xyz>…</xyz></axis>`",
         ),
         (
-            joint("type='screw'><axis/>"),
+            model_with_joint("type='screw'><axis/>"),
             "r.sdf:2:33: screw without `<screw_thread_pitch>`\n= help: it is the advance of the joint per \
              turn, m",
         ),
         (
-            joint("type='revolute'><axis><xyz>0 0 0</xyz></axis>"),
+            model_with_joint("type='revolute'><axis><xyz>0 0 0</xyz></axis>"),
             "r.sdf:2:76: axis of zero length has no direction",
         ),
         (
-            joint("type='universal'><axis><dynamics><damping>-1</damping></dynamics></axis><axis2/>"),
+            model_with_joint(
+                "type='universal'><axis><dynamics><damping>-1</damping></dynamics></axis><axis2/>",
+            ),
             "r.sdf:2:91: negative damping `-1`\n= help: to ignore springs, damping and friction, write \
              `#[mechanism(…, passive = ignore)]`",
         ),
         (
-            joint("type='revolute'><axis><limit><lower>1</lower><upper>0</upper></limit></axis>"),
+            model_with_joint("type='revolute'><axis><limit><lower>1</lower><upper>0</upper></limit></axis>"),
             "r.sdf:2:85: `lower` is 1, above `upper`, which is 0\n= help: to ignore limits, write \
              `#[mechanism(…, limits = ignore)]`",
         ),
@@ -235,11 +238,11 @@ fn included_models_stand_in_the_place_of_their_elements() {
         ("b.sdf", "<sdf><model name='b'>\n<include><uri>model://a.sdf</uri></include></model></sdf>"),
     ];
     let folder = Folder::new("sdf-includes", &files);
-    let model = |inside: &str| format!("<sdf><model name='m'>\n{inside}</model></sdf>");
+    let wrap_in_model = |inside: &str| format!("<sdf><model name='m'>\n{inside}</model></sdf>");
     let joints = "<link name='hull'/><joint name='i' type='revolute'><parent>hull</parent>\
                   <child>left::rim</child><axis/></joint><joint name='j' type='revolute'>\
                   <parent>hull</parent><child>wheel::rim</child><axis/></joint>";
-    let written = |name: &str, pose: &str| {
+    let nested_model = |name: &str, pose: &str| {
         format!("<model name='{name}'>{pose}<link name='rim'><pose>0 0 1 0 0 0</pose></link></model>")
     };
     let (near, far) = ("<pose>1 0 0 0 0 0</pose>", "<pose>9 9 9 0 0 0</pose>");
@@ -247,9 +250,9 @@ fn included_models_stand_in_the_place_of_their_elements() {
         "{joints}<include><name> left \
          </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
     );
-    let whole = format!("{joints}{}{}", written("left", near), written("wheel", far));
-    let answer = folder.answer(&sdf(), &model(&included));
-    let expected = folder.answer(&sdf(), &model(&whole)).replace("0 files", "2 files");
+    let whole = format!("{joints}{}{}", nested_model("left", near), nested_model("wheel", far));
+    let answer = folder.answer(&sdf(), &wrap_in_model(&included));
+    let expected = folder.answer(&sdf(), &wrap_in_model(&whole)).replace("0 files", "2 files");
     assert_eq!(answer, expected);
     assert!(answer.contains("Pin i: hull.at([1, 0, 1]) -> left::rim"), "{answer}");
     // Nested includes, and includes in a world, which may refer to missing files.
@@ -271,7 +274,7 @@ fn included_models_stand_in_the_place_of_their_elements() {
         ),
         ("<include><uri>wheel.sdf</uri><nam/></include>", "r.sdf:2:30: unknown element `<nam>`"),
     ] {
-        let answer = folder.answer(&sdf(), &model(inside));
+        let answer = folder.answer(&sdf(), &wrap_in_model(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -281,7 +284,7 @@ const ONE: &str = "mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
 /// The child is rotated by a right angle about z: x of the model is −y of the child and of the joint.
 #[test]
 fn axes_of_old_versions_are_in_the_model() {
-    let text = |version: &str, axis: &str| {
+    let model_with_axis = |version: &str, axis: &str| {
         format!(
             "<sdf version='{version}'><model name='m'><link name='a'/><link name='b'>\
              <pose>0 0 0 0 0 1.5707963267948966</pose></link><joint name='j' type='prismatic'>\
@@ -309,11 +312,11 @@ fn axes_of_old_versions_are_in_the_model() {
             "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: \
              a.rotated(z(1.5707963267948966)) -> b along {along}"
         );
-        check_with(&sdf(), &text(version, axis), &expected);
+        check_with(&sdf(), &model_with_axis(version, axis), &expected);
     }
     check_with(
         &sdf(),
-        &text("1.7", &of_model),
+        &model_with_axis("1.7", &of_model),
         "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write \
          `<xyz expressed_in=\"__model__\">`",
     );
@@ -322,14 +325,17 @@ fn axes_of_old_versions_are_in_the_model() {
 /// Included files are interpreted in their own version.
 #[test]
 fn included_files_are_read_in_their_own_version() {
-    let arm = |version: &str| {
+    let arm_of_version = |version: &str| {
         format!(
             "<sdf version='{version}'><model name='arm'><link name='a'/><link name='b'>\
              <pose>0 0 0 0 0 1.5707963267948966</pose></link><joint name='j' type='prismatic'>\
              <parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"
         )
     };
-    let folder = Folder::new("sdf-versions", &[("old.sdf", &arm("1.4")), ("new.sdf", &arm("1.9"))]);
+    let folder = Folder::new(
+        "sdf-versions",
+        &[("old.sdf", &arm_of_version("1.4")), ("new.sdf", &arm_of_version("1.9"))],
+    );
     for (outer, file, along) in
         [("1.9", "old", "[0, -1, 0]"), ("1.4", "old", "[0, -1, 0]"), ("1.4", "new", "[1, 0, 0]")]
     {
@@ -345,7 +351,7 @@ fn included_files_are_read_in_their_own_version() {
 /// and links may declare frames.
 #[test]
 fn poses_of_old_versions_name_frames() {
-    let text = |version: &str, pose: &str, inertial: &str| {
+    let model_with_poses = |version: &str, pose: &str, inertial: &str| {
         format!(
             "<sdf version='{version}'><model name='m'><link name='a'><pose>0 0 1 0 0 0</pose></link>\
              <link name='b'><frame name='f'><pose>0 3 0 0 0 0</pose>\
@@ -353,7 +359,7 @@ fn poses_of_old_versions_name_frames() {
              <parent>a</parent><child>b</child></joint></model></sdf>"
         )
     };
-    let expected = |at: &str, com: &str| {
+    let expected_model = |at: &str, com: &str| {
         format!(
             "body a {ONE}\nbody b mass=2 com={com} inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\
              Weld root_joint: ground.at([0, 0, 1]) -> a\nWeld j: a.at({at}) -> b"
@@ -361,32 +367,48 @@ fn poses_of_old_versions_name_frames() {
     };
     let placed = "<pose frame='a'>0 0 1 0 0 0</pose>";
     for version in ["1.5", "1.6"] {
-        let text = |inertial: &str| text(version, placed, inertial);
-        let expected = |com: &str| expected("[0, 0, 1]", com);
-        check_with(&sdf(), &text("<pose>1 0 0 0 0 0</pose>"), &expected("[1, 0, 0]"));
-        check_with(&sdf(), &text("<pose frame='a'>1 0 0 0 0 0</pose>"), &expected("[1, 0, -1]"));
-        check_with(&sdf(), &text("<pose frame='f'>1 0 0 0 0 0</pose>"), &expected("[1, 3, 0]"));
-        check_with(&sdf(), &text("<pose frame=''>1 0 0 0 0 0</pose>"), &expected("[1, 0, 0]"));
+        let model_with_inertial_pose = |inertial: &str| model_with_poses(version, placed, inertial);
+        let expected_with_com = |com: &str| expected_model("[0, 0, 1]", com);
+        check_with(
+            &sdf(),
+            &model_with_inertial_pose("<pose>1 0 0 0 0 0</pose>"),
+            &expected_with_com("[1, 0, 0]"),
+        );
+        check_with(
+            &sdf(),
+            &model_with_inertial_pose("<pose frame='a'>1 0 0 0 0 0</pose>"),
+            &expected_with_com("[1, 0, -1]"),
+        );
+        check_with(
+            &sdf(),
+            &model_with_inertial_pose("<pose frame='f'>1 0 0 0 0 0</pose>"),
+            &expected_with_com("[1, 3, 0]"),
+        );
+        check_with(
+            &sdf(),
+            &model_with_inertial_pose("<pose frame=''>1 0 0 0 0 0</pose>"),
+            &expected_with_com("[1, 0, 0]"),
+        );
     }
-    let answer = run(&sdf(), &text("1.7", placed, ""));
+    let answer = run(&sdf(), &model_with_poses("1.7", placed, ""));
     assert!(
         answer.starts_with("r.sdf:1:151: `frame` of a pose has another name since version 1.7 of SDF"),
         "{answer}"
     );
-    let answer = run(&sdf(), &text("1.7", "", "<pose relative_to='a'>1 0 0 0 0 0</pose>"));
+    let answer = run(&sdf(), &model_with_poses("1.7", "", "<pose relative_to='a'>1 0 0 0 0 0</pose>"));
     assert!(answer.contains("the pose of an `<inertial>` is relative to its link"), "{answer}");
 }
 
 /// Joints and frames of the world: names in them begin with the name of a model.
 #[test]
 fn joints_of_the_world_hold_models() {
-    let world = |inside: &str| {
+    let world_with_joint = |inside: &str| {
         format!(
             "<sdf version='1.10'><world name='w'><gravity>0 0 -1</gravity>{inside}<model name='m'>\
              <pose>0 0 1 0 0 0</pose><link name='a'><pose>1 0 0 0 0 0</pose></link></model></world></sdf>"
         )
     };
-    let slide = |parent: &str, more: &str| {
+    let prismatic_joint = |parent: &str, more: &str| {
         format!(
             "<joint name='a' type='prismatic'>{more}<parent>{parent}</parent><child>m::a</child><axis>\
              <xyz>1 0 0</xyz></axis></joint>"
@@ -394,7 +416,7 @@ fn joints_of_the_world_hold_models() {
     };
     for (inside, expected) in [
         (
-            slide("world", ""),
+            prismatic_joint("world", ""),
             format!(
                 "body world\nbody a {ONE}\nWeld root_joint: ground -> world\nSleeve world::a: world.at([1, \
                  0, 1]) -> a along [1, 0, 0]"
@@ -404,7 +426,7 @@ fn joints_of_the_world_hold_models() {
         (
             format!(
                 "<frame name='f'><pose>0 2 0 0 0 0</pose></frame>{}",
-                slide("f", "<pose relative_to='f'/>")
+                prismatic_joint("f", "<pose relative_to='f'/>")
             ),
             format!(
                 "body world\nbody a {ONE}\nbody f\nWeld root_joint: ground -> world\nWeld f_weld: world.at([0, 2, 0]) -> f\n\
@@ -414,7 +436,7 @@ fn joints_of_the_world_hold_models() {
         (
             format!(
                 "<model name='wall'><static>true</static><pose>0 5 0 0 0 0</pose><link name='k'/></model>{}",
-                slide("wall::k", "<pose relative_to='wall'/>")
+                prismatic_joint("wall::k", "<pose relative_to='wall'/>")
             ),
             format!(
                 "body world\nbody a {ONE}\nWeld root_joint: ground -> world\n\
@@ -430,7 +452,7 @@ fn joints_of_the_world_hold_models() {
         (
             format!(
                 "<model name='n'><link name='a'/></model>{}",
-                slide("n::a", "").replace("name='a'", "name='i'")
+                prismatic_joint("n::a", "").replace("name='a'", "name='i'")
             ),
             format!(
                 "body n::a {ONE}\nbody m::a {ONE}\nWeld root_joint: ground -> n::a\nSleeve i: n::a.at([1, 0, \
@@ -438,16 +460,18 @@ fn joints_of_the_world_hold_models() {
             ),
         ),
     ] {
-        let trim = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
-        let (mut found, mut expected) = (trim(&run(&sdf(), &world(&inside))), trim(&expected));
+        let trimmed_lines =
+            |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
+        let (mut found, mut expected) =
+            (trimmed_lines(&run(&sdf(), &world_with_joint(&inside))), trimmed_lines(&expected));
         // The order of bodies depends on the names of the joints.
         found.sort();
         expected.sort();
         assert_eq!(found, expected);
     }
-    let answer = run(&sdf(), &world(&slide("m::b", "")));
+    let answer = run(&sdf(), &world_with_joint(&prismatic_joint("m::b", "")));
     assert!(answer.contains("unknown frame `b`"), "{answer}");
-    let answer = run(&sdf(), &world("<jont name='x'/>"));
+    let answer = run(&sdf(), &world_with_joint("<jont name='x'/>"));
     assert!(
         answer.contains("unknown element `<jont>`") && answer.contains("did you mean `<joint>`?"),
         "{answer}"
@@ -457,17 +481,18 @@ fn joints_of_the_world_hold_models() {
 /// A positive `<thread_pitch>`, in rad/m, describes a left-handed thread.
 #[test]
 fn screws_of_old_versions_advance_by_their_thread() {
-    let text = |pitch: &str| {
+    let model_with_thread_pitch = |pitch: &str| {
         format!(
             "<sdf version='1.5'><model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'>\
              <parent>a</parent><child>b</child><axis/><thread_pitch>{pitch}</thread_pitch></joint></model>\
              </sdf>"
         )
     };
-    let imported = import_text(&text("-4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
+    let imported =
+        import_text(&model_with_thread_pitch("-4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
     let lead = imported.joints.iter().find_map(|joint| joint.lead.as_ref()).and_then(Expr::literal);
     assert_eq!(lead, Some(std::f64::consts::FRAC_PI_2));
-    assert!(run(&sdf(), &text("0")).contains("advances infinitely far in a turn"));
+    assert!(run(&sdf(), &model_with_thread_pitch("0")).contains("advances infinitely far in a turn"));
 }
 
 #[test]
@@ -510,16 +535,17 @@ fn versions_are_numbers() {
 /// Gravity is an element of `<physics>` up to version 1.5.
 #[test]
 fn gravity_of_old_worlds_is_that_of_their_physics() {
-    let text = |version: &str| {
+    let world_of_version = |version: &str| {
         format!(
             "<sdf version='{version}'><world name='w'><physics type='ode'><gravity>0 0 -3</gravity></physics>\
              <model name='m'><link name='a'/></model></world></sdf>"
         )
     };
-    let imported = import_text(&text("1.4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
+    let imported = import_text(&world_of_version("1.4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
     assert_eq!(imported.gravity.map(|gravity| render_expr(&gravity)), Some("[0, 0, -3]".to_string()));
     assert!(
-        run(&sdf(), &text("1.6")).contains("`<gravity>` is an element of the world since version 1.6 of SDF")
+        run(&sdf(), &world_of_version("1.6"))
+            .contains("`<gravity>` is an element of the world since version 1.6 of SDF")
     );
 }
 
@@ -570,7 +596,7 @@ fn parts_in_the_place_of_others_are_errors() {
     ] {
         check_model(inside, &format!("{found}\n{help}"));
     }
-    let joint = |inside: &str| {
+    let model_with_joint = |inside: &str| {
         format!(
             "<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>\
              <child>b</child>{inside}</joint>"
@@ -585,7 +611,8 @@ fn parts_in_the_place_of_others_are_errors() {
             "r.sdf:3:80: unexpected `<damping>` in `<limit>`",
         ),
     ] {
-        let actual = run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", joint(inside)));
+        let actual =
+            run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_joint(inside)));
         assert!(actual.starts_with(&format!("{found}\n")) && !actual.contains("\nr.sdf"), "{actual}");
     }
 }
@@ -636,7 +663,7 @@ fn gravity_is_that_of_the_models_world() {
     assert_eq!(imported.gravity.map(|e| render_expr(&e)).as_deref(), Some("[0, 0, -5]"));
 }
 
-/// Plug-ins of an `<include>` are listed like those of its model.
+/// Checks that plug-ins of an `<include>` are listed like those of its model.
 #[test]
 fn plugins_of_included_models_are_listed() {
     let arm = "<sdf><model name='arm'><link name='a'/></model></sdf>";

@@ -1,4 +1,4 @@
-//! Spatial tendons and actuators on sites.
+//! Tests of spatial tendons and of actuators on sites in MJCF files.
 
 use super::mjcf::mjcf;
 use super::*;
@@ -32,13 +32,16 @@ fn paths_are_lengths_of_cables() {
     let ends = "ground.at([0, 0, 1]) / b.at([3, 0, 0])";
     assert_eq!(cable(""), [format!("m: input in N on norm(r(({ends})))")]);
     assert_eq!(cable("<geom geom='ball'/>"), [format!("m: input in N on cable(({ends}), b.sphere(0.5))")]);
-    let round = |sign: &str| format!("cable(({ends}), b.cylinder(0.5, [0, {sign}1, 0]))");
+    let expected_cable = |sign: &str| format!("cable(({ends}), b.cylinder(0.5, [0, {sign}1, 0]))");
     assert_eq!(
         cable("<geom geom='drum'/>"),
-        [format!("m: input in N on min({}, {})", round(""), round("-"))]
+        [format!("m: input in N on min({}, {})", expected_cable(""), expected_cable("-"))]
     );
     // Viewed along y, the cable runs clockwise from below the drum over its upper side to the right.
-    assert_eq!(cable("<geom geom='drum' sidesite='side'/>"), [format!("m: input in N on {}", round(""))]);
+    assert_eq!(
+        cable("<geom geom='drum' sidesite='side'/>"),
+        [format!("m: input in N on {}", expected_cable(""))]
+    );
 }
 
 /// A pulley divides the length after it by its divisor; a gear ratio multiplies the whole length.
@@ -46,44 +49,54 @@ fn paths_are_lengths_of_cables() {
 fn pulleys_and_gears_are_factors() {
     let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/>\
                   <site site='side'/></spatial>";
-    let length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
+    let expected_length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
     assert_eq!(
         drives(tendon, "<motor tendon='t' name='m' gear='3'/>"),
-        [format!("m: input in N on (3 * ({} + (0.25 * {})))", length("3, 0, 0"), length("-1, 0, 9"))]
+        [format!(
+            "m: input in N on (3 * ({} + (0.25 * {})))",
+            expected_length("3, 0, 0"),
+            expected_length("-1, 0, 9")
+        )]
     );
 }
 
 /// The free length is the length with all joint springs relaxed: here `s` is rotated by 1 rad about y.
 #[test]
 fn springs_are_free_at_rest() {
-    let spring = |more: &str| {
+    let drives_with_spring = |more: &str| {
         drives(
             &format!("<spatial name='t' stiffness='5' {more}><site site='w'/><site site='s'/></spatial>"),
             "",
         )
     };
-    let found = spring("");
+    let found = drives_with_spring("");
     let free: f64 = found[0].split(' ').nth(4).and_then(|text| text.parse().ok()).expect("a number");
     let (sine, cosine) = 1.0_f64.sin_cos();
     assert!((free - (3.0 * cosine).hypot(1.0 - 3.0 * sine)).abs() < 1e-14, "{found:?}");
-    assert!(spring("springlength='.2'")[0].starts_with("t: spring 5 from 0.2 on norm("));
-    assert!(spring("springlength='.2 .3'")[0].starts_with("t: spring 5 outside of 0.2 to 0.3 on norm("));
-    let all = spring("damping='2' frictionloss='3' armature='4' springlength='1'");
+    assert!(drives_with_spring("springlength='.2'")[0].starts_with("t: spring 5 from 0.2 on norm("));
+    assert!(
+        drives_with_spring("springlength='.2 .3'")[0]
+            .starts_with("t: spring 5 outside of 0.2 to 0.3 on norm(")
+    );
+    let all = drives_with_spring("damping='2' frictionloss='3' armature='4' springlength='1'");
     let laws: Vec<&str> = all.iter().filter_map(|line| line.split(" on ").next()).collect();
     assert_eq!(laws, ["t: inerter 4", "t: spring 5 from 1", "t: damper 2", "t: friction 3"]);
 }
 
 #[test]
 fn sites_are_pushed_and_turned() {
-    let site = |words: &str| drives("", &format!("<motor name='m' site='s' {words}/>"));
-    assert_eq!(site("gear='1 2 0 0 0 3'"), ["m: input in N on b.at([3, 0, 0]) by 1 2 0, 0 0 3"]);
+    let drives_with_site_motor = |words: &str| drives("", &format!("<motor name='m' site='s' {words}/>"));
     assert_eq!(
-        site("refsite='w' gear='1 0 -2'"),
+        drives_with_site_motor("gear='1 2 0 0 0 3'"),
+        ["m: input in N on b.at([3, 0, 0]) by 1 2 0, 0 0 3"]
+    );
+    assert_eq!(
+        drives_with_site_motor("refsite='w' gear='1 0 -2'"),
         ["m: input in N on dot(r((b.at([3, 0, 0]) / ground.at([0, 0, 1]))), ((1 * ground.x) + (-2 * \
           ground.z)))"]
     );
     assert_eq!(
-        site("refsite='w' gear='0 0 0 0 1 0'"),
+        drives_with_site_motor("refsite='w' gear='0 0 0 0 1 0'"),
         ["m: input in N·m on b.at([3, 0, 0]) by 0 0 0, 0 1 0 against ground.at([0, 0, 1])"]
     );
     // The length of an actuator on a single site is zero: a servo's spring reduces to its constant force.
@@ -103,30 +116,42 @@ fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
     let side =
         "<spatial name='t'><site site='w'/><geom geom='ball' sidesite='side'/><site site='s'/></spatial>";
     assert_eq!(drives(side, ""), Vec::<String>::new());
-    let last = |found: Vec<String>, message: &str| {
+    let assert_message_found = |found: Vec<String>, message: &str| {
         let found = found.join("\n");
         assert!(found.contains(message), "{found}");
     };
     let inputs = "= help: to ignore the actuators of the file, write";
-    last(
+    assert_message_found(
         drives(side, "<motor tendon='t'/>"),
         "the side on which a tendon passes the sphere `ball` is not supported",
     );
-    last(drives(side, "<motor tendon='t'/>"), inputs);
-    last(cable("<geom geom='box'/>"), "a tendon wraps around spheres and cylinders, but `box` is neither");
-    last(cable("<geom geom='bal'/>"), "unknown geom `bal`");
-    last(cable("<geom geom='ball'/><geom geom='drum'/>"), "a tendon runs around a shape between two sites");
-    last(cable("<site site='x'/>"), "unknown site `x`");
-    last(cable("<site site='s'/><pulley divisor='0'/><site site='w'/>"), "a pulley with the divisor 0");
-    last(cable("<wheel/>"), "unknown element `<wheel>`");
-    last(
+    assert_message_found(drives(side, "<motor tendon='t'/>"), inputs);
+    assert_message_found(
+        cable("<geom geom='box'/>"),
+        "a tendon wraps around spheres and cylinders, but `box` is neither",
+    );
+    assert_message_found(cable("<geom geom='bal'/>"), "unknown geom `bal`");
+    assert_message_found(
+        cable("<geom geom='ball'/><geom geom='drum'/>"),
+        "a tendon runs around a shape between two sites",
+    );
+    assert_message_found(cable("<site site='x'/>"), "unknown site `x`");
+    assert_message_found(
+        cable("<site site='s'/><pulley divisor='0'/><site site='w'/>"),
+        "a pulley with the divisor 0",
+    );
+    assert_message_found(cable("<wheel/>"), "unknown element `<wheel>`");
+    assert_message_found(
         drives("", "<motor site='w' refsite='s'/>"),
         "a `refsite` that does not carry the site `w` is not supported",
     );
-    last(
+    assert_message_found(
         drives("", "<position site='s' refsite='w' kp='1' gear='0 0 0 1 0 0'/>"),
         "a servo on the orientation of a site is not supported",
     );
-    last(drives("", "<motor body='b'/>"), "an actuator on no joint, tendon or site is not supported");
-    last(drives("", "<muscle joint='j'/>"), "actuator `<muscle>` is not supported");
+    assert_message_found(
+        drives("", "<motor body='b'/>"),
+        "an actuator on no joint, tendon or site is not supported",
+    );
+    assert_message_found(drives("", "<muscle joint='j'/>"), "actuator `<muscle>` is not supported");
 }

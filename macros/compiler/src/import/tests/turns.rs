@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// 90 rad modulo a full revolution, rad.
+/// The angle 90 rad reduced by full revolutions, rad.
 const SAME_TURN: f64 = 2.0354056994857928;
 
 #[test]
@@ -11,7 +11,7 @@ fn what_is_left_within_a_turn_turns_as_far() {
     assert!((SAME_TURN.sin() - sin).abs() < 1e-14 && (SAME_TURN.cos() - cos).abs() < 1e-14);
 }
 
-/// Compares the error for `text` with the angle 90 instead of `…`. A rounded full revolution and one and a
+/// Compares the error for `text` with the angle 90 in place of `…`. A rounded full revolution and one and a
 /// half revolutions must not be reported.
 fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
     let degrees = text.replace('…', "90");
@@ -30,7 +30,7 @@ fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
 
 #[test]
 fn degrees_in_a_urdf_are_told_once() {
-    let robot = |origin: &str| {
+    let robot_with_origin = |origin: &str| {
         format!(
             "<robot name='r'><link name='a'/><link name='b'><inertial><origin rpy='0 … 0'/><mass value='1'/>\
              <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\n\
@@ -38,26 +38,27 @@ fn degrees_in_a_urdf_are_told_once() {
         )
     };
     let help = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
-    check_turns(&defaults(), &robot("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
-    let joint = robot("<origin xyz='90 0 0' rpy='0 0 …'/>").replacen('…', "1.5", 1);
+    check_turns(&defaults(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
+    let joint = robot_with_origin("<origin xyz='90 0 0' rpy='0 0 …'/>").replacen('…', "1.5", 1);
     check_turns(&defaults(), &joint, "r.urdf:2:59", help);
 }
 
 #[test]
 fn degrees_in_an_sdf_say_so() {
     let options = FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() };
-    let model = |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
+    let model_with_pose =
+        |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
     let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
                 everywhere in the file";
-    check_turns(&options, &model("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
-    let answer = run(&options, &model("<pose degrees='true'>0 0 0 0 0 90</pose>"));
+    check_turns(&options, &model_with_pose("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
+    let answer = run(&options, &model_with_pose("<pose degrees='true'>0 0 0 0 0 90</pose>"));
     assert!(answer.contains("body a mass=1"), "{answer}");
 }
 
 #[test]
 fn degrees_in_an_mjcf_are_what_the_file_says() {
     let options = FileOptions { format: FileFormat::Mjcf, path: name("r.xml"), ..defaults() };
-    let model = |unit: &str, turn: &str| {
+    let model_with_angle_unit = |unit: &str, turn: &str| {
         format!(
             "<mujoco><compiler angle='{unit}'/><worldbody>\n<body name='b' {turn}><joint/>\
              <geom size='.1' mass='1'/></body></worldbody></mujoco>"
@@ -66,8 +67,8 @@ fn degrees_in_an_mjcf_are_what_the_file_says() {
     let help = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or \
                 `angle=\"degree\"`";
     for (turn, place) in [("euler='0 … 0'", "r.xml:2:23"), ("axisangle='0 0 20 …'", "r.xml:2:27")] {
-        check_turns(&options, &model("radian", turn), place, help);
-        let answer = run(&options, &model("degree", &turn.replace('…', "90")));
+        check_turns(&options, &model_with_angle_unit("radian", turn), place, help);
+        let answer = run(&options, &model_with_angle_unit("degree", &turn.replace('…', "90")));
         assert!(answer.contains("body b mass=1"), "{answer}");
     }
 }

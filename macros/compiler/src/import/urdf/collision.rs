@@ -8,7 +8,7 @@ use crate::import::imported::Placed;
 use crate::import::robot::FileCollision;
 use crate::syntax::Shape;
 
-/// Supported shapes.
+/// Shapes of collision geometry that are supported.
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link.
@@ -56,7 +56,7 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
     Some(FileCollision { origin, shape, place: place(node, cx) })
 }
 
-/// Reports shapes after the first one of a geometry.
+/// Reports the shapes of a geometry after the first one.
 fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     if let Some(second) = shapes.iter().flatten().nth(1) {
         let help = "write a `<collision>` for each shape";

@@ -1,4 +1,4 @@
-//! `<joint>` → [`FileJoint`]: one joint as the file describes it, before locks and `mimic` are resolved.
+//! Conversion of a `<joint>` element to a [`FileJoint`], before locks and `mimic` are resolved.
 
 use super::limit::read_limits;
 use super::origin::read_origin;
@@ -96,24 +96,24 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     known.copied()
 }
 
-/// Reads the link at one end of a joint.
+/// Reads the name of the parent or child link of a joint.
 fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let end = required(end, node, which, &["link"], cx)?;
     check_only(end, &["link"], &[], &[], cx);
     name(end, "link", cx)
 }
 
-/// Reads the axis; URDF's default is x.
+/// Reads the axis of a joint; the default of URDF is x.
 fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
-    let default = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
+    let default_axis = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
-        return default(place(node, cx));
+        return default_axis(place(node, cx));
     };
     // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
     check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
-    let axis = numbers(axis, "xyz", cx).unwrap_or(default(place(axis, cx)));
+    let axis = numbers(axis, "xyz", cx).unwrap_or(default_axis(place(axis, cx)));
     if axis.value == [0.0; 3] {
         cx.error(&axis.place, "axis of zero length has no direction", |d| d);
     }

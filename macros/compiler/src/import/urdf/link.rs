@@ -1,4 +1,4 @@
-//! `<link>` → [`Body`].
+//! Conversion of a `<link>` element to a [`Body`].
 
 use super::origin::read_origin;
 use crate::diag::nearest;
@@ -21,7 +21,7 @@ const BELOW_DIAGONAL: [(&str, &str); 3] = [("iyx", "ixy"), ("izx", "ixz"), ("izy
 /// the two differently.
 const ASYMMETRY: f64 = 0.01;
 
-/// Child elements of `<inertial>`.
+/// Child elements that `<inertial>` may have.
 const PARTS: [&str; 3] = ["origin", "mass", "inertia"];
 
 /// Reads a link. Returns `None` if it has no name. Mass properties are skipped if the mechanism needs none,

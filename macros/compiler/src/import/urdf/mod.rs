@@ -19,7 +19,7 @@ mod origin;
 mod standing;
 mod visual;
 
-/// Reads the root element.
+/// Reads the root element of a URDF file.
 pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     if !check_root(node, cx) {
         return None;

@@ -1,4 +1,4 @@
-//! `<origin xyz="…" rpy="…"/>` → [`Origin`].
+//! Conversion of an element `<origin xyz="…" rpy="…"/>` to an [`Origin`].
 
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_only, check_radians, numbers, place};
@@ -9,11 +9,11 @@ const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, every
 
 /// Reads the `<origin>` of `owner`. Without an `<origin>`, the pose is the identity.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
-    let zero = |node| Placed { value: [0.0; 3], place: place(node, cx) };
+    let zero_vector_at_node = |node| Placed { value: [0.0; 3], place: place(node, cx) };
     let Some(node) = node else {
-        return Origin { xyz: zero(owner), rpy: zero(owner) };
+        return Origin { xyz: zero_vector_at_node(owner), rpy: zero_vector_at_node(owner) };
     };
-    let (no_xyz, no_rpy) = (zero(node), zero(node));
+    let (no_xyz, no_rpy) = (zero_vector_at_node(node), zero_vector_at_node(node));
     if let Some(found) = node.attribute_node("quat_xyzw") {
         let place = cx.place(found.range().start);
         cx.error(&place, "`quat_xyzw` is not supported", |d| d.help("expected `rpy=\"roll pitch yaw\"`"));

@@ -14,11 +14,13 @@ pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a 
     }
     let (mut below, mut carried) = (BTreeMap::<&str, Vec<&str>>::new(), BTreeSet::new());
     for joint in elements(robot).filter(|node| node.tag_name().name() == "joint") {
-        let end = |name| {
+        let link_of_joint_end = |name| {
             let end = elements(joint).find(|node| node.tag_name().name() == name)?;
             end.attribute("link")
         };
-        let (Some(parent), Some(child)) = (end("parent"), end("child")) else { continue };
+        let (Some(parent), Some(child)) = (link_of_joint_end("parent"), link_of_joint_end("child")) else {
+            continue;
+        };
         carried.insert(child);
         let is_locked =
             joint.attribute("name").is_some_and(|name| options.lock.iter().any(|l| l.text == name));

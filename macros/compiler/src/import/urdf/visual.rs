@@ -16,21 +16,26 @@ pub(super) fn read(link: Node<'_>, cx: &Cx<'_>) -> Vec<FileVisual> {
 }
 
 fn read_part(node: Node<'_>, cx: &Cx<'_>) -> Option<FileVisual> {
-    let child = |name: &str| elements(node).find(|child| child.tag_name().name() == name);
-    let placed = |name| {
-        let value = child("origin").map_or(Some([0.0; 3]), |origin| list(origin, name, [0.0; 3]))?;
+    let find_child_by_tag = |name: &str| elements(node).find(|child| child.tag_name().name() == name);
+    let attribute_of_origin = |name| {
+        let value =
+            find_child_by_tag("origin").map_or(Some([0.0; 3]), |origin| list(origin, name, [0.0; 3]))?;
         Some(Placed { value, place: place(node, cx) })
     };
-    let (shape, mesh) = elements(child("geometry")?).find_map(read_shape)?;
-    Some(FileVisual { origin: Origin { xyz: placed("xyz")?, rpy: placed("rpy")? }, shape, mesh })
+    let (shape, mesh) = elements(find_child_by_tag("geometry")?).find_map(read_shape)?;
+    Some(FileVisual {
+        origin: Origin { xyz: attribute_of_origin("xyz")?, rpy: attribute_of_origin("rpy")? },
+        shape,
+        mesh,
+    })
 }
 
 fn read_shape(node: Node<'_>) -> Option<(Shape, Option<Mesh>)> {
-    let length = |name: &str| size(node.attribute(name)?);
+    let length_attribute = |name: &str| size(node.attribute(name)?);
     let shape = match node.tag_name().name() {
-        "sphere" => Shape::Sphere(length("radius")?),
-        "cylinder" => Shape::Cylinder(length("radius")?, length("length")?),
-        "capsule" => Shape::Capsule(length("radius")?, length("length")?),
+        "sphere" => Shape::Sphere(length_attribute("radius")?),
+        "cylinder" => Shape::Cylinder(length_attribute("radius")?, length_attribute("length")?),
+        "capsule" => Shape::Capsule(length_attribute("radius")?, length_attribute("length")?),
         "box" => {
             let edges = list(node, "size", [0.0; 3])?;
             Shape::Cuboid(edges.iter().all(|x| *x > 0.0).then_some(edges)?)

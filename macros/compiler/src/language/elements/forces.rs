@@ -12,7 +12,7 @@ use Key::{
 /// A row of the table of force elements.
 #[derive(Debug)]
 pub struct ForceRow {
-    /// The name of the type.
+    /// Name of the element's type.
     pub name: &'static str,
     /// Names of the element in other tools.
     pub synonyms: &'static str,
@@ -20,7 +20,7 @@ pub struct ForceRow {
     pub on: bool,
     /// Whether the element can act between two points: `between = (…, …)`.
     pub between: bool,
-    /// All other arguments, in the order in which messages list them.
+    /// Arguments in addition to the places of action, in the order in which messages list them.
     pub arguments: &'static [Key],
     /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last
     /// one.
@@ -41,7 +41,7 @@ pub struct ForceRow {
     pub pieces: Option<[PieceKind; 2]>,
     /// Whether the element is drawn only between two points.
     pub drawn_between: bool,
-    /// Names of the arguments in other tools.
+    /// Names that other tools use for the arguments.
     pub words: Words,
     /// Example of a declaration.
     pub example: &'static str,
@@ -50,7 +50,7 @@ pub struct ForceRow {
 /// Variables that the expression of a law may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locals {
-    /// No variables.
+    /// The expression of the law has no variables.
     None,
     /// `stretch` and `length`.
     Stretch,
@@ -58,7 +58,7 @@ pub enum Locals {
     Speed,
 }
 
-/// A row with default values.
+/// Row with default values, from which other rows are derived.
 const PLAIN: ForceRow = ForceRow {
     name: "",
     synonyms: "",

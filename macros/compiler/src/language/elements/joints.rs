@@ -1,28 +1,28 @@
-//! Joints.
+//! Table of the joints: names, axes, coordinates and examples.
 
 use super::super::Words;
 use super::words::{END, LIMITED, RATIO, TURNED};
 use crate::mechanism::PieceKind;
 use CoordinateNames::Plain;
 
-/// A row of the table of joints.
+/// Row of the table of joints.
 #[derive(Debug)]
 pub struct JointRow {
-    /// The name of the type.
+    /// Name of the joint's type.
     pub name: &'static str,
     /// Words of other tools, without the word `joint`.
     pub synonyms: &'static str,
-    /// Arguments in addition to the two ends.
+    /// Arguments of the joint in addition to its two ends.
     pub arguments: &'static [&'static str],
-    /// The coordinates.
+    /// Names and kinds of the coordinates.
     pub coordinates: CoordinateNames,
-    /// Piece of the drawing, and the argument whose first axis it shows.
+    /// Piece of the drawing, and the argument whose first axis the piece shows.
     pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
     /// Example of a declaration.
     pub example: &'static str,
 }
 
-/// The coordinates of a joint.
+/// Coordinates of a joint.
 #[derive(Clone, Copy, Debug)]
 pub enum CoordinateNames {
     /// Plain coordinates by name (empty for the name of the joint), with true for an angle.
@@ -38,9 +38,9 @@ pub enum CoordinateNames {
 /// The axis that the drawing of a joint shows.
 #[derive(Clone, Copy, Debug)]
 pub enum DrawnAxis {
-    /// The first rotation axis.
+    /// First rotation axis of the joint.
     About,
-    /// The first translation axis.
+    /// First translation axis of the joint.
     Along,
 }
 
@@ -136,8 +136,8 @@ impl JointKind {
         (q.to_vec(), v.to_vec())
     }
 
-    /// Returns true for a joint with a rotation about one axis alone, false for one with a displacement along
-    /// one axis alone.
+    /// Returns true for a joint that only rotates about one axis, false for a joint that only translates
+    /// along one axis, and `None` for others.
     pub fn rotates(self) -> Option<bool> {
         match (self.row().coordinates, self.row().arguments) {
             (Plain([("", true)]), ["about"]) => Some(true),

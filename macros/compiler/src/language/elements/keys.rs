@@ -5,14 +5,14 @@ use ArgumentQuantity::{
     Coordinate, Damping, Direction, Energy, Fixed, Force, HertzStiffness, Inertance, Load, Speed, Stiffness,
 };
 
-/// A row of the table of arguments.
+/// Row of the table of arguments.
 #[derive(Debug)]
 pub struct KeyRow {
-    /// The name.
+    /// Name of the argument.
     pub name: &'static str,
     /// Names in other tools; the elements list them.
     pub synonyms: &'static str,
-    /// Quantity of the argument.
+    /// Quantity that the argument expects.
     pub quantity: ArgumentQuantity,
 }
 
@@ -20,25 +20,25 @@ pub struct KeyRow {
 /// acts.
 #[derive(Debug)]
 pub enum ArgumentQuantity {
-    /// Force by displacement.
+    /// Stiffness: force per displacement.
     Stiffness,
     /// Force by displacement to the power of 3/2.
     HertzStiffness,
-    /// Force by velocity.
+    /// Damping: force per velocity.
     Damping,
-    /// Force by acceleration.
+    /// Inertance: force per acceleration.
     Inertance,
     /// A force or a torque.
     Force,
-    /// An energy.
+    /// Coordinate or distance on which the element acts.
     Energy,
-    /// The coordinate or the distance itself.
+    /// Rate of the coordinate or distance on which the element acts.
     Coordinate,
-    /// Rate of the coordinate or the distance.
+    /// Quantity of this dimension, with the text of its unit (empty for the default).
     Speed,
     /// This dimension, with the text of its unit (empty for the default).
     Fixed(Dimension, &'static str),
-    /// The direction of an input.
+    /// Value of a force or a torque; without it the element is an input.
     Direction,
     /// The value of a force or a torque; without it the element is an input.
     Load,
@@ -122,11 +122,11 @@ pub struct Relation {
     pub key: Key,
     /// True if the argument needs one of the others, false if it excludes them.
     pub needs: bool,
-    /// The other arguments.
+    /// Arguments to which the condition refers.
     pub others: &'static [Key],
     /// The error; `NAME` is the name of the element.
     pub message: &'static str,
-    /// The help.
+    /// Help that the error message gives.
     pub help: &'static str,
 }
 

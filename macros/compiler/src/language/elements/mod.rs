@@ -1,4 +1,4 @@
-//! The types of elements: their names, their arguments, and how they are declared.
+//! Types of elements: their names, their arguments, and how they are declared.
 
 #[macro_use]
 mod joints;
@@ -16,7 +16,7 @@ use super::Words;
 use joints::JOINT_WORDS;
 use words::{ENDS, MATRIX, PLACED};
 
-/// The type of an element.
+/// Type of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
     /// A rigid body.
@@ -40,7 +40,7 @@ const MASSIVE: Words = &[
     ("pointmass masspoint bob bead", PARTICLE),
 ];
 
-/// Words for the arguments of a body.
+/// Words of other tools for the arguments of a body.
 const BODY_WORDS: Words = &[
     ("m weight masse", "mass"),
     ("cog cm cg centre center centerofmass centreofmass massoffset cofm comoffset", "com"),
@@ -58,7 +58,7 @@ const BODY_WORDS: Words = &[
     ),
 ];
 
-/// Words for the arguments of a particle.
+/// Words of other tools for the arguments of a particle.
 const PARTICLE_WORDS: Words = &[
     ("m weight", "mass"),
     ("position pos xyz r where point location place", "at"),
@@ -132,7 +132,7 @@ impl ElementKind {
         }
     }
 
-    /// Returns how an element is declared.
+    /// Returns an example of the element's declaration.
     pub fn example(self) -> &'static str {
         match self {
             ElementKind::Body => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",

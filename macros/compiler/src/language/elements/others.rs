@@ -27,7 +27,7 @@ pub struct OtherRow {
     pub relations: &'static [Relation],
     /// Words of other tools for its arguments.
     pub words: Words,
-    /// Example of a declaration.
+    /// Example of a declaration of the element.
     pub example: &'static str,
 }
 
@@ -54,12 +54,12 @@ const fn row(
 table! {
     /// An element other than a body, a joint or a force element.
     OtherKind: OtherRow {
-        /// A generalized coordinate of its own.
+        /// Generalized coordinate that belongs to no joint.
         Coordinate = row("Coordinate",
             "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate \
              variable dof unknown",
             &[], &[], "name: Coordinate");
-        /// An entry of `u` of its own.
+        /// Input of the mechanism: an entry of `u`.
         Input = row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
         /// A frame.
         Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
@@ -135,15 +135,15 @@ table! {
             "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable \
              speeds",
             &["speed"], &[], "#[speed(rate(psi) * sin(theta))]");
-        /// A scalar with a name.
+        /// Named scalar: a definition or an output.
         Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
-        /// A vector with a name.
+        /// Named vector.
         Vector = OtherRow {
             own: AXES,
             ..row("Vector", "vector3 vec3 vector3d vec",
             &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
-        /// A matrix with a name.
+        /// Named matrix.
         Matrix = OtherRow {
             own: AXES,
             ..row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
@@ -156,7 +156,7 @@ table! {
     }
 }
 
-/// Words for the arguments of a contact.
+/// Words of other tools for the arguments of a contact.
 const CONTACT: Words = &[
     ("mu muk coefficient frictioncoefficient coulomb kinetic kineticfriction sliding", "friction"),
     ("mus static staticfriction breakaway stick fs", "stiction"),
@@ -171,7 +171,7 @@ const CONTACT: Words = &[
     ),
 ];
 
-/// Words for the arguments of a limit.
+/// Words of other tools for the arguments of a limit.
 const LIMIT: Words = &[
     (ON, "on"),
     ("lower low min minimum least start lowerlimit", "from"),
@@ -184,13 +184,13 @@ const LIMIT: Words = &[
     ),
 ];
 
-/// Words for the arguments of a point.
+/// Words of other tools for the arguments of a point.
 const POINT: Words = &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
 
 /// Words for the axes of an output's components.
 const AXES_WORDS: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
 
-/// Words for the arguments of rolling surfaces.
+/// Words of other tools for the arguments of rolling surfaces.
 const ROLLING: Words = &[(
     "friction speed",
     "surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`",
@@ -199,7 +199,7 @@ const ROLLING: Words = &[(
 /// Argument with the axes of an output's components.
 const AXES: &[&str] = &["resolved_in"];
 
-/// Arguments of rigid and of compliant surfaces.
+/// Conditions on the arguments of rigid and of compliant contact surfaces, which exclude each other.
 const COMPLIANCE: &[Relation] = &[
     Relation::excludes(
         Hertz,

@@ -3,10 +3,10 @@
 /// Names of other tools for the argument `on`.
 pub const ON: &str = "joint joints body bodies target coordinate applied frame";
 
-/// Help for a point as an argument of its own.
+/// Help for a point that is written as an argument of its own.
 pub const AT: &str = "the point is written after the body: `on = body.at(length * x)`";
 
-/// Help for limits of an input.
+/// Help for limits that are declared for an input.
 pub const SATURATION: &str = "inputs have no limits: bound the value in the controller, or write `value = \
                               max(min(u, high), low)`";
 

@@ -21,8 +21,8 @@ fn selected(outputs: impl for<'g> Fn([Expr<'g>; 8]) -> Vec<Expr<'g>>) -> Program
 fn around(pass: &Pass, mut program: Program) -> [Vec<String>; 2] {
     program.counts = program.count();
     let after = program.clone().run_passes(&[*pass]);
-    let value = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
-    for (a, b) in program.run(&value).iter().zip(after.run(&value)) {
+    let value_of_symbol = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
+    for (a, b) in program.run(&value_of_symbol).iter().zip(after.run(&value_of_symbol)) {
         assert!((a - b).abs() <= 1e-13 * a.abs().max(1.0), "{}: {a} and {b}", pass.name);
     }
     [program, after].map(|p| p.text(&name).lines().map(ToString::to_string).collect())

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Index of the pairs of terms that several sums have in common.
 #[derive(Default)]
 pub(super) struct Pairs {
-    /// Sums that contain each pair.
+    /// Indices of the sums that contain each pair.
     lists: BTreeMap<Pair, Vec<usize>>,
     /// Pairs by the number of sums that contain them.
     shared: BTreeSet<(usize, Reverse<Pair>)>,
@@ -16,7 +16,7 @@ pub(super) struct Pairs {
 impl Pairs {
     /// Returns the pairs of the sums, given the number of atoms.
     pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> Pairs {
-        let place = |key: Key| match key {
+        let index_of_key = |key: Key| match key {
             Key::One => 0,
             Key::Atom(a) => 1 + a,
             Key::Sum(s) => 1 + atoms + s,
@@ -24,13 +24,13 @@ impl Pairs {
         // A term with a single use is not part of a shared pair.
         let mut uses = vec![0_u32; 1 + atoms + sums.len()];
         for (key, _) in sums.iter().flatten() {
-            uses[place(*key)] += 1;
+            uses[index_of_key(*key)] += 1;
         }
         let mut all = Vec::new();
         let mut common = Terms::new();
         for (k, terms) in sums.iter().enumerate() {
             common.clear();
-            common.extend(terms.iter().filter(|(key, _)| uses[place(*key)] > 1));
+            common.extend(terms.iter().filter(|(key, _)| uses[index_of_key(*key)] > 1));
             for (i, a) in common.iter().enumerate() {
                 all.extend(common[i + 1..].iter().map(|b| (Pair::new(*a, *b), k)));
             }
@@ -59,7 +59,7 @@ impl Pairs {
         }
     }
 
-    /// Removes and returns the pair that the most sums share, with these sums; among equals the first one.
+    /// Removes the pair that the most sums share, the first one among equals, and returns it with these sums.
     /// Returns `None` if no pair is shared.
     pub(super) fn take_most_shared(&mut self) -> Option<(Pair, Vec<usize>)> {
         let (_, Reverse(pair)) = self.shared.pop_last()?;
@@ -67,8 +67,8 @@ impl Pairs {
     }
 }
 
-/// Numbers of two keys and the ratio of their coefficients, packed into one integer: bits 96 to 127, bits 64
-/// to 95, and the lower half.
+/// Pair of terms: the numbers of two keys and the ratio of their coefficients, packed into one integer (bits
+/// 96 to 127, bits 64 to 95, and the lower half).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Pair(u128);
 
@@ -82,12 +82,12 @@ impl Pair {
         Pair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
     }
 
-    /// Returns the number of the first key.
+    /// Returns the number of the pair's first key.
     pub(super) fn first(self) -> u32 {
         (self.0 >> 96) as u32
     }
 
-    /// Returns the number of the second key.
+    /// Returns the number of the pair's second key.
     pub(super) fn second(self) -> u32 {
         (self.0 >> 64) as u32
     }

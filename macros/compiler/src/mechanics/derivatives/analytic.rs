@@ -22,8 +22,8 @@ use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradie
 use crate::mechanism::Model;
 use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 
-/// Returns the derivatives of `M a + h` without springs, dashpots and other loads, in up to `most` lanes
-/// (one: scalar code).
+/// Returns the derivatives of `M a + h` without springs, dashpots and other loads, in up to `most` lanes; one
+/// lane gives scalar code.
 pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -79,8 +79,8 @@ fn entries<'g>(
     sums: &[Subtree<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
-    let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let out = ForceDerivatives { by_q: zero(), by_v: zero() };
+    let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let out = ForceDerivatives { by_q: zero_matrix(), by_v: zero_matrix() };
     let paths = Paths::new(joints, most);
     let mut entries = Entries { columns, all: columns.concat(), links: paths.links(), sums, out };
     paths.propagate(&mut entries);
@@ -88,7 +88,7 @@ fn entries<'g>(
 }
 
 struct Entries<'a, 'g> {
-    /// Degrees of freedom, by link here and in one list in `all`.
+    /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
     columns: &'a [Vec<Column<'g>>],
     all: Vec<Column<'g>>,
     links: &'a [usize],
@@ -112,18 +112,18 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
     fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
         for other in &self.columns[group.link] {
             let [above, below] = group.item.meet(&other.map(&|e| group.spread(e)));
-            let parts = |[by_q, by_v]: [Expr<'g>; 2]| group.parts(by_q).zip(group.parts(by_v));
-            for ((dof, by_q), (_, by_v)) in parts(above) {
+            let pair_entries_by_dof = |[by_q, by_v]: [Expr<'g>; 2]| group.parts(by_q).zip(group.parts(by_v));
+            for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(above) {
                 self.out.add(other, &self.all[dof], by_q, by_v);
             }
-            for ((dof, by_q), (_, by_v)) in parts(below) {
+            for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(below) {
                 self.out.add(&self.all[dof], other, by_q, by_v);
             }
         }
     }
 }
 
-/// Contribution of one degree of freedom to the entries with its ancestors: wrenches about an ancestor's
+/// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes.
 struct Changes<'g> {
     /// Change of the wrench with the displacement of the degree of freedom.
@@ -146,8 +146,8 @@ impl<'g> Changes<'g> {
         }
     }
 
-    /// Returns the derivatives with respect to `q` and `v` of this degree of freedom of the force of an
-    /// ancestor's degree of freedom, then those with the two exchanged.
+    /// Returns the derivatives of the force of an ancestor's degree of freedom with respect to `q` and `v` of
+    /// this degree of freedom, then the derivatives with the two degrees of freedom exchanged.
     fn meet(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
         let s = &other.subspace;
         let by_q = self.momentum.dot(&other.second) + self.moment.dot(other.first.angular);

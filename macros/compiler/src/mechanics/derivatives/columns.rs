@@ -39,7 +39,7 @@ impl<'g> State<'g> {
         ])
     }
 
-    /// Returns velocity and angular velocity.
+    /// Returns the twist: velocity of the origin and angular velocity.
     pub fn twist(&self) -> Spatial<'g> {
         Spatial { linear: self.v, angular: self.w }
     }
@@ -48,7 +48,7 @@ impl<'g> State<'g> {
 /// Motion of a link, and of the parent's point at the link's origin, both in link axes.
 #[derive(Clone, Copy)]
 pub struct LinkMotion<'g> {
-    /// Motion of the link.
+    /// Motion of the link itself.
     pub own: State<'g>,
     /// Motion of the parent's point at the link's origin.
     pub parent: State<'g>,
@@ -88,7 +88,7 @@ pub fn motions<'g>(
 /// link and all descendants.
 #[derive(Clone, Copy)]
 pub struct Column<'g> {
-    /// Index in `v`.
+    /// Index of the degree of freedom in `v`.
     pub index: usize,
     /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
@@ -105,14 +105,14 @@ pub struct Column<'g> {
 }
 
 impl<'g> Column<'g> {
-    /// Applies a function to all expressions.
+    /// Applies a function to all expressions of the column.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Column<'g> {
-        let each = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
+        let map_components = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
         Column {
-            subspace: each(&self.subspace),
-            first: each(&self.first),
-            second: each(&self.second),
-            rate: each(&self.rate),
+            subspace: map_components(&self.subspace),
+            first: map_components(&self.first),
+            second: map_components(&self.second),
+            rate: map_components(&self.rate),
             ..*self
         }
     }
@@ -124,7 +124,7 @@ pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>
     // The rotation about an axis changes neither the product of U with the axis nor V × S if S is the only
     // degree of freedom.
     let u = if single { motion.own.matrix() } else { above.matrix() };
-    let column = |dof: &Dof<'g>| {
+    let derivative_column = |dof: &Dof<'g>| {
         let s = &dof.subspace;
         let first = cross(&above.twist(), s);
         let change = if single { first } else { cross(&motion.own.twist(), s) };
@@ -136,19 +136,19 @@ pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>
         let second = Spatial { linear, angular: u * s.angular };
         Column { index: dof.index, ratio: dof.ratio, subspace: *s, first, second, rate }
     };
-    joint.dofs.iter().map(column).collect()
+    joint.dofs.iter().map(derivative_column).collect()
 }
 
 /// Returns the columns of a link for the Coriolis matrix, with `Ṡ` in `rate` instead of `Ψ̇ + Ṡ`; the
 /// displacement columns are zero.
 pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g>) -> Vec<Column<'g>> {
     let zero = Spatial::zero(model);
-    let column = |(k, dof): (usize, &Dof<'g>)| {
+    let rate_column = |(k, dof): (usize, &Dof<'g>)| {
         let own = joint.drift.as_ref().and_then(|drift| drift.subspace_rates.get(k));
         let rate = own.unwrap_or(&zero).plus(&cross(twist, &dof.subspace));
         Column { index: dof.index, ratio: dof.ratio, subspace: dof.subspace, first: zero, second: zero, rate }
     };
-    joint.dofs.iter().enumerate().map(column).collect()
+    joint.dofs.iter().enumerate().map(rate_column).collect()
 }
 
 /// Returns `V × X`, the rate of a motion `X` that moves with the twist `V`.

@@ -18,12 +18,12 @@ pub struct Factor<'g> {
     /// Nonzero off-diagonal entries of `U`, a column for each entry of `v`; `None` if `U` is the transpose of
     /// `L`.
     columns: Option<Vec<Vec<(usize, Expr<'g>)>>>,
-    /// Diagonal of `D⁻¹`, by index of `v`.
+    /// Diagonal of `D⁻¹`, in the order of `v`.
     inverse: Vec<Expr<'g>>,
 }
 
 impl<'g> Factor<'g> {
-    /// Factorises a mass matrix, symmetric or not.
+    /// Factorises a mass matrix, which may be unsymmetric.
     pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
@@ -82,12 +82,12 @@ impl<'g> Factor<'g> {
         Factor { order: order.to_vec(), rows, columns: None, inverse }
     }
 
-    /// Returns `M⁻¹ r`.
+    /// Returns the solution `M⁻¹ r` of a linear system.
     pub fn solve(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.complete(self.reduced(r))
     }
 
-    /// Returns `L⁻ᵀ r`, or `U⁻¹ r`.
+    /// Returns `L⁻ᵀ r`, or `U⁻¹ r` for an unsymmetric matrix.
     fn reduced(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         let columns = self.columns.as_ref().unwrap_or(&self.rows);
         for &k in &self.order {

@@ -18,26 +18,26 @@ use crate::kinematics::{Joint, Spatial, symbols_in};
 use crate::mechanics::{accelerations, rnea, velocities};
 use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 
-/// Columns determined by invariance, with their indices.
+/// Columns of a matrix that invariance determines, each with its index.
 type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
 
 /// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance determines.
 #[derive(Default)]
 pub struct InvariantColumns<'g> {
-    /// Columns of `∂v̇/∂q`.
+    /// Columns of `∂v̇/∂q` that invariance determines.
     pub by_q: Columns<'g>,
-    /// Columns of `∂v̇/∂v`.
+    /// Columns of `∂v̇/∂v` that invariance determines.
     pub by_v: Columns<'g>,
 }
 
 /// Finds the columns of derivatives that invariance under displacements of a free base determines.
 pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> InvariantColumns<'g> {
     let mut found = InvariantColumns::default();
-    let is_base = |base: usize| match model.links[base] {
+    let free_base_of_link = |base: usize| match model.links[base] {
         Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q: q.0, v: v.0 }),
         _ => None,
     };
-    let bases: Vec<Base> = (0..joints.len()).filter_map(is_base).collect();
+    let bases: Vec<Base> = (0..joints.len()).filter_map(free_base_of_link).collect();
     if bases.is_empty() {
         return found;
     }
@@ -46,7 +46,7 @@ pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Invaria
         bases.into_iter().filter(|base| base.carries_all_uniformly(model, joints) && others.let_fall(base.v))
     {
         let v = base.v;
-        let columns = |first: usize, block: Mat3<'g>| {
+        let block_columns = |first: usize, block: Mat3<'g>| {
             (0..3).map(move |k| {
                 let mut column = vec![model.graph.zero(); model.nv()];
                 for (i, entry) in column[v..v + 3].iter_mut().enumerate() {
@@ -57,11 +57,11 @@ pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Invaria
         };
         if are_free(&others.forces.by_q, v + 3) {
             let gravity = joints[base.link].rotation.to_child(model.gravity);
-            found.by_q.extend(columns(v + 3, Mat3::skew(gravity)));
+            found.by_q.extend(block_columns(v + 3, Mat3::skew(gravity)));
         }
         if are_free(&others.forces.by_v, v) {
             let w = Vec3([3, 4, 5].map(|k| Quantity::Velocity(v + k).expr(model.graph)));
-            found.by_v.extend(columns(v, Mat3::skew(-w)));
+            found.by_v.extend(block_columns(v, Mat3::skew(-w)));
         }
     }
     found
@@ -75,8 +75,8 @@ struct Base {
 }
 
 impl Base {
-    /// Returns true if the masses, gravity and joints of all other links are independent of the pose and the
-    /// velocity of the base, whether or not they are descendants of the base.
+    /// Returns whether the masses, gravity and joints of all other links are independent of the pose and the
+    /// velocity of the base, whether or not these links are descendants of the base.
     fn carries_all_uniformly<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
         let mut all = model.gravity.0.to_vec();
         for (k, (link, joint)) in model.links.iter().zip(joints).enumerate() {
@@ -110,7 +110,7 @@ impl Base {
     }
 }
 
-/// All terms of the equations of motion except the inertia of the links.
+/// All terms of the equations of motion except the inertial forces of the links.
 struct NoninertialTerms<'g> {
     /// Derivatives of these terms with respect to configuration and velocity.
     forces: ForceDerivatives<'g>,
@@ -127,11 +127,11 @@ impl<'g> NoninertialTerms<'g> {
         }
         let (v, a) = (velocities(model), accelerations(model));
         let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
-        let depends = |k: usize| {
+        let forces_depend_on_acceleration = |k: usize| {
             let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
             forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
-        let inertial = (0..model.nv()).map(depends).collect();
+        let inertial = (0..model.nv()).map(forces_depend_on_acceleration).collect();
         NoninertialTerms { forces: symbolic::derivatives(model, &forces), inertial }
     }
 
@@ -160,7 +160,7 @@ impl<'g> InvariantColumns<'g> {
         }
     }
 
-    /// Returns all known columns, concatenated: those of `∂v̇/∂q`, then those of `∂v̇/∂v`.
+    /// Returns all known columns, concatenated: columns of `∂v̇/∂q`, then columns of `∂v̇/∂v`.
     pub fn all(&self) -> Vec<Expr<'g>> {
         self.by_q.iter().chain(&self.by_v).flat_map(|(_, column)| column.iter().copied()).collect()
     }

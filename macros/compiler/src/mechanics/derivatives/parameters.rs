@@ -10,7 +10,7 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
-/// Returns the columns of `∂τ/∂p` of inverse dynamics, one for each parameter.
+/// Returns the columns of `∂τ/∂p` of inverse dynamics, one for each parameter `p`.
 pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     let a = accelerations(model);
     columns(model, &rnea::inverse_dynamics(model, joints, &velocities(model), Some(&a)))
@@ -22,9 +22,9 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix
 }
 
 fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
-    let derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let column = |mut d: Derivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
-    (0..model.parameters.len()).map(|k| column(derivative(k))).collect()
+    let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let derivative_column = |mut d: Derivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
+    (0..model.parameters.len()).map(|k| derivative_column(parameter_derivative(k))).collect()
 }
 
 /// Returns the columns of `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`.
@@ -32,13 +32,13 @@ pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr
     let factor = Factor::new(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let a = factor.solve(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
-    let acceleration = |s| match Quantity::from_symbol(s) {
+    let acceleration_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };
     let columns = inverse_dynamics(model, joints);
-    let solved = |column: &Vec<Expr<'g>>| {
-        factor.solve(replace_all(column, &acceleration).iter().map(|e| -*e).collect())
+    let solve_for_accelerations = |column: &Vec<Expr<'g>>| {
+        factor.solve(replace_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect())
     };
-    columns.iter().map(solved).collect()
+    columns.iter().map(solve_for_accelerations).collect()
 }

@@ -47,7 +47,7 @@ pub struct Hessian<'g> {
     pub qa: Matrix<'g>,
 }
 
-/// Returns the factors `λ` as argument symbols.
+/// Returns the factors `λ` of the forces as symbols of an argument.
 pub fn factors<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Given(Supplied::Factor, k).expr(model.graph)).collect()
 }
@@ -76,8 +76,8 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
     let wrenches = rnea::wrenches(model, joints, &v, Some(&a));
     let sums = subtrees(model, joints, &own, &wrenches, 2.0);
     let sums = contracted(model, joints, (&own, &virtual_twists), sums);
-    let zero = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let out = Hessian { qq: zero(), qv: zero(), vv: zero(), qa: zero() };
+    let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
+    let out = Hessian { qq: zero_matrix(), qv: zero_matrix(), vv: zero_matrix(), qa: zero_matrix() };
     let paths = Paths::new(joints, most);
     let mut entries =
         Entries { columns: &columns, all: columns.concat(), links: paths.links(), sums: &sums, out };
@@ -135,11 +135,12 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
     let by_u = symbolic::by_input(model, &[power]).into_iter().next().unwrap_or_default();
     let mixed = symbolic::derivatives(model, &by_u);
-    let transposed = |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
+    let transposed_matrix =
+        |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
     InputHessian {
         state: of_power(model, tau, &lambda),
-        qu: transposed(mixed.by_q),
-        vu: transposed(mixed.by_v),
+        qu: transposed_matrix(mixed.by_q),
+        vu: transposed_matrix(mixed.by_v),
         uu: symbolic::by_input(model, &by_u),
     }
 }
@@ -156,17 +157,23 @@ pub struct ConstraintHessian<'g> {
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
-    let arguments = |block: Supplied, n: usize| -> Vec<Expr<'g>> {
+    let argument_expressions = |block: Supplied, n: usize| -> Vec<Expr<'g>> {
         (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect()
     };
-    let dot = |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w) = (constraints::multipliers(model), arguments(Supplied::Direction, nv));
-    let (z, y) = (arguments(Supplied::AccelerationFactor, nc), arguments(Supplied::VelocityFactor, nc));
+    let dot_product =
+        |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
+    let (lambda, w) = (constraints::multipliers(model), argument_expressions(Supplied::Direction, nv));
+    let (z, y) = (
+        argument_expressions(Supplied::AccelerationFactor, nc),
+        argument_expressions(Supplied::VelocityFactor, nc),
+    );
     let (rows, a) = (constraints::jacobian(model), accelerations(model));
-    let along: Vec<Expr<'g>> = rows.iter().map(|row| dot(row, &w)).collect();
+    let along: Vec<Expr<'g>> = rows.iter().map(|row| dot_product(row, &w)).collect();
     let biases = constraints::biases(model);
-    let accelerated: Vec<Expr<'g>> = rows.iter().zip(biases).map(|(row, bias)| dot(row, &a) + bias).collect();
-    let sum = dot(&z, &accelerated) + dot(&y, &constraints::rates(model)) - dot(&lambda, &along);
+    let accelerated: Vec<Expr<'g>> =
+        rows.iter().zip(biases).map(|(row, bias)| dot_product(row, &a) + bias).collect();
+    let sum = dot_product(&z, &accelerated) + dot_product(&y, &constraints::rates(model))
+        - dot_product(&lambda, &along);
     let by_q = symbolic::by_configuration(model, &along);
     let q_lambda = (0..nv).map(|i| by_q.iter().map(|row| -row[i]).collect()).collect();
     ConstraintHessian { state: of_power(model, &[sum], &[model.graph.one()]), q_lambda }
@@ -190,7 +197,7 @@ pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     }
 }
 
-/// A degree of freedom with `Ω`, the change of the virtual twists with its displacement.
+/// Column of a degree of freedom together with `Ω`, the change of the virtual twists with its displacement.
 #[derive(Clone, Copy)]
 struct Directions<'g> {
     column: Column<'g>,
@@ -204,7 +211,7 @@ impl<'g> Directions<'g> {
     }
 }
 
-/// Sums over one link and its descendants, including those with the virtual twists.
+/// Sums over one link and its descendants, including sums of the virtual twists.
 struct Sums<'g> {
     plain: Subtree<'g>,
     /// Momentum `P = Σ I W` at the virtual twists.
@@ -282,7 +289,7 @@ fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g
 }
 
 struct Entries<'a, 'g> {
-    /// Degrees of freedom, by link here and in one list in `all`.
+    /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
     columns: &'a [Vec<Directions<'g>>],
     all: Vec<Directions<'g>>,
     links: &'a [usize],
@@ -366,7 +373,7 @@ impl<'g> Hessian<'g> {
     }
 }
 
-/// Contribution of one degree of freedom to the entries with its ancestors: wrenches about an ancestor's
+/// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes. Moments are wrenches without force.
 struct Changes<'g> {
     /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
@@ -387,18 +394,18 @@ impl<'g> Changes<'g> {
     fn new(own: &Directions<'g>, sums: &Sums<'g>) -> Changes<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
-        let inertia = |x: &Spatial<'g>| momentum(&plain.inertia, x);
+        let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
         Changes {
-            by_q: inertia(&column.second)
+            by_q: momentum_of_twist(&column.second)
                 .plus(&plain.map(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
-            factored: inertia(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
+            factored: momentum_of_twist(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
             moment_by_q: plain.transposed_map(&own.factor)
                 + sums.moment(&column.first)
                 + s.angular.cross(sums.moment),
-            by_v: inertia(&column.rate).plus(&plain.map(s)),
+            by_v: momentum_of_twist(&column.rate).plus(&plain.map(s)),
             moment_by_v: sums.moment(s),
-            momentum: inertia(s),
+            momentum: momentum_of_twist(s),
         }
     }
 

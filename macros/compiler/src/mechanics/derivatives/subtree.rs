@@ -10,7 +10,7 @@ use crate::expr::{Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, Model};
 
-/// Sums over one link and its descendants.
+/// Sums of mass properties and wrenches over one link and its descendants.
 #[derive(Clone, Copy)]
 pub struct Subtree<'g> {
     /// Mass properties of the link and its descendants, about the link's origin in its axes.
@@ -35,10 +35,10 @@ impl<'g> Subtree<'g> {
     }
 }
 
-/// Returns `K − tr K`.
+/// Returns the matrix minus its trace times the identity, `K − tr K`.
 fn without_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
-    let other = |i: usize| k.0[(i + 1) % 3][(i + 1) % 3] + k.0[(i + 2) % 3][(i + 2) % 3];
-    Mat3::from_fn(|i, j| if i == j { -other(i) } else { k.0[i][j] })
+    let sum_of_other_diagonals = |i: usize| k.0[(i + 1) % 3][(i + 1) % 3] + k.0[(i + 2) % 3][(i + 2) % 3];
+    Mat3::from_fn(|i, j| if i == j { -sum_of_other_diagonals(i) } else { k.0[i][j] })
 }
 
 /// Returns the sums of all links for the given twists and wrenches. The velocity map is multiplied by
@@ -86,7 +86,7 @@ pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Su
     }
 }
 
-/// Returns `J = ½ tr(I) − I`.
+/// Returns the second moments of mass `J = ½ tr(I) − I` for the inertia tensor `I`.
 fn second_moments<'g>(tensor: &Sym3<'g>) -> Sym3<'g> {
     let [x, y, z] = tensor.diagonal;
     let half = (x + y + z) * 0.5;

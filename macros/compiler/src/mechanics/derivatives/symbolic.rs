@@ -30,11 +30,11 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
 }
 
 /// Returns a column for each velocity: the time derivative of the expressions when that velocity is one and
-/// all others are zero.
+/// all other velocities are zero.
 pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
     let turning = rotation_rates(model.space());
-    let direction = |i: usize| {
+    let configuration_derivative = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let seed =
             |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.differentiate(*rate));
@@ -43,28 +43,29 @@ pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
         let known = turning.iter().map(|(entry, rate)| (*entry, by.differentiate(*rate))).collect::<Vec<_>>();
         Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph).knowing(known)
     };
-    columns(e, (0..model.nv()).map(direction))
+    columns(e, (0..model.nv()).map(configuration_derivative))
 }
 
 fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let direction = |k: usize| {
+    let velocity_derivative = |k: usize| {
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
         let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];
         Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
     };
-    columns(e, (0..model.nv()).map(direction))
+    columns(e, (0..model.nv()).map(velocity_derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
-    columns(e, (0..model.nu()).map(derivative))
+    let input_derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
+    columns(e, (0..model.nu()).map(input_derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let derivative = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-    columns(e, (0..model.nv()).map(derivative))
+    let acceleration_derivative =
+        |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+    columns(e, (0..model.nv()).map(acceleration_derivative))
 }
 
 fn columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {

@@ -13,7 +13,8 @@ use super::factor::Factor;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// Partition of the velocities into those of the trunk and those of each limb.
+/// Partition of the velocities into those of the trunk and those of each limb, which the mass matrix couples
+/// only through the trunk.
 #[derive(Clone, Debug)]
 pub struct Trunk {
     /// Velocities of the trunk, from the leaves to the root.
@@ -21,7 +22,7 @@ pub struct Trunk {
     limbs: Vec<Limb>,
 }
 
-/// Velocities that are coupled in the mass matrix only with each other and with those of the trunk.
+/// Limb: velocities that the mass matrix couples only with each other and with velocities of the trunk.
 #[derive(Clone, Debug)]
 struct Limb {
     /// Velocities of the limb, from the leaves to the root.
@@ -96,12 +97,12 @@ impl Trunk {
 
     /// Returns the velocities of each limb in ascending order.
     pub fn limbs(&self) -> Vec<Vec<usize>> {
-        let sorted = |limb: &Limb| {
+        let sorted_velocities_of_limb = |limb: &Limb| {
             let mut velocities = limb.velocities.clone();
             velocities.sort_unstable();
             velocities
         };
-        self.limbs.iter().map(sorted).filter(|limb| !limb.is_empty()).collect()
+        self.limbs.iter().map(sorted_velocities_of_limb).filter(|limb| !limb.is_empty()).collect()
     }
 }
 
@@ -115,8 +116,8 @@ impl Limb {
 /// Returns the terms of `M⁻¹` that remain to be computed if runtime loops do the remainder: `C⁻¹` in the
 /// columns of the limbs, and the trunk's columns of `M` in the order of the trunk's velocities.
 pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
-    let zero = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
-    let mut inverses: Matrix<'g> = mass.iter().map(zero).collect();
+    let zero_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
+    let mut inverses: Matrix<'g> = mass.iter().map(zero_row).collect();
     for limb in &trunk.limbs {
         let inverse = Factor::in_order(mass, &limb.velocities).inverse();
         for &i in &limb.velocities {
@@ -127,7 +128,7 @@ pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
     [inverses, borders]
 }
 
-/// `M⁻¹` by its blocks.
+/// Inverse mass matrix `M⁻¹`, computed by blocks of the trunk and the limbs.
 pub struct Inverse<'a, 'g> {
     trunk: &'a Trunk,
     /// `C⁻¹` among the limbs, `S⁻¹` in the trunk, `W` in the rows of the limbs and the columns of the trunk.
@@ -135,7 +136,7 @@ pub struct Inverse<'a, 'g> {
 }
 
 impl<'a, 'g> Inverse<'a, 'g> {
-    /// Computes the blocks.
+    /// Computes the blocks of the inverse.
     pub fn new(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
@@ -166,7 +167,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         Inverse { trunk, parts }
     }
 
-    /// Returns `M⁻¹ r`.
+    /// Returns the product `M⁻¹ r`.
     pub fn solve(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut x = r.to_vec();
@@ -189,7 +190,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         x
     }
 
-    /// Returns a matrix with the columns of `H` for the trunk and those of `C⁻¹` for the limbs.
+    /// Returns a matrix with the columns of `H` for the trunk and the columns of `C⁻¹` for the limbs.
     pub fn columns(&self) -> Matrix<'g> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut columns = parts.clone();

@@ -1,4 +1,4 @@
-//! Dry and viscous friction.
+//! Force elements of dry and viscous friction.
 
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};

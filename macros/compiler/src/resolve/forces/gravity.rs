@@ -1,4 +1,4 @@
-//! Central gravity, and inverse-square attraction.
+//! Force elements of central gravity and of inverse-square attraction.
 
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};

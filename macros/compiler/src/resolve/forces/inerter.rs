@@ -1,4 +1,4 @@
-//! Inerters: forces proportional to relative accelerations.
+//! Inerters: force elements with a force proportional to a relative acceleration.
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;

@@ -175,11 +175,12 @@ pub fn value_load<'g>(
 ) -> Option<Forces<'g>> {
     let graph = b.scope.graph;
     let mut forces = Forces::default();
-    let acceleration = |s| match Quantity::from_symbol(s) {
+    let acceleration_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some((s, k)),
         _ => None,
     };
-    let acceleration_symbols: Vec<_> = symbols_in(&[force]).into_iter().filter_map(acceleration).collect();
+    let acceleration_symbols: Vec<_> =
+        symbols_in(&[force]).into_iter().filter_map(acceleration_symbol).collect();
     if acceleration_symbols.is_empty() {
         forces.loads.push(Load { rate, force, dissipative: false });
         return Some(forces);
@@ -199,7 +200,7 @@ pub fn value_load<'g>(
             .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
         return None;
     }
-    let remainder = replace(force, &|s| acceleration(s).map(|_| graph.zero()));
+    let remainder = replace(force, &|s| acceleration_symbol(s).map(|_| graph.zero()));
     if !remainder.is_zero() {
         forces.loads.push(Load { rate, force: remainder, dissipative: false });
     }
@@ -249,8 +250,9 @@ fn point_input<'g>(
 
 /// Whether a vector depends on the configuration or on time.
 fn is_moving(v: Vec3<'_>) -> bool {
-    let moves = |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time);
-    symbols_in(&v.0).into_iter().any(moves)
+    let is_moving_symbol =
+        |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time);
+    symbols_in(&v.0).into_iter().any(is_moving_symbol)
 }
 
 /// Whether a torque can act on an element; reports particles and points, which have no rotation.

@@ -40,7 +40,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds all force elements and inputs.
+    /// Adds the forces of all force elements and inputs to the model.
     pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
         // Inputs without an element of their own appear in expressions. The others are filled in by their
         // elements.

@@ -17,9 +17,9 @@ use std::collections::BTreeSet;
 /// Maximum power of the stretch in a spring's force for which the energy is found by integration.
 const HIGHEST_POWER: usize = 9;
 
-/// Force law of a spring.
+/// Force law of a spring, as written.
 pub enum Law<'e> {
-    /// Proportional to the stretch, with this stiffness.
+    /// Force proportional to the stretch, with this stiffness.
     Linear(&'e syntax::Expr),
     /// Force as an expression of `stretch`.
     Force(&'e syntax::Expr),
@@ -84,18 +84,18 @@ fn energy_of<'g>(
     context: &Context<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
-    let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
+    let read_scalar = |e: &syntax::Expr, cx: &mut Diagnostics| {
         b.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
     };
-    let force = read(e, cx)?;
-    let local = |e: &syntax::Expr| {
+    let force = read_scalar(e, cx)?;
+    let value_of_local = |e: &syntax::Expr| {
         context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
     };
     if let ExprKind::Call(name, arguments) = &e.kind
         && let [left, right, below, above] = arguments.as_slice()
         && name.id == Some(Callable::If)
     {
-        let found = match (local(left), local(right)) {
+        let found = match (value_of_local(left), value_of_local(right)) {
             (Some(x), None) => Some((x, right, [below, above])),
             (None, Some(x)) => Some((x, left, [above, below])),
             _ => None,
@@ -103,7 +103,7 @@ fn energy_of<'g>(
         if let Some((own, border, pieces)) = found {
             let symbol = Quantity::Stretch.symbol();
             let x = b.scope.graph.symbol(symbol);
-            let border = read(border, cx)? - (own - x);
+            let border = read_scalar(border, cx)? - (own - x);
             let [below, above] = pieces.map(|piece| energy_of(b, piece, context, cx));
             let substitute_stretch = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
             let (below, above) = (below?, above?);

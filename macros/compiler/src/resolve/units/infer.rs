@@ -14,14 +14,14 @@ use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 use std::collections::BTreeMap;
 
-/// Reason for an equation between dimensions.
+/// Reason why two dimensions must be equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason<'a> {
-    /// Attribute `#[unit(…)]`.
+    /// Attribute `#[unit(…)]` of a parameter.
     Unit,
     /// Expected dimension of an argument or a field.
     Place,
-    /// Argument of a function of plain numbers.
+    /// Argument of a function that expects a plain number.
     Argument,
     /// Terms of a sum.
     Sum(BinaryOp),
@@ -33,14 +33,14 @@ pub enum Reason<'a> {
     Pieces,
 }
 
-/// Origin of an equation.
+/// Origin of an equation between dimensions.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin<'a> {
     /// Reason for the equation.
     pub reason: Reason<'a>,
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
     pub expression: &'a Expr,
-    /// Expression with which it is compared.
+    /// Other expression of the comparison, if there is one.
     pub compared_with: Option<&'a Expr>,
 }
 
@@ -55,7 +55,7 @@ pub struct Mismatch<'a> {
     pub expected: Dimension,
 }
 
-/// Meaning of a name.
+/// Meaning of a name for the inference of units.
 #[derive(Clone, Debug)]
 pub enum Meaning {
     /// Parameter or definition.
@@ -67,14 +67,14 @@ pub enum Meaning {
 /// Maximum number of contradictions that are recorded.
 const MAX_MISMATCHES: usize = 32;
 
-/// State of the inference.
+/// State of the inference of units.
 pub struct Inference<'a> {
-    /// Equations so far.
+    /// Equations between dimensions that have been found so far.
     pub system: System,
-    /// Names of parameters, coordinates, inputs and definitions. The first unknowns are those of the
-    /// parameters.
+    /// Meanings of the names of parameters, coordinates, inputs and definitions. The first unknowns are those
+    /// of the parameters.
     pub names: BTreeMap<String, Meaning>,
-    /// Tables by name: the unknowns of their variables, followed by that of their values.
+    /// Unknown dimensions of each table, by name: those of its variables, followed by that of its values.
     pub tables: BTreeMap<String, Vec<Variable>>,
     /// Local names of the current expression, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
@@ -87,7 +87,7 @@ pub struct Inference<'a> {
     /// Dimensions that are plain numbers unless constrained otherwise. If the first of a pair is plain, so is
     /// the second.
     pub plain_defaults: Vec<(Dimension, Option<Dimension>)>,
-    /// Contradictions found so far.
+    /// Contradictions that have been found so far.
     pub mismatches: Vec<Mismatch<'a>>,
     /// Whether the limit of work was exceeded.
     pub limit_exceeded: bool,

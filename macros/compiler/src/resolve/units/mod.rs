@@ -124,14 +124,14 @@ fn assign_dimensions<'a>(
 fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
-    let mentioned = |d: &Definition| -> BTreeSet<usize> {
+    let mentioned_definitions = |d: &Definition| -> BTreeSet<usize> {
         let names = d.value.parts().into_iter().filter_map(Expr::name);
         names.filter_map(|name| numbers.get(name).copied()).collect()
     };
     let mut missing: Vec<usize> = Vec::new();
     let mut uses: Vec<Vec<usize>> = vec![Vec::new(); definitions.len()];
     for (k, definition) in definitions.iter().enumerate() {
-        let mentioned = mentioned(definition);
+        let mentioned = mentioned_definitions(definition);
         missing.push(mentioned.len());
         for used in mentioned {
             if let Some(uses) = uses.get_mut(used) {
@@ -158,18 +158,18 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
 /// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
 fn solve<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
-    let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
+    let partition_simple_tasks = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
     };
     let ((mut first, definitions), (places_first, others)) =
-        (simple(places.definitions), simple(places.tasks));
+        (partition_simple_tasks(places.definitions), partition_simple_tasks(places.tasks));
     first.extend(places_first);
     first.into_iter().chain(definitions).for_each(|task| solve_one(task, inference));
     places.points.into_iter().for_each(|e| inference.point(e));
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// Infers from one use.
+/// Infers dimensions from one expression.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
@@ -208,8 +208,8 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
     }
 }
 
-/// Returns the notation of a dimension: the one used where the name is the whole expression, or the default
-/// one.
+/// Returns the notation of a dimension: the notation that the source uses for the name by itself, or the
+/// default one.
 fn notation(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
     let known = inference.system.resolve(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
@@ -224,18 +224,19 @@ fn notation(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -
 fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
-    let push = |list: &mut Vec<String>, unit: &str, n| list.extend(std::iter::repeat_n(unit.to_string(), n));
+    let push_repeated_unit =
+        |list: &mut Vec<String>, unit: &str, n| list.extend(std::iter::repeat_n(unit.to_string(), n));
     for chart in &model.charts {
         match *chart {
             Chart::Ball(..) => {
-                push(q, "1", 4);
-                push(v, "rad/s", 3);
+                push_repeated_unit(q, "1", 4);
+                push_repeated_unit(v, "rad/s", 3);
             }
             Chart::Free(..) => {
-                push(q, "m", 3);
-                push(q, "1", 4);
-                push(v, "m/s", 3);
-                push(v, "rad/s", 3);
+                push_repeated_unit(q, "m", 3);
+                push_repeated_unit(q, "1", 4);
+                push_repeated_unit(v, "m/s", 3);
+                push_repeated_unit(v, "rad/s", 3);
             }
             Chart::Plain(k, _) => {
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
@@ -245,8 +246,8 @@ fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inf
                     }
                     _ => ("rad".to_string(), "rad/s".to_string()),
                 };
-                push(q, &unit, 1);
-                push(v, &rate, 1);
+                push_repeated_unit(q, &unit, 1);
+                push_repeated_unit(v, &rate, 1);
             }
         }
     }

@@ -6,8 +6,8 @@ use crate::syntax::{Callee, Description, Expr, ExprKind, Target};
 /// Returns the argument and the field that contain an expression, as in ``in `com` of `arm` ``; empty if
 /// unknown.
 pub fn location_of(d: &Description, e: &Expr) -> String {
-    let inside = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
-    let found = fields(d).into_iter().find(|(.., whole)| inside(whole));
+    let contains_expression = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
+    let found = fields(d).into_iter().find(|(.., whole)| contains_expression(whole));
     match found {
         Some(("", field, _)) => format!(" in `{field}`"),
         Some((argument, field, _)) => format!(" in `{argument}` of `{field}`"),
@@ -29,7 +29,7 @@ pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> 
 
 type OwnedExpressions<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
 
-/// Returns every expression with its argument and its field.
+/// Returns every expression of a description with the argument and the field in which it is written.
 fn fields(d: &Description) -> OwnedExpressions<'_> {
     let mut all: OwnedExpressions<'_> = Vec::new();
     all.extend(d.gravity.iter().map(|e| ("gravity", d.name.text.as_str(), e)));

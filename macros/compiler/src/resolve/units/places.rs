@@ -14,11 +14,11 @@ use crate::syntax::{
     Member, Target, WrittenArguments, restitution,
 };
 
-/// An expression with its expected dimension.
+/// Expression whose dimension is known from its context.
 pub struct Task<'a> {
-    /// Expression to visit.
+    /// Expression whose subexpressions are to be inferred.
     pub e: &'a Expr,
-    /// Expected dimension.
+    /// Dimension that the context requires.
     pub dimension: Dimension,
     /// Notation of the unit in this context; empty for the default.
     pub unit: &'static str,
@@ -26,7 +26,7 @@ pub struct Task<'a> {
     pub locals: Vec<(&'static str, Dimension)>,
 }
 
-/// All expressions of a description.
+/// All expressions of a description, with their expected dimensions.
 pub struct DimensionedExpressions<'a> {
     /// Definitions, each after those that it uses.
     pub definitions: Vec<Task<'a>>,
@@ -38,7 +38,7 @@ pub struct DimensionedExpressions<'a> {
     pub sides: Vec<Dimension>,
 }
 
-/// Coordinate on which an element does work.
+/// Coordinate on which an element does work, and its force.
 struct Work {
     /// Dimension of the coordinate or the distance.
     coordinate: Dimension,
@@ -149,7 +149,7 @@ impl<'a> DimensionedExpressions<'a> {
         body.at.iter().for_each(|e| self.add_position(e));
     }
 
-    /// Adds an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
+    /// Adds the expressions of an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
     fn add_inertia(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Array(rows) => {
@@ -193,7 +193,8 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    /// Adds a position: the name of an element, `place.at(vector)`, or a vector from the ground's origin.
+    /// Adds the expressions of a position: the name of an element, `place.at(vector)`, or a vector from the
+    /// ground's origin.
     fn add_position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
@@ -274,20 +275,21 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    /// Adds the written arguments of an element.
+    /// Adds the arguments that are written for an element.
     fn add_written(&mut self, written: &'a WrittenArguments, work: &Work, locals: Locals) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
-        let per = |times: i64| work.force.quotient(q)?.times(&TIME.power(Ratio::integer(times))?);
+        let force_unit_per_coordinate =
+            |times: i64| work.force.quotient(q)?.times(&TIME.power(Ratio::integer(times))?);
         for (key, e) in written.iter() {
             let (dimension, unit) = match &key.row().quantity {
-                ArgumentQuantity::Stiffness => (per(0), stiffness),
+                ArgumentQuantity::Stiffness => (force_unit_per_coordinate(0), stiffness),
                 ArgumentQuantity::HertzStiffness => {
                     let power = Ratio::new(3, 2).and_then(|power| q.power(power));
                     (power.and_then(|power| work.force.quotient(&power)), "")
                 }
-                ArgumentQuantity::Damping => (per(1), damping),
-                ArgumentQuantity::Inertance => (per(2), inertance),
+                ArgumentQuantity::Damping => (force_unit_per_coordinate(1), damping),
+                ArgumentQuantity::Inertance => (force_unit_per_coordinate(2), inertance),
                 ArgumentQuantity::Force | ArgumentQuantity::Load => (Some(work.force.clone()), force),
                 ArgumentQuantity::Energy => (Some(ENERGY), "J"),
                 ArgumentQuantity::Coordinate => (Some(q.clone()), coordinate),

@@ -1,4 +1,4 @@
-//! Errors for contradictory units: one per cause, with the other uses in notes.
+//! Errors for contradictory units: one error per cause, with the other uses in notes.
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::owner::{location_of, solid_of};
@@ -11,8 +11,8 @@ use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 /// Maximum number of other uses shown for an error.
 const MAX_PLACES: usize = 2;
 
-/// Reports the contradictions. Each parameter is reported once, because further contradictions most likely
-/// have the same cause. The same applies to the arguments of one solid.
+/// Reports the contradictions. Each parameter, and each solid with its arguments, is reported once, because
+/// further contradictions most likely have the same cause.
 pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
@@ -209,7 +209,7 @@ fn note_origin(
     };
 }
 
-/// Returns the text of a name.
+/// Returns the text of an expression that is a name; empty for other expressions.
 fn text(e: &Expr) -> &str {
     if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }

@@ -30,7 +30,7 @@ static NAMES: [(Dimension, &str, &str); 17] = [
     (Dimension::new(0, 1, -1), "a damping", "N·s/m"),
 ];
 
-/// Units allowed in `#[unit(…)]`, together with their powers such as `m2` and `s3`.
+/// Units that `#[unit(…)]` accepts, also with powers such as `m2` and `s3`.
 static UNITS: [(&str, Dimension); 9] = [
     ("m", LENGTH),
     ("kg", MASS),
@@ -121,14 +121,14 @@ fn exponent(e: Ratio) -> String {
     if d != 1 {
         return format!("^({}/{d})", n.abs());
     }
-    let digit = |c: char| match c {
+    let superscript_digit = |c: char| match c {
         '1' => '¹',
         '2' => '²',
         '3' => '³',
         '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
         _ => '⁰',
     };
-    if n.abs() == 1 { String::new() } else { n.abs().to_string().chars().map(digit).collect() }
+    if n.abs() == 1 { String::new() } else { n.abs().to_string().chars().map(superscript_digit).collect() }
 }
 
 /// Parses the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension
@@ -140,8 +140,8 @@ pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
         ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
             let ((a, mut text), (b, factor)) = (read(left, cx)?, read(right, cx)?);
             let divide = *op == BinaryOp::Div;
-            let compound = |t: &str| t.contains(['·', '/']);
-            let _ = match (divide, compound(&factor)) {
+            let is_compound_unit = |t: &str| t.contains(['·', '/']);
+            let _ = match (divide, is_compound_unit(&factor)) {
                 (true, true) => write!(text, "/({factor})"),
                 (true, false) => write!(text, "/{factor}"),
                 (false, _) if text.contains('/') => write!(text, "·({factor})"),

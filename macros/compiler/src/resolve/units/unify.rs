@@ -4,7 +4,7 @@
 use crate::language::dimension::{Dimension, Variable};
 use crate::language::ratio::Ratio;
 
-/// Outcome of adding an equation.
+/// Result of the addition of an equation to the system.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The equation is consistent; it determined these unknowns.
@@ -19,18 +19,19 @@ pub enum Outcome {
 /// of it.
 const MAX_WORK: usize = 1_000_000;
 
-/// Solved equations: every solved unknown in terms of unsolved ones (reduced row echelon form).
+/// System of equations between dimensions, in reduced row echelon form: every solved unknown in terms of
+/// unsolved ones.
 #[derive(Debug, Default)]
 pub struct System {
     solution: Vec<Option<Dimension>>,
-    /// For each unsolved unknown, the solved ones whose solutions contain it. May include solutions that no
-    /// longer contain it.
+    /// For each unsolved unknown, the solved unknowns whose solutions contain it; the list may include
+    /// solutions that no longer contain it.
     uses: Vec<Vec<Variable>>,
     work: usize,
 }
 
 impl System {
-    /// Adds an unknown.
+    /// Adds an unknown dimension to the system.
     pub fn variable(&mut self) -> Variable {
         self.solution.push(None);
         self.uses.push(Vec::new());
@@ -53,7 +54,7 @@ impl System {
         Some(sum)
     }
 
-    /// Equates two dimensions.
+    /// Adds the equation that two dimensions are equal.
     pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
         let quotient = a.quotient(b).and_then(|quotient| self.resolve(&quotient));
         let Some(quotient) = quotient else { return Outcome::LimitExceeded };

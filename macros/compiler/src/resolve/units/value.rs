@@ -1,4 +1,4 @@
-//! Values of expressions in unit inference: a number, a direction or a quantity; and their products.
+//! Values of expressions in the inference of units: a number, a direction or a quantity; and their products.
 
 use crate::language::dimension::{Dimension, PLAIN};
 use crate::language::ratio::Ratio;
@@ -7,7 +7,7 @@ use crate::language::ratio::Ratio;
 /// terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Anchor {
-    /// Coordinates, rates and time. A number that multiplies them is a coefficient with any unit; by
+    /// Coordinates, velocities and time. A number that multiplies them is a coefficient with any unit; by
     /// themselves they may be numbers of another unit.
     Motion,
     /// An input, which has the unit of the quantity on which it acts. A number that multiplies it is a
@@ -17,7 +17,7 @@ pub enum Anchor {
     Parameter,
 }
 
-/// Known information about an expression.
+/// Information about the unit of an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// Number, with any unit.
@@ -41,7 +41,7 @@ impl Value {
         Value::Quantity { dimension, anchor: Anchor::Motion }
     }
 
-    /// Returns the negated value.
+    /// Returns the value of the negated expression.
     pub fn negated(self) -> Value {
         match self {
             Value::Number(value) => Value::Number(-value),
@@ -84,16 +84,18 @@ impl Value {
 /// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
 /// divisors.
 pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
-    let has = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
+    let has_factor_of_kind = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
     // Zero has any unit.
     if factors.iter().any(|(below, f)| !below && matches!(f, Value::Number(0.0))) {
         return (Value::Number(0.0), false);
     }
-    if has(|f| matches!(f, Value::Unknown)) {
+    if has_factor_of_kind(|f| matches!(f, Value::Unknown)) {
         return (Value::Unknown, false);
     }
-    let (is_number, is_direction) =
-        (has(|f| matches!(f, Value::Number(_))), has(|f| matches!(f, Value::Direction)));
+    let (is_number, is_direction) = (
+        has_factor_of_kind(|f| matches!(f, Value::Number(_))),
+        has_factor_of_kind(|f| matches!(f, Value::Direction)),
+    );
     let quantities: Vec<_> = factors
         .iter()
         .filter_map(|(below, f)| match f {
@@ -119,6 +121,8 @@ pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
 
 /// Returns the product of numbers; NaN if another factor is present.
 fn number(factors: &[(bool, Value)]) -> f64 {
-    let value = |f: &Value| if let Value::Number(value) = f { *value } else { f64::NAN };
-    factors.iter().fold(1.0, |p, (below, f)| if *below { p / value(f) } else { p * value(f) })
+    let number_of_factor = |f: &Value| if let Value::Number(value) = f { *value } else { f64::NAN };
+    factors
+        .iter()
+        .fold(1.0, |p, (below, f)| if *below { p / number_of_factor(f) } else { p * number_of_factor(f) })
 }

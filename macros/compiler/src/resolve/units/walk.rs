@@ -1,4 +1,5 @@
-//! Traversal of an expression: values of its subexpressions, and equations between their dimensions.
+//! Traversal of expressions for the inference of units: values of subexpressions, and equations between their
+//! dimensions.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::{Anchor, Value, product};
@@ -9,7 +10,7 @@ use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
-    /// Returns the value of an expression.
+    /// Returns the value of an expression for the inference of units.
     pub fn value(&mut self, e: &'a Expr) -> Value {
         match &e.kind {
             ExprKind::Number(n) => Value::Number(*n),
@@ -82,7 +83,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
-    /// unknown dimension get the expected one, so that an error is reported at the other term.
+    /// unknown dimension get the expected dimension, so that an error is reported at the other term.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut current = e;
@@ -144,7 +145,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the product of factors; marked ones are divisors.
+    /// Returns the product of factors; the flag marks divisors.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
         let (value, free) = product(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
@@ -353,7 +354,7 @@ impl<'a> Inference<'a> {
         self.point(current);
     }
 
-    /// Infers from a point: `body.at(vector)`.
+    /// Infers dimensions from a point `body.at(vector)`.
     pub fn point(&mut self, e: &'a Expr) {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
             self.point(base);

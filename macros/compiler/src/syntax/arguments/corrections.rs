@@ -1,4 +1,4 @@
-//! Common errors in the grammar of arguments, with their corrections.
+//! Detection of common errors in the grammar of arguments, with corrections.
 
 use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, one_of, syn_error};
@@ -9,7 +9,7 @@ use syn::ext::IdentExt;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
 
-/// Reports an expression in the place of `name = value`.
+/// Reports an expression that stands where `name = value` is expected.
 pub fn report_unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     if let Some(word) = e.name().filter(|word| known.contains(word)) {
         cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
@@ -49,7 +49,7 @@ pub fn missing_comma_error(input: ParseStream<'_>) -> syn::Error {
     }
 }
 
-/// Error for a string without a key.
+/// Returns the error for a string without a key.
 pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let value = text.value();
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
@@ -101,21 +101,22 @@ pub fn missing_arrow_error(
     None
 }
 
-/// Whether the next tokens are `->>`.
+/// Returns whether the next tokens are `->>`.
 fn is_double(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
 
-/// Error for a number with a decimal comma: the value of an argument ends in an integer, and another one
-/// follows.
+/// Returns the error for a number with a decimal comma: the value of an argument ends in an integer, and
+/// another integer follows.
 pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
-    let is = |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
+    let is_punctuation =
+        |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
     let mut is_value = false;
     for (k, token) in tokens.iter().enumerate() {
-        if is(token, ',')
+        if is_punctuation(token, ',')
             && is_value
             && let (Some(TokenTree::Literal(whole)), Some(TokenTree::Literal(part))) =
                 (tokens.get(k.wrapping_sub(1)), tokens.get(k + 1))
@@ -125,7 +126,7 @@ pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
             let help = format!("numbers have a decimal point: write `{whole}.{part}`");
             return Some(syn_error(whole.span(), &format!("`{whole},{part}` is two numbers"), &help));
         }
-        is_value = is(token, '=') || (is_value && !is(token, ','));
+        is_value = is_punctuation(token, '=') || (is_value && !is_punctuation(token, ','));
     }
     None
 }

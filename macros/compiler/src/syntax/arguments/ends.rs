@@ -1,4 +1,4 @@
-//! The two ends of a joint: `parent -> child`, and common errors in their place.
+//! Parsing of the two ends of a joint, `parent -> child`, with corrections of common errors.
 
 use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, Place};
@@ -41,15 +41,17 @@ impl Arguments {
     /// Returns the likely ends of a joint without an arrow, and the span of the error. Ends with keys are
     /// removed.
     fn likely_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
-        let pair = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
+        let pair_of_sources = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
         if let Some((place, a, b)) = self.take_ends() {
-            return (place, pair(&a, &b));
+            return (place, pair_of_sources(&a, &b));
         }
         let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
         match self.plain.as_slice() {
-            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => return (place, pair(a, b)),
+            [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => {
+                return (place, pair_of_sources(a, b));
+            }
             [a] => return (place, Some(["parent".to_string(), a.to_source()])),
-            [a, b, ..] => return (place, pair(a, b)),
+            [a, b, ..] => return (place, pair_of_sources(a, b)),
             [] => {}
         }
         let is_unknown = |(name, value): &(Name, ArgumentValue)| {
@@ -59,7 +61,9 @@ impl Arguments {
         let (name, value) = self.named.remove(index);
         let ArgumentValue::Expr(value) = value else { return (name.place, None) };
         let ends = match (&value.kind, name.text.as_str()) {
-            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => pair(&two[0], &two[1]),
+            (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => {
+                pair_of_sources(&two[0], &two[1])
+            }
             (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.to_source(), "child".to_string()]),
             (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
                 Some(["parent".to_string(), value.to_source()])
@@ -72,10 +76,11 @@ impl Arguments {
 
     /// Removes and returns two ends with keys of their own, such as `from = a, to = b`.
     pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
-        let has_key = |key: &str| {
+        let has_expression_for_key = |key: &str| {
             self.named.iter().any(|(name, value)| name.text == key && matches!(value, ArgumentValue::Expr(_)))
         };
-        let (a, b) = END_KEYS.into_iter().find(|(a, b)| has_key(a) && has_key(b))?;
+        let (a, b) =
+            END_KEYS.into_iter().find(|(a, b)| has_expression_for_key(a) && has_expression_for_key(b))?;
         let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
         let mut end = |key: &str| match self.take(key) {
             Some((_, ArgumentValue::Expr(e))) => Some(e),

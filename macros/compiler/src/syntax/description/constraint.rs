@@ -1,4 +1,4 @@
-//! Restrictions of motion: constraints, contacts, limits.
+//! Declared constraints, contacts and limits.
 
 use super::{Expr, ExprKind, Name, WrittenArguments};
 use crate::language::{Callable, Key, OtherKind};
@@ -6,9 +6,9 @@ use crate::language::{Callable, Key, OtherKind};
 /// Kind of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintKind {
-    /// Restricts configurations.
+    /// Constraint on configurations.
     Holonomic,
-    /// Restricts velocities.
+    /// Constraint on velocities.
     Nonholonomic,
     /// Two surfaces in contact that do not slip.
     Rolling,
@@ -52,14 +52,14 @@ pub struct Constraint {
     pub arguments: WrittenArguments,
 }
 
-/// Bounds of a coordinate.
+/// Limit of a coordinate.
 #[derive(Clone, Debug)]
 pub struct Limit {
     /// Name of the limit; that of the joint if it is from a file.
     pub name: Name,
     /// Joint, coordinate of a joint, declared coordinate, or expression.
     pub on: Expr,
-    /// Bounds; with a restitution they are stops.
+    /// Bounds of the limit; with a restitution they are stops.
     pub arguments: WrittenArguments,
 }
 
@@ -80,7 +80,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether the surfaces yield.
+    /// Returns whether the surfaces are compliant.
     pub fn is_compliant(&self) -> bool {
         [Key::Stiffness, Key::Hertz].into_iter().any(|key| self.arguments.get(key).is_some())
     }

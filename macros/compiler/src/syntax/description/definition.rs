@@ -1,4 +1,4 @@
-//! Named expressions, tables, and equilibria.
+//! Declared definitions, tables and equilibria.
 
 use super::{Expr, Name};
 
@@ -16,11 +16,11 @@ pub struct Table {
 pub struct Equilibrium {
     /// Name of the equilibrium.
     pub name: Name,
-    /// Coordinates, inputs and states, each with its value.
+    /// Coordinates, inputs and states at the equilibrium, each with its value.
     pub values: Vec<(Expr, Expr)>,
 }
 
-/// Kind of value of an expression.
+/// Kind of value that an expression has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rank {
     /// Scalar.
@@ -45,15 +45,15 @@ impl Rank {
     }
 }
 
-/// A named expression.
+/// Named expression.
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// Name of the definition.
     pub name: Name,
     /// Declared kind of value.
     pub rank: Rank,
-    /// Expression.
+    /// Expression that the name denotes.
     pub value: Expr,
-    /// Axes of an output's components.
+    /// Axes in which the components of an output are resolved.
     pub resolved_in: Option<Expr>,
 }

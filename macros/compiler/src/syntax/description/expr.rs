@@ -1,4 +1,4 @@
-//! Words and unresolved expressions.
+//! Expressions as written, with unresolved names.
 
 use crate::diag::Place;
 use crate::language::{Callable, Method};
@@ -27,7 +27,7 @@ pub struct Term<I> {
 pub type Callee = Term<Callable>;
 
 impl Callee {
-    /// Looks up a word in the tables.
+    /// Looks up a function name in the tables of the language.
     pub fn new(name: Name) -> Callee {
         let id = Callable::of_name(&name.text);
         Term { text: name.text, place: name.place, id }
@@ -38,14 +38,14 @@ impl Callee {
 pub type Member = Term<Method>;
 
 impl Member {
-    /// Looks up a word in the tables, with the number of its arguments.
+    /// Looks up a method name with this number of arguments in the tables of the language.
     pub fn new(name: Name, count: usize) -> Member {
         let id = Method::of_call(&name.text, count);
         Term { text: name.text, place: name.place, id }
     }
 }
 
-/// An expression with unresolved names.
+/// Expression with unresolved names.
 #[derive(Clone, Debug)]
 pub struct Expr {
     /// Kind of the expression.
@@ -77,14 +77,14 @@ pub enum ExprKind {
     Array(Vec<Expr>),
 }
 
-/// Binary operators.
+/// Binary operator of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BinaryOp {
-    /// `+`
+    /// Addition `+`.
     Add,
-    /// `-`
+    /// Subtraction `-`.
     Sub,
-    /// `*`
+    /// Multiplication `*`.
     Mul,
     /// `/`, both division and the slash of `r(y / x)`
     Div,

@@ -1,4 +1,4 @@
-//! Force elements and inputs.
+//! Declared force elements and inputs.
 
 use super::{BinaryOp, Expr, Name};
 use crate::diag::Place;
@@ -13,7 +13,7 @@ pub struct Action {
     pub kind: ForceKind,
     /// Coordinate, body or points on which the element acts.
     pub on: Target,
-    /// Written arguments.
+    /// Arguments of the element, as written.
     pub arguments: WrittenArguments,
 }
 
@@ -38,9 +38,9 @@ impl WrittenArguments {
 pub struct Drive {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
-    /// Target of the element.
+    /// Coordinates, length or point on which the element of a file acts.
     pub on: DriveOn,
-    /// Force law of the element.
+    /// Force law of the element of a file.
     pub law: DriveLaw,
 }
 
@@ -102,31 +102,31 @@ impl DriveOn {
 pub enum DriveLaw {
     /// Force proportional to the difference from a free length.
     Spring {
-        /// Stiffness.
+        /// Stiffness of the spring.
         stiffness: f64,
-        /// Value at which the force is zero.
+        /// Value at which the force of the spring is zero.
         free: f64,
     },
     /// Force proportional to the excess beyond a range.
     Slack {
-        /// Stiffness.
+        /// Stiffness of the spring outside of its range.
         stiffness: f64,
-        /// Lower and upper end of the range.
+        /// Lower and upper end of the range in which the force is zero.
         range: [f64; 2],
     },
-    /// Force opposite and proportional to the rate.
+    /// Force proportional and opposite to the velocity, with this coefficient.
     Damper(f64),
     /// Force of this magnitude opposite to the rate.
     Friction(f64),
-    /// Force opposite and proportional to the acceleration.
+    /// Force proportional and opposite to the acceleration, with this inertance.
     Inerter(f64),
-    /// Constant force.
+    /// Constant force, N or N·m.
     Push(f64),
     /// Force given by an input; the value is the unit of the input.
     Input(&'static str),
 }
 
-/// Target of a force element.
+/// Target of a force element, as written.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// One target: `joint`, `joint.coordinate`, `body`, `body.at(vector)`, `point`.
@@ -150,7 +150,7 @@ impl Action {
         self.arguments.get(key)
     }
 
-    /// Returns the written law, with its argument.
+    /// Returns the argument that gives the force law, with its expression.
     pub fn law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
         self.arguments.iter().find(|(key, _)| laws.contains(key))

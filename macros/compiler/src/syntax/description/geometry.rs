@@ -8,26 +8,26 @@ use crate::diag::Place;
 pub struct Collision {
     /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
-    /// Shape.
+    /// Shape of the geometry.
     pub shape: Shape,
-    /// Position in the file.
+    /// Position of the geometry in the file.
     pub place: Place,
 }
 
 /// Shape of collision or visual geometry; lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Radius.
+    /// Sphere, given by its radius.
     Sphere(f64),
-    /// Edge lengths along the axes.
+    /// Cuboid, given by its edge lengths along the axes.
     Cuboid([f64; 3]),
-    /// Radius and length, along z.
+    /// Cylinder along z, given by radius and length.
     Cylinder(f64, f64),
     /// Radius, and distance of the centres of the spheres, along z.
     Capsule(f64, f64),
-    /// Half lengths along the axes.
+    /// Ellipsoid, given by its half lengths along the axes.
     Ellipsoid([f64; 3]),
-    /// Triangles of another file.
+    /// Mesh of triangles in another file.
     Mesh,
 }
 
@@ -36,17 +36,17 @@ pub enum Shape {
 pub struct Visual {
     /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
-    /// Shape.
+    /// Shape of the visual geometry.
     pub shape: Shape,
-    /// Triangles, if the shape is a mesh.
+    /// Mesh of the geometry, if the shape is a mesh.
     pub mesh: Option<Mesh>,
 }
 
-/// Triangles of another file.
+/// Mesh of triangles in another file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Path as written in the file.
+    /// Path of the mesh, as written in the robot file.
     pub path: String,
-    /// Scale factors along the axes.
+    /// Scale factors of the mesh along its axes.
     pub scale: [f64; 3],
 }

@@ -20,18 +20,18 @@ pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particl
 /// Scalar type of the generated functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScalarType {
-    /// `f64`
+    /// Double precision, `f64`.
     F64,
-    /// `f32`
+    /// Single precision, `f32`.
     F32,
-    /// Type parameter of the struct.
+    /// Type parameter of the struct with this name.
     Generic(String),
 }
 
 /// Attachment of the root of an imported file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// Welded to the ground.
+    /// The root is welded to the ground.
     Fixed,
     /// The root is connected to the ground by a free joint.
     Free,
@@ -46,7 +46,7 @@ pub struct Description {
     pub gravity: Option<Expr>,
     /// Speed at which regularised Coulomb friction reaches `tanh 1` of its maximum.
     pub friction_speed: Option<Expr>,
-    /// Scalar type.
+    /// Scalar type of the mechanism.
     pub scalar: ScalarType,
     /// Parameters: the fields that remain in the struct.
     pub parameters: Vec<Name>,
@@ -58,11 +58,11 @@ pub struct Description {
     pub units: Vec<(usize, Expr)>,
     /// Units of the last parameters, which replace values of a file.
     pub file_units: Vec<&'static str>,
-    /// Rigid bodies.
+    /// Rigid bodies of the mechanism.
     pub bodies: Vec<Body>,
-    /// Particles.
+    /// Particles of the mechanism.
     pub particles: Vec<Particle>,
-    /// Joints.
+    /// Joints of the mechanism.
     pub joints: Vec<Joint>,
     /// Force elements and inputs.
     pub actions: Vec<Action>,
@@ -77,15 +77,15 @@ pub struct Description {
     /// Names of all inputs, in order: those of force elements without a value, and fields of the type
     /// `Input`.
     pub inputs: Vec<Name>,
-    /// Frames.
+    /// Frames of the mechanism.
     pub frames: Vec<Frame>,
-    /// Points.
+    /// Points of the mechanism.
     pub points: Vec<Point>,
-    /// Named expressions.
+    /// Named expressions, each of which other expressions may use.
     pub definitions: Vec<Definition>,
     /// Definitions that are generalized speeds.
     pub speeds: Vec<Name>,
-    /// Expressions that become functions.
+    /// Expressions that become functions of the mechanism.
     pub outputs: Vec<Definition>,
     /// Potential energies.
     pub energies: Vec<(Name, Expr)>,
@@ -107,7 +107,7 @@ pub struct Description {
     pub snapped: Vec<String>,
     /// Contents of the file that the mechanism omits.
     pub left_out: Vec<String>,
-    /// Treatment of mass properties.
+    /// Option for the treatment of mass properties.
     pub inertias: Inertias,
     /// Whether the file's root is the ground, which then has a frame as other links have.
     pub ground_frame: bool,
@@ -159,24 +159,25 @@ impl Description {
     }
 }
 
-/// Treatment of mass properties.
+/// Option for the treatment of mass properties.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inertias {
-    /// Checked for physical consistency.
+    /// Mass properties are checked for physical consistency.
     #[default]
     Check,
-    /// Accepted without a check.
+    /// Mass properties are accepted without a check.
     Trust,
-    /// Absent: the mechanism has no dynamics.
+    /// Mass properties are absent: the mechanism has no dynamics.
     None,
 }
 
 /// Solution method for the accelerations of a mechanism with constraints.
 #[derive(Clone, Debug, Default)]
 pub enum Formulation {
-    /// Lagrange multipliers.
+    /// Constraint forces are Lagrange multipliers.
     #[default]
     Multipliers,
-    /// Independent velocities: the listed ones, or chosen automatically if the list is empty.
+    /// Equations are formulated in independent velocities: the listed velocities, or automatically chosen
+    /// ones if the list is empty.
     Speeds(Vec<Expr>, Place),
 }

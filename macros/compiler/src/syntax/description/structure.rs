@@ -12,7 +12,7 @@ pub struct FreeCoordinate {
     pub joints_before: usize,
 }
 
-/// A frame: axes without a position.
+/// Frame: axes without a position.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Name of the frame.
@@ -23,18 +23,18 @@ pub struct Frame {
     pub rotations: Vec<Expr>,
 }
 
-/// A point.
+/// Point that is fixed in a body.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Name of the point.
     pub name: Name,
     /// Body or point relative to which it is fixed; the ground if absent.
     pub on: Option<Expr>,
-    /// Position in that body.
+    /// Position of the point in that body.
     pub at: Option<Expr>,
 }
 
-/// A rigid body.
+/// Rigid body.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name of the body and of its frame.
@@ -54,12 +54,12 @@ pub struct Body {
     pub frame: Option<Expr>,
 }
 
-/// A particle: mass at a point.
+/// Particle: a mass at a point.
 #[derive(Clone, Debug)]
 pub struct Particle {
     /// Name of the particle and of its frame, whose axes are those of its carrier.
     pub name: Name,
-    /// Mass.
+    /// Mass of the particle.
     pub mass: Expr,
     /// Position `body.at(vector)`; absent for a particle that is the child of a joint.
     pub at: Option<Expr>,
@@ -80,15 +80,15 @@ pub struct Joint {
     pub about: Vec<Expr>,
     /// Translation axes, in the joint's frame on the parent.
     pub along: Vec<Expr>,
-    /// Advance per radian of a screw.
+    /// Advance per radian of a screw joint.
     pub pitch: Option<Expr>,
-    /// Advance per revolution of a screw.
+    /// Advance per revolution of a screw joint.
     pub lead: Option<Expr>,
     /// Whether the axis is normalised (URDF); only a zero axis is then an error.
     pub normalise_axis: bool,
     /// Assembly mode of a loop that is solved in closed form, for its closing joint.
     pub branch: Option<Expr>,
-    /// Joint that the coordinate follows.
+    /// Joint whose coordinate this joint follows.
     pub mimic: Option<Mimic>,
     /// Viscous damping on the coordinate (URDF).
     pub damping: Option<Expr>,
@@ -98,10 +98,10 @@ pub struct Joint {
     pub driven: bool,
 }
 
-/// One end of a joint: `body.at(position).rotated(rotation, …)`.
+/// End of a joint on a body: `body.at(position).rotated(rotation, …)`.
 #[derive(Clone, Debug)]
 pub struct Endpoint {
-    /// Body (or `ground`).
+    /// Body on which the end is fixed, or `ground`.
     pub body: Name,
     /// Position of the joint on the body, in body axes; the body's origin if absent.
     pub at: Option<Expr>,
@@ -113,10 +113,10 @@ pub struct Endpoint {
 /// The relation `coordinate = multiplier × other + offset`.
 #[derive(Clone, Debug)]
 pub struct Mimic {
-    /// Joint that is followed.
+    /// Joint whose coordinate is followed.
     pub joint: Name,
-    /// Factor.
+    /// Factor of the followed coordinate.
     pub multiplier: f64,
-    /// Offset.
+    /// Offset that is added to the scaled coordinate.
     pub offset: f64,
 }

@@ -1,4 +1,4 @@
-//! Tables of synonyms with their meanings.
+//! Tables of words from other tools and textbooks, with their meanings in the language.
 
 use crate::language::Words;
 use crate::language::elements::words::RATIO;
@@ -243,7 +243,7 @@ pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
 /// Synonyms of methods of coordinates, with the expression that is suggested; `NAME` is the coordinate.
 pub const RATES: Words = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
 
-/// Words of other tools for the ground.
+/// Names that other tools use for the ground.
 pub const BODIES: Words = &[(
     "world base baselink earth origin inertial fixed n newtonian globe wall floor map odom frame static",
     "ground",

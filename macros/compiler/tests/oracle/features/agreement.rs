@@ -17,21 +17,21 @@ pub(super) const SAME: f64 = 1e-9;
 /// Maximum difference from numeric differences, relative to the largest entry and to the differentiated
 /// values.
 pub(super) const TOLERANCE: f64 = 1e-7;
-/// Step of second differences.
+/// Step of finite differences for second derivatives.
 const WIDE: f64 = 8e-3;
 const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
 
 /// Compiles a mechanism and calls `f` with it, unless it has errors.
 fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let tokens = |text: &str| text.parse().expect("the source is Rust");
-    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
+    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     if let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) {
         f(&model, &output);
     }
 }
 
-/// Checks all functions of the mechanism of a seed. Returns the number of comparisons.
+/// Checks all functions of the random mechanism of a seed. Returns the number of comparisons.
 pub fn check(seed: u64) -> usize {
     let (arguments, item) = source::source(seed);
     check_all(&arguments, &item, &[], seed)
@@ -61,7 +61,7 @@ pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> 
     compared
 }
 
-/// Compiled mechanism at a state.
+/// Compiled test mechanism, with the state at which its functions are compared.
 pub(super) struct Case<'a, 'g> {
     pub(super) model: &'a Model<'g>,
     pub(super) output: &'a Output,
@@ -153,29 +153,30 @@ impl Case<'_, '_> {
             return;
         }
         let (output, function) = (self.output, self.function(base).cloned());
-        let outputs = |values: &Values| function.as_ref().map_or_else(Vec::new, |f| values.run(output, f));
-        let rows = outputs(&self.values).len();
+        let function_outputs =
+            |values: &Values| function.as_ref().map_or_else(Vec::new, |f| values.run(output, f));
+        let rows = function_outputs(&self.values).len();
         let mut rest = &found[..];
         for by in by {
             let (columns, after) = rest.split_at(self.values.size(*by) * rows);
-            self.compare_columns(what, columns, *by, &outputs);
+            self.compare_columns(what, columns, *by, &function_outputs);
             rest = after;
         }
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
     }
 
-    /// Returns the function that changes one entry of the values. With declared generalized speeds,
-    /// displacements are measured in the speeds at the initial configuration.
+    /// Returns a function that changes one entry of the state. With declared generalized speeds,
+    /// configuration displacements are measured in the generalized speeds at the initial configuration.
     fn changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
         let (columns, nv) = (self.here("__rate_matrix"), self.values.v.len());
         move |values, by, k, h| match by {
             By::Q => {
-                let displacement = |j: usize| match columns.get(k * nv + j) {
+                let displacement_of_entry = |j: usize| match columns.get(k * nv + j) {
                     Some(entry) => h * entry,
                     None => f64::from(u8::from(j == k)) * h,
                 };
-                values.displaced(&charts, &(0..nv).map(displacement).collect::<Vec<_>>())
+                values.displaced(&charts, &(0..nv).map(displacement_of_entry).collect::<Vec<_>>())
             }
             _ => values.changed(by, k, h),
         }
@@ -231,12 +232,12 @@ impl Case<'_, '_> {
 
     fn check_dynamics(&mut self) {
         let output = self.output;
-        let get = |name: &str| self.function(name).cloned();
+        let find_function = |name: &str| self.function(name).cloned();
         let (Some(inverse), Some(kinetic), Some(potential), Some(momentum)) = (
-            get("inverse_dynamics"),
-            get("kinetic_energy"),
-            get("potential_energy"),
-            get("generalized_momentum"),
+            find_function("inverse_dynamics"),
+            find_function("kinetic_energy"),
+            find_function("potential_energy"),
+            find_function("generalized_momentum"),
         ) else {
             return;
         };
@@ -314,8 +315,10 @@ impl Case<'_, '_> {
     /// columns of forces that are multiplied by the inverse.
     fn check_forward_derivatives(&mut self) {
         let Some(function) = self.function("forward_dynamics_derivatives").cloned() else { return };
-        let get = |name: &str| self.function(name).cloned();
-        let (Some(inverse), Some(forward)) = (get("inverse_dynamics"), get("forward_dynamics")) else {
+        let find_function = |name: &str| self.function(name).cloned();
+        let (Some(inverse), Some(forward)) =
+            (find_function("inverse_dynamics"), find_function("forward_dynamics"))
+        else {
             return;
         };
         let (output, nv) = (self.output, self.values.v.len());
@@ -383,15 +386,16 @@ impl Case<'_, '_> {
                 let entry = found[first + j * m + i];
                 let values = self.values.clone();
                 // The inner displacement starts at the end of the outer one.
-                let mixed = |outer: (By, usize), inner: (By, usize), h: f64| {
+                let mixed_difference = |outer: (By, usize), inner: (By, usize), h: f64| {
                     difference(h, &|e| {
                         let there = changed(&values, outer.0, outer.1, e);
                         difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
                     })[0]
                 };
                 let (row, column) = ((*rows, i), (*columns, j));
-                let mean = |h: f64| 0.5 * (mixed(row, column, h) + mixed(column, row, h));
-                let (wide, narrow) = (mean(WIDE), mean(0.5 * WIDE));
+                let symmetrised_difference =
+                    |h: f64| 0.5 * (mixed_difference(row, column, h) + mixed_difference(column, row, h));
+                let (wide, narrow) = (symmetrised_difference(WIDE), symmetrised_difference(0.5 * WIDE));
                 let scale = 1.0 + entry.abs() + narrow.abs() + 10.0 * of(&values)[0].abs();
                 let doubt = (wide - narrow).abs() / 8.0;
                 if doubt < 1e-4 * scale {
@@ -410,7 +414,8 @@ impl Case<'_, '_> {
         }
     }
 
-    /// Checks the regressors with arbitrary inertial parameters and with those of the mechanism.
+    /// Checks the regressor matrices with arbitrary inertial parameters and with the inertial parameters of
+    /// the mechanism.
     fn check_regressors(&mut self) {
         let (regressor, base) = (self.here("joint_torque_regressor"), self.here("base_regressor"));
         if regressor.is_empty() {

@@ -1,6 +1,6 @@
-//! Comparison of generated Rust code with its programs: function bodies are interpreted for one state, for
-//! one state in debug builds, and for several states. Constants are compared with the functions that they
-//! describe.
+//! Comparison of generated Rust code with the programs it was generated from. Function bodies are interpreted
+//! for one state, for one state in debug builds, and for several states. Constants are compared with the
+//! functions that they describe.
 
 use super::agreement::{SAME, size, sum};
 use super::values::Values;
@@ -50,7 +50,8 @@ fn written(text: &str) -> Written {
     all
 }
 
-/// Returns the first type argument of `Evaluate<…>`.
+/// Returns the scalar type of a generated `impl`, which is the first type argument of its trait
+/// `Evaluate<…>`.
 fn number_of(block: &ItemImpl) -> Option<String> {
     let of = block.trait_.as_ref()?.0.segments.last().filter(|last| last.ident == "Evaluate")?.clone();
     first_argument(&of.arguments)
@@ -61,10 +62,11 @@ fn first_argument(arguments: &syn::PathArguments) -> Option<String> {
     types.args.first().map(|first| quote::quote!(#first).to_string())
 }
 
-/// Returns the bodies of a function, or those that it dispatches to, with the patterns of their arguments.
+/// Returns the bodies of a generated function, or of those that it dispatches to, with the patterns of their
+/// arguments.
 fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
     let Some(function) = written.functions.get(name) else { return Vec::new() };
-    let arguments = |function: &ImplItemFn| -> Vec<Pat> {
+    let argument_patterns = |function: &ImplItemFn| -> Vec<Pat> {
         let typed = function.sig.inputs.iter().filter_map(|input| match input {
             FnArg::Typed(typed) => Some((*typed.pat).clone()),
             FnArg::Receiver(_) => None,
@@ -79,44 +81,44 @@ fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
         let all = written.bodies.get(&number).unwrap_or_else(|| panic!("{name} has no body {number}"));
         return all
             .iter()
-            .map(|body| match arguments(body).as_slice() {
+            .map(|body| match argument_patterns(body).as_slice() {
                 [Pat::Tuple(tuple)] => (tuple.elems.iter().cloned().collect(), &body.block),
                 other => panic!("{} arguments of a body of {name}", other.len()),
             })
             .collect();
     }
-    vec![(arguments(function), &function.block)]
+    vec![(argument_patterns(function), &function.block)]
 }
 
 /// Combines the values of an argument for several states to lanes.
 fn lanes(all: &[Value]) -> Value {
     match &all[0] {
         Value::List(list) => {
-            let entry = |k: usize| {
+            let lanes_of_entry = |k: usize| {
                 let column: Vec<Value> = all
                     .iter()
                     .map(|value| if let Value::List(list) = value { list[k].clone() } else { value.clone() })
                     .collect();
                 lanes(&column)
             };
-            Value::List((0..list.len()).map(entry).collect())
+            Value::List((0..list.len()).map(lanes_of_entry).collect())
         }
         _ => Value::Lanes(all.iter().map(|value| value.numbers(0).expect("a number")[0]).collect()),
     }
 }
 
 fn argument(a: Argument, values: &Values) -> Option<Value> {
-    let vector = |list: &[f64]| Value::List(vec![Value::list(list)]);
+    let vector_value = |list: &[f64]| Value::List(vec![Value::list(list)]);
     Some(match a {
         Argument::T => Value::Number(values.t),
-        Argument::Q => vector(&values.q),
-        Argument::V => vector(&values.v),
-        Argument::A => vector(&values.a),
-        Argument::Tau => vector(&values.tau),
-        Argument::U => vector(&values.u),
-        Argument::Standard(n) => vector(&values.supplied(Supplied::Inertia)[..n]),
-        Argument::Factors(n) => vector(&values.supplied(Supplied::Factor)[..n]),
-        Argument::Momenta(n) => vector(&values.given[..n]),
+        Argument::Q => vector_value(&values.q),
+        Argument::V => vector_value(&values.v),
+        Argument::A => vector_value(&values.a),
+        Argument::Tau => vector_value(&values.tau),
+        Argument::U => vector_value(&values.u),
+        Argument::Standard(n) => vector_value(&values.supplied(Supplied::Inertia)[..n]),
+        Argument::Factors(n) => vector_value(&values.supplied(Supplied::Factor)[..n]),
+        Argument::Momenta(n) => vector_value(&values.given[..n]),
         Argument::Given(_, Supplied::ContactForces, count) => {
             Value::list(values.contact_forces.get(..count)?)
         }
@@ -126,15 +128,16 @@ fn argument(a: Argument, values: &Values) -> Option<Value> {
     })
 }
 
-/// Interprets all bodies that call no other functions. Returns their names, with their variants.
+/// Interprets and compares all generated function bodies that call no other functions. Returns their names
+/// with the number of the body.
 pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
-    let tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
+    let parse_tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) else {
         return BTreeSet::new();
     };
-    let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
+    let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
     let written = written(&emitted.text);
     check_places(&model, &output, &written, seed, &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"));
     let mut run = BTreeSet::new();
@@ -155,10 +158,10 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
 /// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
 /// the velocities of ball and free joints.
 fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
-    let constant = |name: &str| written.constants.get(name).map(places);
+    let places_of_constant = |name: &str| written.constants.get(name).map(places);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
     let (Some(direct), Some(turned), Some(forces)) =
-        (constant("__DIRECT_INPUTS"), constant("__TURNED"), forces)
+        (places_of_constant("__DIRECT_INPUTS"), places_of_constant("__TURNED"), forces)
     else {
         return;
     };
@@ -174,23 +177,25 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     // An entry equals an input if it changes by the same amount for random states, parameters and inputs.
     let all = [seed, seed + 1000].map(|seed| Values::random(model, seed));
     let u = all[0].u.clone();
-    let unit = |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
+    let unit_vector =
+        |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
     let by_input = |values: &Values, k: usize| -> Vec<f64> {
-        let changed = Values { u: sum(&values.u, &unit(k, u.len())), ..values.clone() };
+        let changed = Values { u: sum(&values.u, &unit_vector(k, u.len())), ..values.clone() };
         let (after, before) = (changed.run(output, forces), values.run(output, forces));
         after.iter().zip(before).map(|(a, b)| a - b).collect()
     };
-    let is_near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
-    let place = |k: usize| {
-        (0..model.nv())
-            .find(|v| all.iter().all(|values| is_near(&by_input(values, k), &unit(*v, model.nv()))))
+    let are_nearly_equal = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let velocity_driven_by_input = |k: usize| {
+        (0..model.nv()).find(|v| {
+            all.iter().all(|values| are_nearly_equal(&by_input(values, k), &unit_vector(*v, model.nv())))
+        })
     };
     let [here, there] = all.each_ref().map(|values| {
         let values = Values { u: u.clone(), t: all[0].t, ..values.clone() };
         Values { parameters: all[0].parameters.clone(), ..values }.run(output, forces)
     });
-    let expected: Option<Vec<usize>> = (0..u.len()).map(place).collect();
-    assert_eq!(direct, expected.filter(|_| is_near(&here, &there)), "places of inputs, {about}");
+    let expected: Option<Vec<usize>> = (0..u.len()).map(velocity_driven_by_input).collect();
+    assert_eq!(direct, expected.filter(|_| are_nearly_equal(&here, &there)), "places of inputs, {about}");
 }
 
 /// Returns the numbers in `Some([…])` or `Some((…))`; `None` for `None`.
@@ -201,8 +206,8 @@ fn places(expr: &Expr) -> Option<Vec<usize>> {
         Expr::Tuple(tuple) => &tuple.elems,
         other => panic!("{}", quote::quote!(#other)),
     };
-    let number = |expr: &Expr| quote::quote!(#expr).to_string().parse().expect("a number");
-    Some(list.iter().map(number).collect())
+    let parse_number = |expr: &Expr| quote::quote!(#expr).to_string().parse().expect("a number");
+    Some(list.iter().map(parse_number).collect())
 }
 
 /// Compares a body with its program. Returns false for a body that calls other functions.

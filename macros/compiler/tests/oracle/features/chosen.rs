@@ -1,6 +1,7 @@
 //! Mechanisms with combinations of features that are rare in random mechanisms.
 
-/// Arguments of the attribute, fields, and functions that must be among the compared ones.
+/// Test mechanisms: arguments of the attribute, fields, and functions that must be among the compared
+/// functions.
 pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, \
@@ -119,8 +120,8 @@ pub fn limbs(count: usize, joints: usize) -> String {
         "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,\n"
             .to_string();
     for limb in 0..count {
-        let side = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let parent = format!("trunk.at([{}, {}, 0])", 0.2 * side(limb), 0.1 * side(limb / 2));
+        let sign_of_side = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let parent = format!("trunk.at([{}, {}, 0])", 0.2 * sign_of_side(limb), 0.1 * sign_of_side(limb / 2));
         fields += &self::limb(limb, parent, joints);
     }
     fields

@@ -1,4 +1,4 @@
-//! Consistency of constraints and contacts.
+//! Consistency of the functions of constraints and contacts with each other and with finite differences.
 
 use super::agreement::{Case, TOLERANCE, dot, product, size, sum};
 use super::source;
@@ -52,10 +52,12 @@ impl Case<'_, '_> {
     /// with respect to configuration, whose rows belong to the multipliers.
     pub(super) fn check_constraint_curvature(&mut self) {
         let found = self.here("__constraint_curvature");
-        let get = |name: &str| self.function(name).cloned();
-        let (Some(jacobian), Some(bias), Some(rates)) =
-            (get("constraint_jacobian"), get("constraint_bias"), get("constraint_rates"))
-        else {
+        let find_function = |name: &str| self.function(name).cloned();
+        let (Some(jacobian), Some(bias), Some(rates)) = (
+            find_function("constraint_jacobian"),
+            find_function("constraint_bias"),
+            find_function("constraint_rates"),
+        ) else {
             return;
         };
         if found.is_empty() {
@@ -109,39 +111,42 @@ impl Case<'_, '_> {
     /// Checks the derivatives of `Gᵀ f`, `G a + b` and the contact velocities `G v + …`.
     fn check_contact_derivatives(&mut self) {
         let found = self.here("__contact_derivatives");
-        let get = |name: &str| self.function(name).cloned();
-        let (Some(jacobian), Some(bias), Some(rates)) =
-            (get("contact_jacobian"), get("contact_bias"), get("contact_rates"))
-        else {
+        let find_function = |name: &str| self.function(name).cloned();
+        let (Some(jacobian), Some(bias), Some(rates)) = (
+            find_function("contact_jacobian"),
+            find_function("contact_bias"),
+            find_function("contact_rates"),
+        ) else {
             return;
         };
         if found.is_empty() {
             return;
         }
         let (output, nv, nr) = (self.output, self.values.v.len(), self.values.contact_forces.len());
-        let forces = |x: &Values| {
+        let contact_joint_forces = |x: &Values| {
             let columns = x.run(output, &jacobian);
             (0..nv).map(|j| dot(&columns[j * nr..(j + 1) * nr], &x.contact_forces)).collect()
         };
-        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let contact_acceleration =
+            |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
         let (first, rest) = found.split_at(nv * nv);
         let (second, rest) = rest.split_at(nr * nv);
         let (third, rest) = rest.split_at(nr * nv);
-        self.compare_columns("forces at contacts", first, By::Q, &forces);
-        self.compare_columns("changes at contacts", second, By::Q, &change);
-        self.compare_columns("changes at contacts", third, By::V, &change);
+        self.compare_columns("forces at contacts", first, By::Q, &contact_joint_forces);
+        self.compare_columns("changes at contacts", second, By::Q, &contact_acceleration);
+        self.compare_columns("changes at contacts", third, By::V, &contact_acceleration);
         self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run(output, &rates));
     }
 
     /// Checks the derivatives of `M a + h − Jᵀ λ`, `J a + b` and the constraint rates.
     pub(super) fn check_motion_derivatives(&mut self) {
         let found = self.here("__motion_derivatives");
-        let get = |name: &str| self.function(name).cloned();
+        let find_function = |name: &str| self.function(name).cloned();
         let (Some(inverse), Some(jacobian), Some(bias), Some(rates)) = (
-            get("inverse_dynamics"),
-            get("constraint_jacobian"),
-            get("constraint_bias"),
-            get("constraint_rates"),
+            find_function("inverse_dynamics"),
+            find_function("constraint_jacobian"),
+            find_function("constraint_bias"),
+            find_function("constraint_rates"),
         ) else {
             return;
         };
@@ -149,7 +154,7 @@ impl Case<'_, '_> {
             return;
         }
         let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
-        let balance = |x: &Values| {
+        let residual_forces = |x: &Values| {
             let (columns, forces) = (x.run(output, &jacobian), x.run(output, &inverse));
             (0..nv)
                 .map(|j| {
@@ -157,17 +162,18 @@ impl Case<'_, '_> {
                 })
                 .collect()
         };
-        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let constraint_acceleration =
+            |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
         let mut rest = &found[..];
         let mut part = |n: usize| {
             let (part, after) = rest.split_at(n);
             rest = after;
             part
         };
-        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &balance);
-        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &balance);
-        self.compare_columns("changes of rates", part(nc * nv), By::Q, &change);
-        self.compare_columns("changes of rates", part(nc * nv), By::V, &change);
+        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &residual_forces);
+        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &residual_forces);
+        self.compare_columns("changes of rates", part(nc * nv), By::Q, &constraint_acceleration);
+        self.compare_columns("changes of rates", part(nc * nv), By::V, &constraint_acceleration);
         self.compare_columns("rates", part(nc * nv), By::Q, &|x| x.run(output, &rates));
     }
 }

@@ -5,7 +5,7 @@
 use crate::random::Random;
 use std::fmt::Write;
 
-/// Joint: name of its type, arguments, and names of its coordinates.
+/// Joint type for random mechanisms: name of the type, arguments, and names of its coordinates.
 type Joint = (&'static str, &'static str, &'static [&'static str]);
 
 const JOINTS: [Joint; 12] = [
@@ -23,7 +23,7 @@ const JOINTS: [Joint; 12] = [
     ("Weld", "", &[]),
 ];
 
-/// Joints of particles, as indices of [`JOINTS`].
+/// Joints that are allowed for particles, as indices of [`JOINTS`].
 const OF_PARTICLES: [usize; 4] = [1, 7, 8, 9];
 
 const VECTORS: [&str; 6] = ["x", "y", "-z", "0.3 * x", "[0.7, -1.2, 0.4]", "[0, 0, 0]"];
@@ -59,7 +59,7 @@ const VECTOR_VALUES: [&str; 8] = [
     "project(r(P / ground), A.z)",
     "S * A.y + 0.2 * ground.x",
 ];
-/// The entry of [`SURFACES`] with rims.
+/// Contact pair in [`SURFACES`] whose surface has rims: a cylinder on the ground.
 pub const RIMS: &str = "cylinder(0.2, 0.5, x), ground";
 /// Templates of contact pairs between a body `H` and the ground.
 const SURFACES: [&str; 7] = [
@@ -71,7 +71,7 @@ const SURFACES: [&str; 7] = [
     "H.at([0, 1, 0]).sphere(0.1), ground.at([0, 3, 0]).sphere(0.7)",
     "H.cylinder(0.2, 0.5, x), ground.plane(y)",
 ];
-/// Templates that are valid only as outputs.
+/// Templates of scalar expressions that are valid only as outputs.
 const SCALAR_OUTPUTS: [&str; 8] = [
     "kinetic_energy(H)",
     "moment_of_inertia(H / P, ground.z)",
@@ -133,12 +133,12 @@ struct Source {
     bodies: Vec<String>,
     particles: Vec<String>,
     coordinates: Vec<String>,
-    /// Frames that are not bodies.
+    /// Names of declared frames that are not bodies.
     frames: Vec<String>,
-    /// Names of points and of states.
+    /// Names of declared points; the next field has the names of states.
     points: Vec<String>,
     states: Vec<String>,
-    /// Whether elements exist that exclude some options.
+    /// Whether the mechanism has constraints, which exclude some options.
     has_constraints: bool,
     has_parameters: bool,
 }
@@ -315,12 +315,12 @@ impl Source {
     }
 
     fn add_element(&mut self, k: usize) {
-        let any = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
+        let random_element = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
             let n = list(source).len();
             (n > 0).then(|| source.random.index_below(n)).map(|n| list(source)[n].clone())
         };
-        let coordinate = any(self, |source| &source.coordinates);
-        let body = any(self, |source| &source.bodies);
+        let coordinate = random_element(self, |source| &source.coordinates);
+        let body = random_element(self, |source| &source.bodies);
         let (kind, law) = (self.random.index_below(32), self.one_of(&LAWS));
         let field = match (kind, coordinate, body) {
             (0, Some(on), _) => format!("#[acts(on = {on}, stiffness = 2)] element{k}: Spring"),
@@ -372,7 +372,8 @@ impl Source {
         let _ = writeln!(self.fields, "{field},");
     }
 
-    /// Returns a rare element.
+    /// Returns the declaration of a rare element: an output, coordinate, frame or other field of the given
+    /// kind.
     fn further(&mut self, kind: usize, k: usize) -> String {
         let coordinate = self.coordinates.last().cloned().unwrap_or_else(|| "t".to_string());
         let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());

@@ -6,10 +6,10 @@ use linkwork_compiler::derive::{Function, Output, Prepared};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, Model, Quantity, Supplied};
 
-/// Step of sixth-order differences.
+/// Step of sixth-order finite differences.
 const H: f64 = 4e-3;
 
-/// Values that functions depend on, one list for each kind.
+/// Values of the symbols that generated functions depend on, one list for each kind of symbol.
 #[derive(Clone)]
 pub struct Values {
     pub t: f64,
@@ -19,7 +19,7 @@ pub struct Values {
     pub tau: Vec<f64>,
     pub u: Vec<f64>,
     pub parameters: Vec<f64>,
-    /// Multipliers, factors and momenta.
+    /// Values supplied by callers: constraint multipliers, factors and momenta.
     pub given: Vec<f64>,
     pub contact_forces: Vec<f64>,
 }
@@ -61,12 +61,12 @@ impl Values {
         values
     }
 
-    /// Returns the results of a function, which may depend on results of functions that it calls.
+    /// Returns the results of a generated function. Results of functions that it calls are computed first.
     pub fn run(&self, output: &Output, function: &Function) -> Vec<f64> {
         self.run_program(output, function, false)
     }
 
-    /// Returns the results of the program with lanes, if there is one.
+    /// Returns the results of a function's program with SIMD lanes, if there is one.
     pub fn run_lanes(&self, output: &Output, function: &Function) -> Option<Vec<f64>> {
         function.program.simd.is_some().then(|| self.run_program(output, function, true))
     }
@@ -87,11 +87,11 @@ impl Values {
     /// Returns the results of a function of the prepared mechanism.
     pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
         let numbers = prepared.numbers.run(&|s| self.value(Quantity::from_symbol(s), &[]));
-        let outputs = |name: &str| {
+        let outputs_of_function = |name: &str| {
             let of = prepared.functions.iter().find(|f| f.name == name);
             of.map_or_else(Vec::new, |f| f.program.run(&|s| self.value(Quantity::from_symbol(s), &numbers)))
         };
-        let called = Called::ALL.map(|called| outputs(called.function()));
+        let called = Called::ALL.map(|called| outputs_of_function(called.function()));
         function.program.run(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
@@ -99,25 +99,25 @@ impl Values {
         })
     }
 
-    /// Returns the values that callers supply; each kind has values of its own.
+    /// Returns the values that callers supply for one kind of argument, such as multipliers or momenta.
     pub fn supplied(&self, block: Supplied) -> &[f64] {
         &self.given[3 * block as usize..]
     }
 
     fn value(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
-        let get = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
+        let entry_or_nan = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
         match quantity {
             Quantity::Time => self.t,
-            Quantity::Configuration(k) => get(&self.q, k),
-            Quantity::Velocity(k) => get(&self.v, k),
-            Quantity::Acceleration(k) => get(&self.a, k),
-            Quantity::Force(k) => get(&self.tau, k),
-            Quantity::Input(k) => get(&self.u, k),
-            Quantity::Parameter(k) => get(&self.parameters, k),
-            Quantity::Prepared(k) => get(numbers, k),
-            Quantity::Given(block, k) => get(self.supplied(block), k),
-            Quantity::Momentum(k) => get(&self.given, k),
-            Quantity::ContactForce(k) => get(&self.contact_forces, k),
+            Quantity::Configuration(k) => entry_or_nan(&self.q, k),
+            Quantity::Velocity(k) => entry_or_nan(&self.v, k),
+            Quantity::Acceleration(k) => entry_or_nan(&self.a, k),
+            Quantity::Force(k) => entry_or_nan(&self.tau, k),
+            Quantity::Input(k) => entry_or_nan(&self.u, k),
+            Quantity::Parameter(k) => entry_or_nan(&self.parameters, k),
+            Quantity::Prepared(k) => entry_or_nan(numbers, k),
+            Quantity::Given(block, k) => entry_or_nan(self.supplied(block), k),
+            Quantity::Momentum(k) => entry_or_nan(&self.given, k),
+            Quantity::ContactForce(k) => entry_or_nan(&self.contact_forces, k),
             Quantity::Reaction(_)
             | Quantity::PassiveForce(_)
             | Quantity::PassiveDerivative(_)
@@ -134,7 +134,7 @@ impl Values {
         program.run(&|s| self.value(Quantity::from_symbol(s), &[]))
     }
 
-    /// Returns the values with one entry changed, except configuration coordinates.
+    /// Returns the values with one entry changed by `h`. Configuration coordinates are not changed.
     pub fn changed(&self, by: By, k: usize, h: f64) -> Values {
         let mut values = self.clone();
         match by {
@@ -183,7 +183,7 @@ fn normalise(q: &mut [f64]) {
     q.iter_mut().for_each(|x| *x /= length);
 }
 
-/// Returns `a × b`.
+/// Returns the cross product `a × b`.
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -220,9 +220,13 @@ fn turn(quaternion: &mut [f64], step: &[f64]) {
 /// Returns the derivative at zero of a function, by sixth-order differences with steps of `h`.
 pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [one, two, three] = [h, 2.0 * h, 3.0 * h].map(|h| (of(h), of(-h)));
-    let part = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
-    let derivative = |k: usize| (45.0 * part(&one, k) - 9.0 * part(&two, k) + part(&three, k)) / (60.0 * h);
-    (0..one.0.len()).map(derivative).collect()
+    let central_difference = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
+    let derivative_of_entry = |k: usize| {
+        (45.0 * central_difference(&one, k) - 9.0 * central_difference(&two, k)
+            + central_difference(&three, k))
+            / (60.0 * h)
+    };
+    (0..one.0.len()).map(derivative_of_entry).collect()
 }
 
 /// Returns the derivative at zero of a function, with an error estimate. Halving the step changes the result

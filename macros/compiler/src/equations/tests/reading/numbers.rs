@@ -8,8 +8,8 @@ pub fn roots(c: &[f64]) -> Vec<Complex<f64>> {
     let n = c.len() - 1;
     let monic: Vec<f64> = c.iter().map(|x| x / c[n]).collect();
     let size = 1.0 + monic[..n].iter().map(|x| x.abs()).fold(0.0, f64::max).powf(0.5);
-    let start = |k: usize| Complex::from_polar(size, 0.4 + 2.0 * PI * k as f64 / n as f64);
-    let mut found: Vec<Complex<f64>> = (0..n).map(start).collect();
+    let initial_root = |k: usize| Complex::from_polar(size, 0.4 + 2.0 * PI * k as f64 / n as f64);
+    let mut found: Vec<Complex<f64>> = (0..n).map(initial_root).collect();
     for _ in 0..500 {
         for k in 0..n {
             let x = found[k];
@@ -31,8 +31,8 @@ pub fn eigenvalues(a: &[Vec<f64>]) -> Vec<Complex<f64>> {
     for k in 1..=n {
         m = (0..n)
             .map(|i| {
-                let entry = |j: usize| (0..n).map(|l| a[i][l] * m[l][j]).sum::<f64>();
-                (0..n).map(|j| entry(j) + if i == j { c[n - k + 1] } else { 0.0 }).collect()
+                let entry_of_product = |j: usize| (0..n).map(|l| a[i][l] * m[l][j]).sum::<f64>();
+                (0..n).map(|j| entry_of_product(j) + if i == j { c[n - k + 1] } else { 0.0 }).collect()
             })
             .collect();
         let trace: f64 = (0..n).map(|i| (0..n).map(|l| a[i][l] * m[l][i]).sum::<f64>()).sum();
@@ -47,10 +47,11 @@ pub fn assert_same_roots(a: &[Complex<f64>], b: &[Complex<f64>], tolerance: f64)
     assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
     let mut left = b.to_vec();
     for root in a {
-        let distance = |z: &Complex<f64>| (z - root).norm();
-        let nearest = (0..left.len()).min_by(|x, y| distance(&left[*x]).total_cmp(&distance(&left[*y])));
+        let distance_to_root = |z: &Complex<f64>| (z - root).norm();
+        let nearest = (0..left.len())
+            .min_by(|x, y| distance_to_root(&left[*x]).total_cmp(&distance_to_root(&left[*y])));
         let nearest = left.remove(nearest.expect("as many"));
-        assert!(distance(&nearest) < tolerance * (1.0 + root.norm()), "{a:?}\n{b:?}");
+        assert!(distance_to_root(&nearest) < tolerance * (1.0 + root.norm()), "{a:?}\n{b:?}");
     }
 }
 
@@ -99,7 +100,7 @@ impl<'g> Numbers<'g> {
     /// at rest is the identity.
     pub fn linear(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let n = self.nv;
-        let accelerations = |k: usize, h: f64| {
+        let displaced_accelerations = |k: usize, h: f64| {
             let (mut q, mut v) = (q.to_vec(), vec![0.0; n]);
             match (k < n, self.quaternion && k >= 3) {
                 (true, true) => (q[k], q[6]) = ((h / 2.0).sin(), (h / 2.0).cos()),
@@ -109,14 +110,14 @@ impl<'g> Numbers<'g> {
             self.accelerations(&q, &v, u, parameters)
         };
         let h = 1e-3;
-        let slope = |k: usize| -> Vec<f64> {
+        let acceleration_derivatives = |k: usize| -> Vec<f64> {
             let ((a, b), (c, d)) = (
-                (accelerations(k, h), accelerations(k, -h)),
-                (accelerations(k, 2.0 * h), accelerations(k, -2.0 * h)),
+                (displaced_accelerations(k, h), displaced_accelerations(k, -h)),
+                (displaced_accelerations(k, 2.0 * h), displaced_accelerations(k, -2.0 * h)),
             );
             (0..n).map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * h)).collect()
         };
-        let columns: Vec<Vec<f64>> = (0..2 * n).map(slope).collect();
+        let columns: Vec<Vec<f64>> = (0..2 * n).map(acceleration_derivatives).collect();
         let upper = (0..n).map(|i| (0..2 * n).map(|k| f64::from(u8::from(k == n + i))).collect());
         upper.chain((0..n).map(|i| columns.iter().map(|column| column[i]).collect())).collect()
     }

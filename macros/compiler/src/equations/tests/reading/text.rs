@@ -1,8 +1,8 @@
-//! Parser of printed linear equations.
+//! Parser of printed linear equations, for the tests.
 
 use super::*;
 
-/// Returns the value of a name.
+/// Closure that returns the value of a name.
 pub type Values<'a> = &'a dyn Fn(&str) -> f64;
 
 /// Parser and evaluator of printed sums such as `1/2 m l² cos(theta)/(a + b)`.
@@ -58,9 +58,9 @@ impl Reader<'_> {
             assert!(self.take(")"), "{}", self.rest);
             return sum.powi(self.power());
         }
-        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
+        let is_name_character = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
         let powers = ['²', '³', '⁴', '⁵', '⁶', '⁷'];
-        let end = self.rest.find(|c| !is_name(c) || powers.contains(&c)).unwrap_or(self.rest.len());
+        let end = self.rest.find(|c| !is_name_character(c) || powers.contains(&c)).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
         let power = self.power();
@@ -86,7 +86,7 @@ impl Reader<'_> {
     }
 }
 
-/// The components of a printed text.
+/// Equations and conditions of a printed text.
 #[derive(Default)]
 pub struct Text {
     equations: Vec<(String, String)>,
@@ -141,12 +141,12 @@ impl Text {
 
     /// Returns the coefficients of a name in all equations, on the left or on the right sides.
     pub fn column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
-        let one = |word: &str| match word {
+        let indicator_of_name = |word: &str| match word {
             _ if word == name => 1.0,
             _ if self.is_moving(word) => 0.0,
             _ => parameters(word),
         };
-        self.equations.iter().map(|(a, b)| value(if right { b } else { a }, &one)).collect()
+        self.equations.iter().map(|(a, b)| value(if right { b } else { a }, &indicator_of_name)).collect()
     }
 
     /// Returns true for names of variables instead of parameters.
@@ -159,12 +159,13 @@ impl Text {
         .any(|name| word.starts_with(name))
     }
 
-    /// Whether all conditions hold.
+    /// Returns whether all printed stability conditions hold for these parameters.
     pub fn holds(&self, parameters: Values<'_>) -> bool {
         self.conditions.iter().all(|condition| value(condition, parameters) > 0.0)
     }
 
-    /// Returns the coefficients of the characteristic polynomial in ascending powers, from its values.
+    /// Returns the coefficients of the printed characteristic polynomial in ascending powers, determined from
+    /// its values.
     pub fn coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
         let polynomial_value =
             |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
