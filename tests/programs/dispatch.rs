@@ -2,10 +2,10 @@
 //! selection.
 #![cfg(unix)]
 
-use linkwork_programs::cargo;
+use linkwork_programs::run_cargo;
 
 #[test]
 fn both_ways_agree() {
-    let output = cargo(&["run"], "dispatch", env!("CARGO_TARGET_TMPDIR"));
+    let output = run_cargo(&["run"], "dispatch", env!("CARGO_TARGET_TMPDIR"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

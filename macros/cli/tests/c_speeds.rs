@@ -11,13 +11,13 @@ use std::process::Command;
 mod mechanisms_in_speeds;
 
 /// Formats an array in C.
-fn array(name: &str, numbers: &[f64]) -> String {
+fn format_c_array(name: &str, numbers: &[f64]) -> String {
     let list: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
     format!("    const double {name}[] = {{{}}};\n", list.join(", "))
 }
 
 /// Returns the numbers that the C program prints, one line per function.
-fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
+fn compile_and_run(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds");
     std::fs::create_dir_all(&folder).expect("a folder of the tests'");
     let exported = Command::new(env!("CARGO_BIN_EXE_linkwork"))
@@ -58,7 +58,7 @@ fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
 }
 
 /// Concatenates several results to one list.
-fn all(parts: &[&[f64]]) -> Vec<f64> {
+fn concatenate_results(parts: &[&[f64]]) -> Vec<f64> {
     parts.concat()
 }
 
@@ -79,53 +79,78 @@ fn speeds_are_the_same_in_c() {
     let moved = Derivatives::integrate_derivatives_at(&m, &q, &dv);
     let rates = Derivatives::displacement_rate_derivatives(&m, &q, &dv, &v);
     let mut entries: Vec<(&str, &str, Vec<f64>)> = vec![
-        ("rates_of_speeds", "(self, q, v, r)", all(&[m.rates_of_speeds(&q, &v).as_slice()])),
-        ("speeds_of_rates", "(self, q, v, r)", all(&[m.speeds_of_rates(&q, &v).as_slice()])),
-        ("mass_matrix", "(self, q, r)", all(&[m.mass_matrix(&q).as_slice()])),
-        ("inverse_dynamics", "(self, q, v, a, r)", all(&[m.inverse_dynamics(&q, &v, &a).as_slice()])),
-        ("forward_dynamics", "(self, q, v, tau, r)", all(&[m.forward_dynamics(&q, &v, &tau).as_slice()])),
-        ("generalized_forces", "(self, q, u, r)", all(&[m.generalized_forces(&q, &u).as_slice()])),
-        ("integrate", "(self, q, dv, r)", all(&[there.as_slice()])),
-        ("difference", "(self, q, there, r)", all(&[m.difference(&q, &there).as_slice()])),
-        ("displacement_rate", "(self, q, dv, v, r)", all(&[m.displacement_rate(&q, &dv, &v).as_slice()])),
+        ("rates_of_speeds", "(self, q, v, r)", concatenate_results(&[m.rates_of_speeds(&q, &v).as_slice()])),
+        ("speeds_of_rates", "(self, q, v, r)", concatenate_results(&[m.speeds_of_rates(&q, &v).as_slice()])),
+        ("mass_matrix", "(self, q, r)", concatenate_results(&[m.mass_matrix(&q).as_slice()])),
+        (
+            "inverse_dynamics",
+            "(self, q, v, a, r)",
+            concatenate_results(&[m.inverse_dynamics(&q, &v, &a).as_slice()]),
+        ),
+        (
+            "forward_dynamics",
+            "(self, q, v, tau, r)",
+            concatenate_results(&[m.forward_dynamics(&q, &v, &tau).as_slice()]),
+        ),
+        (
+            "generalized_forces",
+            "(self, q, u, r)",
+            concatenate_results(&[m.generalized_forces(&q, &u).as_slice()]),
+        ),
+        ("integrate", "(self, q, dv, r)", concatenate_results(&[there.as_slice()])),
+        ("difference", "(self, q, there, r)", concatenate_results(&[m.difference(&q, &there).as_slice()])),
+        (
+            "displacement_rate",
+            "(self, q, dv, v, r)",
+            concatenate_results(&[m.displacement_rate(&q, &dv, &v).as_slice()]),
+        ),
         (
             "integrate_derivatives",
             "(self, q, dv, r, r + N * N)",
-            all(&[moved.0.as_slice(), moved.1.as_slice()]),
+            concatenate_results(&[moved.0.as_slice(), moved.1.as_slice()]),
         ),
         (
             "displacement_rate_derivatives",
             "(self, q, dv, v, r, r + N * N, r + 2 * N * N)",
-            all(&[rates.0.as_slice(), rates.1.as_slice(), rates.2.as_slice()]),
+            concatenate_results(&[rates.0.as_slice(), rates.1.as_slice(), rates.2.as_slice()]),
         ),
         (
             "inverse_dynamics_derivatives",
             "(self, q, v, a, r, r + N * N)",
-            all(&[by_q.as_slice(), by_v.as_slice()]),
+            concatenate_results(&[by_q.as_slice(), by_v.as_slice()]),
         ),
         (
             "forward_dynamics_derivatives",
             "(self, q, v, tau, r, r + N * N, r + 2 * N * N)",
-            all(&[a_by_q.as_slice(), a_by_v.as_slice(), by_tau.as_slice()]),
+            concatenate_results(&[a_by_q.as_slice(), a_by_v.as_slice(), by_tau.as_slice()]),
         ),
-        ("linearize", "(self, q, v, u, r, r + 4 * N * N)", all(&[by_state.as_slice(), by_input.as_slice()])),
-        ("frame_velocity", "(self, HAND, q, v, r)", all(&[m.frame_velocity(f, &q, &v).as_slice()])),
+        (
+            "linearize",
+            "(self, q, v, u, r, r + 4 * N * N)",
+            concatenate_results(&[by_state.as_slice(), by_input.as_slice()]),
+        ),
+        (
+            "frame_velocity",
+            "(self, HAND, q, v, r)",
+            concatenate_results(&[m.frame_velocity(f, &q, &v).as_slice()]),
+        ),
         (
             "frame_acceleration",
             "(self, HAND, q, v, a, r)",
-            all(&[m.frame_acceleration(f, &q, &v, &a).as_slice()]),
+            concatenate_results(&[m.frame_acceleration(f, &q, &v, &a).as_slice()]),
         ),
-        ("frame_jacobian", "(self, HAND, q, r)", all(&[m.frame_jacobian(f, &q).as_slice()])),
-        ("pull", "(self, q, v, u, r)", all(&[m.pull(&q, &v, &u).as_slice()])),
+        ("frame_jacobian", "(self, HAND, q, r)", concatenate_results(&[m.frame_jacobian(f, &q).as_slice()])),
+        ("pull", "(self, q, v, u, r)", concatenate_results(&[m.pull(&q, &v, &u).as_slice()])),
     ];
-    let step =
-        |next: (SVector<f64, { Juggler::NQ }>, SVector<f64, N>)| all(&[next.0.as_slice(), next.1.as_slice()]);
+    let step = |next: (SVector<f64, { Juggler::NQ }>, SVector<f64, N>)| {
+        concatenate_results(&[next.0.as_slice(), next.1.as_slice()])
+    };
     let rk4 = discrete::step(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
     let euler = discrete::step(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
     entries.push(("rk4_step", "(self, q, v, u, 0.02, r, r + NQ)", step(rk4)));
     entries.push(("semi_implicit_euler_step", "(self, q, v, u, 0.02, r, r + NQ)", step(euler)));
     let transition_matrices = |next: discrete::Transition<f64, { Juggler::NQ }, N, 1>| {
-        all(&[next.a::<{ 2 * N }>().as_slice(), next.b::<{ 2 * N }>().as_slice()])
+        concatenate_results(&[next.a::<{ 2 * N }>().as_slice(), next.b::<{ 2 * N }>().as_slice()])
     };
     let call = "(self, q, v, u, 0.02, next, next + NQ, r, r + 4 * N * N, by_h)";
     let rk4 = discrete::transition(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
@@ -139,10 +164,10 @@ fn speeds_are_the_same_in_c() {
          by_h[2 * N];\n    (void)(next);\n    (void)(by_h);\n",
     );
     let arrays = [("v", v), ("a", a), ("tau", tau), ("dv", dv)];
-    arrays.iter().for_each(|(name, numbers)| given.push_str(&array(name, numbers.as_slice())));
-    given.push_str(&array("q", q.as_slice()));
-    given.push_str(&array("there", there.as_slice()));
-    given.push_str(&array("u", u.as_slice()));
+    arrays.iter().for_each(|(name, numbers)| given.push_str(&format_c_array(name, numbers.as_slice())));
+    given.push_str(&format_c_array("q", q.as_slice()));
+    given.push_str(&format_c_array("there", there.as_slice()));
+    given.push_str(&format_c_array("u", u.as_slice()));
     let calls: Vec<(&str, String, Vec<f64>)> = entries
         .into_iter()
         .map(|(name, call, expected)| {
@@ -152,7 +177,7 @@ fn speeds_are_the_same_in_c() {
         .collect();
     let borrowed: Vec<(&str, &str, Vec<f64>)> =
         calls.iter().map(|(name, call, expected)| (*name, call.as_str(), expected.clone())).collect();
-    let found = printed(&borrowed, &given);
+    let found = compile_and_run(&borrowed, &given);
     assert_eq!(found.len(), borrowed.len());
     for ((name, _, expected), found) in borrowed.iter().zip(found) {
         let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));

@@ -26,13 +26,13 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
 }
 
 /// Returns a Dormand–Prince integrator with a tolerance of 1e-12.
-pub fn precisely() -> DormandPrince<f64> {
+pub fn precise_integrator() -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e-12, 1e-12)
 }
 
 /// Returns the complete elliptic integral of the first kind by the arithmetic–geometric mean:
 /// `K(k) = ½π / agm(1, √(1 − k²))`, for the argument `k²`.
-pub fn elliptic(k2: f64) -> f64 {
+pub fn elliptic_integral(k2: f64) -> f64 {
     let (mut a, mut b) = (1.0, (1.0 - k2).sqrt());
     while (a - b).abs() > 1e-15 * a {
         (a, b) = ((a + b) / 2.0, (a * b).sqrt());
@@ -42,15 +42,15 @@ pub fn elliptic(k2: f64) -> f64 {
 
 /// Returns the pose of a rotation about z and a displacement along z: one half of a Denavit–Hartenberg step.
 pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
-    placed(Vector3::z(), angle, d)
+    pose_about_axis(Vector3::z(), angle, d)
 }
 
 /// Returns a rotation about x and a displacement along it: the other half of a Denavit–Hartenberg step.
 pub fn about_x(angle: f64, a: f64) -> Isometry3<f64> {
-    placed(Vector3::x(), angle, a)
+    pose_about_axis(Vector3::x(), angle, a)
 }
 
-fn placed(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f64> {
+fn pose_about_axis(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f64> {
     let turn = Rotation3::new(axis * angle);
     Isometry3::from_parts(Translation3::from(axis * distance), turn.into())
 }

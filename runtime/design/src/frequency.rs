@@ -1,6 +1,6 @@
 //! Frequency response: data of Bode and Nyquist diagrams.
 
-use crate::matrices::{C, CMatrix, balance_system, complex};
+use crate::matrices::{C, CMatrix, balance_system, complex_matrix};
 use crate::{Error, StateSpace};
 use nalgebra::{DMatrix, Hessenberg};
 
@@ -25,14 +25,14 @@ impl FrequencyMap {
         if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
             return Err(Error::Range { what: "a frequency", value });
         }
-        let mut x = complex(&self.b);
-        self.factors(s)?.solve(&mut x);
-        Ok(complex(&self.c) * x + complex(&self.d))
+        let mut x = complex_matrix(&self.b);
+        self.factorise_at_frequency(s)?.solve_in_place(&mut x);
+        Ok(complex_matrix(&self.c) * x + complex_matrix(&self.d))
     }
 
     /// Factorises `s I − A` into row operations and a triangular matrix, by Gaussian elimination of a
     /// Hessenberg matrix.
-    fn factors(&self, s: C) -> Result<Factors, Error> {
+    fn factorise_at_frequency(&self, s: C) -> Result<Factors, Error> {
         let n = self.h.nrows();
         let mut u = CMatrix::from_fn(n, n, |i, j| {
             let entry = C::new(-self.h[(i, j)], 0.0);
@@ -64,12 +64,12 @@ impl FrequencyMap {
     /// # Errors
     ///
     /// [`Error::Singular`] at a pole.
-    pub(crate) fn sample(&self, s: C) -> Result<Sample, Error> {
-        let factors = self.factors(s)?;
-        let (mut x, mut y) = (complex(&self.b), complex(&self.c));
-        factors.solve(&mut x);
+    pub(crate) fn sample_channel(&self, s: C) -> Result<Sample, Error> {
+        let factors = self.factorise_at_frequency(s)?;
+        let (mut x, mut y) = (complex_matrix(&self.b), complex_matrix(&self.c));
+        factors.solve_in_place(&mut x);
         factors.solve_left(&mut y);
-        let value = (complex(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
+        let value = (complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
         // The entries of the matrices have rounding errors; this sums the effect of each on the value.
         let (size_x, size_y) = (x.norm(), y.norm());
         let through = size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x;
@@ -87,7 +87,7 @@ impl FrequencyMap {
         if !frequency.is_finite() {
             return Err(Error::Range { what: "a frequency", value: frequency });
         }
-        self.at(boundary(self.period, frequency))
+        self.at(stability_boundary_point(self.period, frequency))
     }
 }
 
@@ -101,7 +101,7 @@ struct Factors {
 
 impl Factors {
     /// Solves `M X = R` with the factorised matrix `M`; `X` replaces `R`.
-    fn solve(&self, x: &mut CMatrix) {
+    fn solve_in_place(&self, x: &mut CMatrix) {
         let n = self.u.nrows();
         for (k, (swapped, factor)) in self.steps.iter().enumerate() {
             if *swapped {
@@ -147,7 +147,7 @@ pub(crate) struct Sample {
 }
 
 /// Returns the point of the stability boundary for a frequency in rad/s: `iω`, or `e^{iωh}`.
-pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
+pub(crate) fn stability_boundary_point(period: Option<f64>, frequency: f64) -> C {
     match period {
         Some(h) => C::new(0.0, frequency * h).exp(),
         None => C::new(0.0, frequency),

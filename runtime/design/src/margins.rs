@@ -1,6 +1,6 @@
 //! Stability margins of a feedback loop: gain margins, phase margins and the distance from −1.
 
-use crate::frequency::{FrequencyMap, Sample, boundary};
+use crate::frequency::{FrequencyMap, Sample, stability_boundary_point};
 use crate::matrices::C;
 use crate::norms::Extreme;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
@@ -127,16 +127,16 @@ struct Loop {
 
 impl Loop {
     /// Returns the response and its derivative with respect to frequency; `None` at a pole.
-    fn sample(&self, frequency: f64) -> Option<Sample> {
-        let s = boundary(self.period, frequency);
+    fn sample_response(&self, frequency: f64) -> Option<Sample> {
+        let s = stability_boundary_point(self.period, frequency);
         let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
-        self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
+        self.map.sample_channel(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
     }
 
     /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
     /// rounding decides the sign are skipped.
-    fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
-        let value_at_frequency = |w: f64| self.sample(w).map_or(f64::NAN, |sample| f(sample.value));
+    fn sign_change_frequencies(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
+        let value_at_frequency = |w: f64| self.sample_response(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
@@ -175,9 +175,9 @@ impl StateSpace {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
         let (grid, samples): (Vec<f64>, Vec<Sample>) =
-            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample(w)?))).unzip();
+            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample_response(w)?))).unzip();
         let gain_margin_at_crossing = |frequency: f64| {
-            let Sample { value, error, .. } = open.sample(frequency)?;
+            let Sample { value, error, .. } = open.sample_response(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
             // rounding error.
             let is_certain = error <= CERTAIN * value.norm();
@@ -185,12 +185,12 @@ impl StateSpace {
             (is_certain && is_negative).then_some(GainMargin { factor: -1.0 / value.re, frequency })
         };
         let ends = [0.0, self.highest_frequency()];
-        let crossings = open.crossings(&grid, &samples, |x| x.im);
+        let crossings = open.sign_change_frequencies(&grid, &samples, |x| x.im);
         let all = ends[..1].iter().chain(&crossings).chain(&ends[1..]);
         let gain = all.filter(|w| w.is_finite()).filter_map(|w| gain_margin_at_crossing(*w)).collect();
-        let phase = open.crossings(&grid, &samples, |x| x.norm() - 1.0).into_iter();
+        let phase = open.sign_change_frequencies(&grid, &samples, |x| x.norm() - 1.0).into_iter();
         let phase = phase.filter_map(|frequency| {
-            let degrees = (-open.sample(frequency)?.value).arg().to_degrees();
+            let degrees = (-open.sample_response(frequency)?.value).arg().to_degrees();
             Some(PhaseMargin { degrees, frequency })
         });
         Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
@@ -226,9 +226,9 @@ impl StateSpace {
         // Near its minimum, the distance determines the frequency to half of the digits only. The sign
         // change of its derivative is more accurate.
         let distance_to_critical_point =
-            |w: f64| open.sample(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
+            |w: f64| open.sample_response(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
         let slope_of_squared_distance =
-            |w: f64| open.sample(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
+            |w: f64| open.sample_response(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
         let sharper = reach.into_iter().find_map(|reach| {
             let (low, high) = (frequency - reach, frequency + reach);

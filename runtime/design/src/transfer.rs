@@ -1,7 +1,7 @@
 //! Transfer functions of systems with one input and one output.
 
 use crate::matrices::C;
-use crate::polynomial::{factors, number};
+use crate::polynomial::{format_factors, format_number};
 use crate::{Error, Polynomial, StateSpace};
 use nalgebra::DMatrix;
 use std::fmt;
@@ -259,7 +259,7 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&numerator, &(&self.denominator * &other.numerator))? })
     }
 
-    fn variable(&self) -> &'static str {
+    fn variable_name(&self) -> &'static str {
         if self.period.is_some() { "z" } else { "s" }
     }
 }
@@ -292,7 +292,7 @@ impl Mul for &TransferFunction {
     }
 }
 
-fn fraction(above: &str, below: &str) -> String {
+fn format_fraction(above: &str, below: &str) -> String {
     let wrap_in_parentheses = |text: &str| {
         if text.contains(" + ") || text.contains(" - ") { format!("({text})") } else { text.to_owned() }
     };
@@ -305,8 +305,11 @@ fn fraction(above: &str, below: &str) -> String {
 
 impl fmt::Display for TransferFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let variable = self.variable();
-        f.write_str(&fraction(&self.numerator.written_in(variable), &self.denominator.written_in(variable)))
+        let variable = self.variable_name();
+        f.write_str(&format_fraction(
+            &self.numerator.written_in(variable),
+            &self.denominator.written_in(variable),
+        ))
     }
 }
 
@@ -336,8 +339,8 @@ impl fmt::Display for ZerosPolesGain {
     /// Writes the factors, with second-order factors for conjugate pairs: `2 (s + 1) / (s² + s + 2)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = if self.period.is_some() { "z" } else { "s" };
-        let (above, below) = (factors(&self.zeros, variable), factors(&self.poles, variable));
-        let gain = number(self.gain);
+        let (above, below) = (format_factors(&self.zeros, variable), format_factors(&self.poles, variable));
+        let gain = format_number(self.gain);
         match (above.as_str(), gain.as_str()) {
             ("", _) => f.write_str(&gain)?,
             (_, "1") => f.write_str(&above)?,

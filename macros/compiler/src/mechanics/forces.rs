@@ -1,7 +1,7 @@
 //! Generalized forces of the inputs by virtual work, `τ = Σ Sᵀ W`, summed over the link on which the wrench
 //! acts and all ancestors of this link.
 
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes, known_gradient};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
@@ -34,7 +34,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
     }
     for load in &model.loads {
         // The force at zero inputs belongs to the bias.
-        let alone = replace(load.force, &|s| {
+        let alone = substitute_symbols(load.force, &|s| {
             matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero())
         });
         let by_inputs = load.force - alone;

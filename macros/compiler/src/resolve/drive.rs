@@ -3,7 +3,9 @@
 
 use super::builder::Builder;
 use super::element_forces::Forces;
-use super::forces::{Law, dry_friction, inertance, input_load, report_unused_input, spring_law, value_load};
+use super::forces::{
+    Law, dry_friction, inertance_force, input_load, report_unused_input, spring_law, value_load,
+};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
@@ -14,7 +16,7 @@ use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Wrench};
 
 /// Returns the inputs among the force elements of a file, in the order of their entries in `u`. These entries
 /// follow those of the driven joints and precede all others.
-pub fn inputs(d: &Description) -> impl Iterator<Item = &Drive> {
+pub fn input_drives(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }
 
@@ -28,7 +30,7 @@ impl<'g> Builder<'_, 'g> {
 
     fn add_drive(&mut self, drive: &Drive, cx: &mut Diagnostics) {
         let mut terms: Vec<Coordinate> = Vec::new();
-        for (joint, weight) in drive.on.terms() {
+        for (joint, weight) in drive.on.weighted_joints() {
             match self.weighted_coordinate(&joint.text, *weight) {
                 Some(coordinate) => terms.push(coordinate),
                 None => report_unused_input(&drive.name, cx),
@@ -69,19 +71,19 @@ impl<'g> Builder<'_, 'g> {
             (DriveOn::Sum(_), _) => self.sum_stretch(terms),
             (on, _) => self.spatial_stretch(on, cx)?,
         };
-        let number_expression = |value| Expr::number(value, place);
+        let number_expression = |value| Expr::number_at(value, place);
         match drive.law {
             DriveLaw::Spring { stiffness, free } => {
                 spring_law(self, stretch, &Law::Linear(&number_expression(stiffness)), g.num(free), cx)
             }
             DriveLaw::Slack { stiffness, range: [low, high] } => {
-                let short = (stretch.value - g.num(low)).extreme(Extreme::Min, g.zero());
-                let long = (stretch.value - g.num(high)).extreme(Extreme::Max, g.zero());
+                let short = (stretch.value - g.num(low)).minimum_or_maximum(Extreme::Min, g.zero());
+                let long = (stretch.value - g.num(high)).minimum_or_maximum(Extreme::Max, g.zero());
                 Some(Forces::of_potentials([g.num(stiffness) * 0.5 * (short.square() + long.square())]))
             }
             DriveLaw::Damper(damping) => {
-                let damping = self.scope.scalar(&number_expression(damping), cx)?;
-                Some(Forces::resisting(stretch.rate, damping * stretch.rate))
+                let damping = self.scope.resolve_scalar(&number_expression(damping), cx)?;
+                Some(Forces::resisting_force(stretch.rate, damping * stretch.rate))
             }
             DriveLaw::Friction(force) => dry_friction(
                 self,
@@ -90,7 +92,7 @@ impl<'g> Builder<'_, 'g> {
                 place,
                 cx,
             ),
-            DriveLaw::Inerter(value) => inertance(self, stretch.rate, &number_expression(value), cx),
+            DriveLaw::Inerter(value) => inertance_force(self, stretch.rate, &number_expression(value), cx),
             DriveLaw::Push(force) => value_load(self, stretch.rate, g.num(force), place, cx),
             DriveLaw::Input(_) => input_load(self, &drive.name.text, stretch.rate),
         }
@@ -110,14 +112,14 @@ impl<'g> Builder<'_, 'g> {
     /// relative to the body on which the reaction acts, if there is one.
     fn wrench_stretch(&self, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let g = self.scope.graph;
-        let on = self.scope.place(&wrench.on, cx)?;
+        let on = self.scope.resolve_placement(&wrench.on, cx)?;
         let against = match &wrench.against {
-            Some(against) => Some(self.scope.place(against, cx)?),
+            Some(against) => Some(self.scope.resolve_placement(against, cx)?),
             None => None,
         };
         let axes = against.as_ref().unwrap_or(&on);
         let [force, torque] = [wrench.force, wrench.torque]
-            .map(|vector| axes.pose.rotation.to_parent(Vec3::numbers(g, vector)));
+            .map(|vector| axes.pose.rotation.to_parent(Vec3::from_numbers(g, vector)));
         let kinematics = &self.scope.kinematics;
         let rate = match &against {
             None => on.link.map_or(g.zero(), |link| {
@@ -131,7 +133,7 @@ impl<'g> Builder<'_, 'g> {
                 let path = kinematics.resolve(&between, against.link, zero).dot(force);
                 let turning = kinematics.angular_velocity_in(on.link, against.link, g);
                 let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
-                time_derivative(self.model.space(), path) + turning
+                time_derivative(self.model.configuration_space(), path) + turning
             }
         };
         Some(Stretch { value: g.zero(), rate, square: g.zero(), signed: false })

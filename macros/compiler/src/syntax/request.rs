@@ -57,7 +57,7 @@ macro_rules! words {
             pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
 
             /// Returns the trait of the runtime that reports a missing option.
-            pub const fn reason(self) -> &'static str {
+            pub const fn trait_for_missing_option(self) -> &'static str {
                 match self {
                     $(Word::$variant => concat!("AsksFor", stringify!($variant)),)+
                 }
@@ -85,7 +85,7 @@ macro_rules! words {
 
         impl Requests {
             /// Returns whether an option is requested.
-            pub fn has(&self, word: Word) -> bool {
+            pub fn has_option(&self, word: Word) -> bool {
                 match word {
                     $(Word::$variant => self.$word,)+
                 }

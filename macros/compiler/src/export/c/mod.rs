@@ -22,11 +22,11 @@ mod support;
 mod tables;
 
 pub(super) use batch::{Array, Batch};
-pub(super) use docs::{safe, without_links, wrapped};
-pub(super) use function::mentions;
-pub(super) use names::letters;
-pub use names::{capitals, identifier, prefix, prefix_identifier};
+pub(super) use docs::{comment_safe_text, without_links, wrap_paragraph};
+pub(super) use function::contains_word;
+pub(super) use names::replace_invalid_characters;
+pub use names::{identifier_from_name, prefix_identifier, preprocessor_names, snake_case_prefix};
 pub(super) use scalar::{in_single_precision, number_length};
-pub(super) use signatures::{CodeParts, Signatures, parts};
+pub(super) use signatures::{CodeParts, Signatures, code_parts};
 pub(super) use source::bodies_without_calls;
-pub use source::{Files, Options, Unfit, write};
+pub use source::{Files, Options, Unfit, export_c_source};

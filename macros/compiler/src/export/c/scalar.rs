@@ -16,7 +16,7 @@ const WORDS: &[(&str, &str)] = &[
 ];
 
 /// Returns the C literal of a number.
-pub fn constant(c: f64) -> String {
+pub fn numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
@@ -36,15 +36,15 @@ pub fn in_single_precision(code: &str) -> String {
         };
         let (word, after) = rest.split_at(length);
         match first {
-            c if c.is_ascii_digit() => out.push_str(&number(word)),
-            _ => out.push_str(&self::word(word, after)),
+            c if c.is_ascii_digit() => out.push_str(&single_precision_literal(word)),
+            _ => out.push_str(&self::word_in_single_precision(word, after)),
         }
         rest = after;
     }
     out
 }
 
-fn word(word: &str, after: &str) -> String {
+fn word_in_single_precision(word: &str, after: &str) -> String {
     if let Some((_, single)) = WORDS.iter().find(|(double, _)| *double == word) {
         return (*single).to_string();
     }
@@ -64,7 +64,7 @@ pub fn number_length(text: &str) -> usize {
 }
 
 /// Converts a numeric literal to single precision; integers do not change.
-fn number(text: &str) -> String {
+fn single_precision_literal(text: &str) -> String {
     let is_whole = !text.contains(['.', 'e', 'E']) || text.starts_with("0x");
     match text.parse::<f64>() {
         Ok(x) if !is_whole && (x as f32).is_finite() => format!("{:?}f", x as f32),

@@ -55,20 +55,20 @@ impl Support {
     }
 
     /// Returns the helper for sines and cosines of one or four angles, and marks it as needed.
-    pub fn angles(&mut self, count: usize) -> &'static str {
+    pub fn sine_cosine_function(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
         if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
     /// Returns the helper for signs, and marks it as needed.
-    pub fn signum(&mut self) -> String {
+    pub fn sign_function(&mut self) -> String {
         self.signum = true;
         "lw_signum".to_string()
     }
 
     /// Returns the function for a quantity of the standard atmosphere.
-    pub fn atmosphere(&mut self, name: &str) -> String {
+    pub fn atmosphere_function(&mut self, name: &str) -> String {
         if let Some(at) = QUANTITIES.iter().position(|(known, _)| *known == name) {
             self.atmosphere[at] = true;
         }
@@ -76,7 +76,7 @@ impl Support {
     }
 
     /// Returns the required headers in addition to `math.h`.
-    pub fn includes(self) -> &'static [&'static str] {
+    pub fn required_headers(self) -> &'static [&'static str] {
         let exact = self.one_angle && !self.single;
         match (exact, self.balls || self.motions || exact) {
             (true, _) => &["float.h", "stdint.h", "string.h"],
@@ -86,7 +86,7 @@ impl Support {
     }
 
     /// Returns the definitions for a mechanism with `nv` velocities and this prefix of names.
-    pub fn text(self, nv: usize, prefix: &str) -> String {
+    pub fn support_definitions(self, nv: usize, prefix: &str) -> String {
         let angles = match self.single {
             true => {
                 [include_str!("templates/single_angles.c"), include_str!("templates/four_single_angles.c")]

@@ -9,9 +9,9 @@ use super::law::{Force, OTHER_INPUTS, read_force};
 use super::reader::Reader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
-use crate::import::element::{Node, elements, name, place};
+use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::imported::Placed;
-use crate::import::robot::unused;
+use crate::import::robot::unused_name;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -44,8 +44,8 @@ type Efforts = BTreeMap<String, Option<Placed<f64>>>;
 impl<'a> Reader<'a> {
     /// Reads all actuators.
     pub(super) fn actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let groups = elements(root).filter(|node| node.tag_name().name() == "actuator");
-        let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
+        let groups = child_elements(root).filter(|node| node.tag_name().name() == "actuator");
+        let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
         let off = self.options.inputs != InputOption::Actuators || !self.settings.actuation;
         if off && !nodes.is_empty() {
             self.left_out.push(format!("{} actuators", nodes.len()));
@@ -82,7 +82,7 @@ impl<'a> Reader<'a> {
             // Unknown elements are reported by the schema check.
             if ALL.contains(&kind) {
                 let message = format!("actuator `<{kind}>` is not supported");
-                cx.error(&place(node, cx), message, |d| d.help(OTHER_INPUTS));
+                cx.report_error(&element_position(node, cx), message, |d| d.add_help(OTHER_INPUTS));
             }
             return;
         }
@@ -90,15 +90,17 @@ impl<'a> Reader<'a> {
         let Some(force) = read_force(any, &classes, cx) else { return };
         let Some((on, turns)) = self.transmission(any, tendons, force.bias[1] != 0.0, cx) else { return };
         if let Some(found) = any.nonzero("delay", cx) {
-            cx.error(&found.place, "`delay` of an actuator is not supported", |d| d.help(OTHER_INPUTS));
+            cx.report_error(&found.place, "`delay` of an actuator is not supported", |d| {
+                d.add_help(OTHER_INPUTS)
+            });
         }
-        let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
+        let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
-            let joint = on.terms().first().map(|(joint, _)| joint.text.as_str());
+            let joint = on.weighted_joints().first().map(|(joint, _)| joint.text.as_str());
             let target = joint.or(any.text("site")).unwrap_or("motor");
             Name {
-                text: unused(&format!("{target}_{kind}"), |name| names.contains(name)),
-                place: place(node, cx),
+                text: unused_name(&format!("{target}_{kind}"), |name| names.contains(name)),
+                place: element_position(node, cx),
             }
         });
         names.insert(named.text.clone());
@@ -107,7 +109,7 @@ impl<'a> Reader<'a> {
         let mut drive = |on: DriveOn, law: DriveLaw| {
             self.robot.drives.push(Drive { name: named.clone(), on, law });
         };
-        drive(on.scaled(force.gain), DriveLaw::Input(unit));
+        drive(on.scaled_target(force.gain), DriveLaw::Input(unit));
         let [constant, stiffness, damping] = force.bias;
         // The length of an actuator on a site is zero.
         let stiffness = if matches!(on, DriveOn::Wrench(_)) { 0.0 } else { stiffness };
@@ -135,15 +137,15 @@ impl<'a> Reader<'a> {
             [_] | ["slidersite", "cranksite"] => {}
             [] => {
                 let message = "an actuator without a target";
-                cx.error(&place(element.node, cx), message, |d| {
-                    d.help("expected `joint`, `tendon` or `site`").help(OTHER_INPUTS)
+                cx.report_error(&element_position(element.node, cx), message, |d| {
+                    d.add_help("expected `joint`, `tendon` or `site`").add_help(OTHER_INPUTS)
                 });
                 return None;
             }
             several => {
                 let message =
                     format!("an actuator has one target, but here are `{}`", several.join("` and `"));
-                cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
+                cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
                 return None;
             }
         }
@@ -162,10 +164,13 @@ impl<'a> Reader<'a> {
             return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
         }
         if let Some(tendon) = element.name("tendon", cx) {
-            return Some((Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled(gear), false));
+            return Some((
+                Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled_target(gear),
+                false,
+            ));
         }
         let message = "an actuator on no joint, tendon or site is not supported";
-        cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
+        cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
         None
     }
 
@@ -182,11 +187,11 @@ impl<'a> Reader<'a> {
         let Some((_, at)) = laws.first() else { return };
         if element.node.has_attribute("site") {
             let message = "`damping` and `armature` of an actuator on a site are not supported";
-            cx.error(at, message, |d| d.help("MuJoCo has them only on joints and tendons"));
+            cx.report_error(at, message, |d| d.add_help("MuJoCo has them only on joints and tendons"));
             return;
         }
         if let Some(rotor) = rotor.filter(|rotor| rotor.value < 0.0) {
-            cx.error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
+            cx.report_error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
         }
         let Some((on, _)) = self.transmission(element, tendons, false, cx) else { return };
         let target = ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.text(target));
@@ -253,13 +258,13 @@ impl<'a> Reader<'a> {
     fn joints_below(&self, on: &DriveOn) -> Vec<String> {
         let ends = match on {
             DriveOn::Sum(_) => Vec::new(),
-            DriveOn::Length(e) => e.parts(),
+            DriveOn::Length(e) => e.subexpressions(),
             DriveOn::Wrench(wrench) => {
-                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::parts).collect()
+                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::subexpressions).collect()
             }
         };
         let mut found = Vec::new();
-        for mut body in ends.into_iter().filter_map(Expr::name) {
+        for mut body in ends.into_iter().filter_map(Expr::as_name) {
             while let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.text == body) {
                 found.push(joint.name.text.clone());
                 body = &joint.parent.text;

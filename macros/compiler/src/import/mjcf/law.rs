@@ -6,8 +6,8 @@
 //! by `<general>` with a constant gain. `<general>` modifies the record of its class.
 
 use super::defaults::{Element, some};
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, number};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, read_number_attribute};
 use crate::import::imported::Placed;
 
 /// Force of an actuator: `gain · u + bias · (1, length, rate)`.
@@ -61,7 +61,7 @@ pub(super) fn read_force<'a>(
     let record = records.last().copied().unwrap_or(PLAIN);
     let node = actuator.node;
     let mut refuse = |attribute: &str, message: String, help: &'static str| {
-        cx.error(&actuator.place(attribute, cx), message, |d| d.help(help));
+        cx.report_error(&actuator.place(attribute, cx), message, |d| d.add_help(help));
     };
     let [g0, g1, g2, ..] = record.gain;
     let [b0, b1, b2, ..] = record.bias;
@@ -69,7 +69,7 @@ pub(super) fn read_force<'a>(
     if record.dynamics != "none" {
         let (attribute, message) = match node.has_attribute("timeconst") {
             true => ("timeconst", "`timeconst` is not supported".to_string()),
-            false => ("dyntype", format!("`dyntype` {} is not supported", quote(record.dynamics))),
+            false => ("dyntype", format!("`dyntype` {} is not supported", quote_word(record.dynamics))),
         };
         refuse(attribute, message, OTHER_INPUTS);
         good = false;
@@ -79,7 +79,7 @@ pub(super) fn read_force<'a>(
         ("biastype", record.bias_kind, ["none", "affine"]),
     ] {
         if !known.contains(&word) {
-            refuse(attribute, format!("`{attribute}` {} is not supported", quote(word)), OTHER_INPUTS);
+            refuse(attribute, format!("`{attribute}` {} is not supported", quote_word(word)), OTHER_INPUTS);
             good = false;
         }
     }
@@ -104,7 +104,7 @@ fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     };
     let usual = records.iter().rev().find(readable).copied().unwrap_or(PLAIN);
     let Some(record) = records.last_mut() else { return };
-    let mut said = |attribute: &str| number(node, attribute, cx).map(|found| found.value);
+    let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
     let law = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
         written: kind,
         dynamics,

@@ -8,9 +8,11 @@
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
 use super::settings::Settings;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, name, place};
-use crate::import::pose::{Matrix, Vector, add, apply, cross, dot, length, of_quaternion, scale, transpose};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
+use crate::import::pose::{
+    Matrix, Vector, add, cross, dot, length, matrix_times_vector, of_quaternion, scale_vector, transpose,
+};
 use crate::syntax::{Mesh, Name};
 use std::collections::BTreeMap;
 use std::fs;
@@ -46,7 +48,8 @@ impl<'a> Meshes<'a> {
         defaults: &Defaults<'a>,
         cx: &mut Cx<'_>,
     ) -> Meshes<'a> {
-        let assets = elements(root).filter(|node| node.tag_name().name() == "asset").flat_map(elements);
+        let assets =
+            child_elements(root).filter(|node| node.tag_name().name() == "asset").flat_map(child_elements);
         let mut known = BTreeMap::new();
         for node in assets.filter(|node| node.tag_name().name() == "mesh") {
             let element = defaults.element(node, &["mesh"], 0, cx);
@@ -67,7 +70,11 @@ impl<'a> Meshes<'a> {
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
     pub(super) fn of_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
         let Some(mesh) = shape.name("mesh", cx) else {
-            cx.error(&place(shape.node, cx), "a shape of type `mesh` without `mesh`", |d| d);
+            cx.report_error(
+                &element_position(shape.node, cx),
+                "a shape of type `mesh` without `mesh`",
+                |d| d,
+            );
             return None;
         };
         if let Some(known) = self.read.get(&mesh.text) {
@@ -75,8 +82,8 @@ impl<'a> Meshes<'a> {
         }
         let Some(element) = self.known.get(&mesh.text).cloned() else {
             let known = self.known.keys().map(String::as_str);
-            cx.error(&mesh.place, format!("unknown mesh {}", quote(&mesh.text)), |d| {
-                d.suggest(&mesh.text, known)
+            cx.report_error(&mesh.place, format!("unknown mesh {}", quote_word(&mesh.text)), |d| {
+                d.suggest_name(&mesh.text, known)
             });
             return None;
         };
@@ -101,19 +108,21 @@ impl<'a> Meshes<'a> {
             None | Some("legacy") => false,
             Some("exact") => true,
             Some(other) => {
-                let message = format!("`inertia` {} of a mesh is not supported", quote(other));
+                let message = format!("`inertia` {} of a mesh is not supported", quote_word(other));
                 let help =
                     "expected `legacy` or `exact`, or an `<inertial>` in the bodies that have the mesh";
-                cx.error(&element.place("inertia", cx), message, |d| d.help(help));
+                cx.report_error(&element.place("inertia", cx), message, |d| d.add_help(help));
                 return None;
             }
         };
         if element.node.attribute("file").is_none() {
             let message = "the mass of a mesh without `file` is not computed";
-            cx.error(&place(element.node, cx), message, |d| d.help(super::geometry::NEEDS_INERTIAL));
+            cx.report_error(&element_position(element.node, cx), message, |d| {
+                d.add_help(super::geometry::NEEDS_INERTIAL)
+            });
             return None;
         }
-        let file = name(element.node, "file", cx)?;
+        let file = read_name_attribute(element.node, "file", cx)?;
         let stripped = Path::new(&file.text).file_name().filter(|_| self.strips);
         let path = self.folder.join(stripped.unwrap_or(file.text.as_ref()));
         let mut triangles = read(&path, &file, cx)?;
@@ -121,8 +130,8 @@ impl<'a> Meshes<'a> {
         self.transform(element, &mut triangles, cx);
         let found = solid(&triangles, exact);
         if found.is_none() {
-            let message = format!("mesh {} has no volume", quote(&file.text));
-            cx.error(&file.place, message, |d| d.help(super::geometry::NEEDS_INERTIAL));
+            let message = format!("mesh {} has no volume", quote_word(&file.text));
+            cx.report_error(&file.place, message, |d| d.add_help(super::geometry::NEEDS_INERTIAL));
         }
         found
     }
@@ -135,7 +144,7 @@ impl<'a> Meshes<'a> {
         let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
         let axes: Matrix = transpose(&of_quaternion(quat.map(|x| x / size)));
         for corner in triangles.iter_mut().flatten() {
-            let turned = apply(&axes, add(*corner, scale(from, -1.0)));
+            let turned = matrix_times_vector(&axes, add(*corner, scale_vector(from, -1.0)));
             *corner = std::array::from_fn(|k| turned[k] * factors[k]);
         }
         // A reflection reverses the orientation of the triangles.
@@ -150,28 +159,28 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     let count = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
-        let one = length(cross(add(*b, scale(*a, -1.0)), add(*c, scale(*a, -1.0)))) / 2.0;
+        let one = length(cross(add(*b, scale_vector(*a, -1.0)), add(*c, scale_vector(*a, -1.0)))) / 2.0;
         area += one;
-        middle = add(middle, scale(add(add(*a, *b), *c), one / 3.0));
+        middle = add(middle, scale_vector(add(add(*a, *b), *c), one / 3.0));
     }
     if area < NOTHING || !area.is_finite() {
         return None;
     }
-    let middle = scale(middle, 1.0 / area);
+    let middle = scale_vector(middle, 1.0 / area);
     let (mut volume, mut com) = (0.0, [0.0; 3]);
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| add(corner, scale(middle, -1.0)));
+        let [a, b, c] = triangle.map(|corner| add(corner, scale_vector(middle, -1.0)));
         let one = count(dot(a, cross(b, c)) / 6.0);
         volume += one;
-        com = add(com, scale(add(add(a, b), c), one / 4.0));
+        com = add(com, scale_vector(add(add(a, b), c), one / 4.0));
     }
     if volume < NOTHING || !volume.is_finite() {
         return None;
     }
-    let com = add(middle, scale(com, 1.0 / volume));
+    let com = add(middle, scale_vector(com, 1.0 / volume));
     let (mut mass, mut products) = (0.0, [[0.0; 3]; 3]);
     for triangle in triangles {
-        let corners = triangle.map(|corner| add(corner, scale(com, -1.0)));
+        let corners = triangle.map(|corner| add(corner, scale_vector(com, -1.0)));
         let [a, b, c] = corners;
         let one = count(dot(a, cross(b, c)) / 6.0);
         mass += one;
@@ -194,13 +203,13 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
 impl Mass {
     /// Rescales the body to another mass.
     pub(super) fn of_mass(&self, mass: f64) -> Mass {
-        Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale(row, mass / self.mass)) }
+        Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
     }
 }
 
 /// Reads a mesh. Errors are reported at the name of the mesh.
 fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
-    let shown = quote(&name.text);
+    let shown = quote_word(&name.text);
     let found =
         read_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}")).and_then(|bytes| {
             let end =
@@ -220,11 +229,11 @@ fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
     match found {
         Ok(triangles) => Some(triangles),
         Err(message) => {
-            cx.error(&name.place, message, |d| match path.is_file() {
+            cx.report_error(&name.place, message, |d| match path.is_file() {
                 true => d,
-                false => {
-                    d.help(format!("looked for `{}`", path.display())).help(super::geometry::NEEDS_INERTIAL)
-                }
+                false => d
+                    .add_help(format!("looked for `{}`", path.display()))
+                    .add_help(super::geometry::NEEDS_INERTIAL),
             });
             None
         }
@@ -320,7 +329,7 @@ fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
 fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
-            let across = |a: &Vector, b: &Vector| length(add(*a, scale(*b, -1.0)));
+            let across = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
             if across(a, c) < across(b, d) {
                 triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
             } else {

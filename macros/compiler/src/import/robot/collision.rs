@@ -17,7 +17,7 @@ pub(in crate::import) struct FileCollision {
 impl FileCollision {
     /// Attaches the shape to the link with this name.
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Collision {
-        let (at, rotated) = (self.origin.position(), self.origin.rotated());
+        let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
         Collision { on, shape: self.shape, place: self.place.clone() }
     }

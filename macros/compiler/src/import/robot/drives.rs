@@ -2,14 +2,14 @@
 //! coordinate contributes a constant to the length of an element.
 
 use super::joint::FileJoint;
-use super::motion::{Motion, frozen};
+use super::motion::{Motion, locked_coordinates};
 use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
 pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
-    let frozen = frozen(joints);
+    let frozen = locked_coordinates(joints);
     drives.into_iter().filter_map(|drive| without_locked(drive, &frozen)).collect()
 }
 

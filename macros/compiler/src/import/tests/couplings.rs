@@ -1,6 +1,6 @@
 //! Tests of actuators and couplings of joints in MJCF files.
 
-use super::mjcf::{check_model, mjcf};
+use super::mjcf::{check_model, mjcf_options};
 use super::*;
 use crate::syntax::Key;
 
@@ -171,7 +171,8 @@ fn defaults_of_actuators_are_one_record() {
              <actuator>{actuator} joint='j'/></actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let imported =
+            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
         let laws = imported.drives.iter().map(|drive| match (&drive.on, drive.law) {
             (DriveOn::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
             (_, DriveLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
@@ -280,7 +281,7 @@ fn rotors_of_actuators() {
          m: input in N·m on 3 j",
     );
     check_with(
-        &FileOptions { inputs: InputOption::Joints, ..mjcf() },
+        &FileOptions { inputs: InputOption::Joints, ..mjcf_options() },
         &format!("<mujoco>\n{model}\n</mujoco>"),
         "the root is the ground
          body b
@@ -325,8 +326,10 @@ fn efforts_of_several_actuators() {
              <tendon><fixed name='t'><joint joint='j' coef='-2'/></fixed></tendon><actuator>{actuators}</actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
-        let effort = imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal());
+        let imported =
+            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let effort =
+            imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal_number());
         assert_eq!(effort, expected, "{joint} {actuators}");
     }
 }

@@ -3,7 +3,10 @@
 use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, children, elements, number, numbers, place, required};
+use crate::import::element::{
+    Node, check_attributes, child_elements, element_position, known_children, read_number_attribute,
+    read_numbers_attribute, required_child,
+};
 use crate::import::imported::Placed;
 use crate::import::robot::FileCollision;
 use crate::syntax::Shape;
@@ -12,16 +15,16 @@ use crate::syntax::Shape;
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link.
-pub(super) fn read(link: Node<'_>, cx: &mut Cx<'_>) -> Vec<FileCollision> {
-    let parts = elements(link).filter(|node| node.tag_name().name() == "collision");
+pub(super) fn read_collisions(link: Node<'_>, cx: &mut Cx<'_>) -> Vec<FileCollision> {
+    let parts = child_elements(link).filter(|node| node.tag_name().name() == "collision");
     parts.filter_map(|part| read_part(part, cx)).collect()
 }
 
 fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
-    let [origin, geometry] = children(node, ["origin", "geometry"], cx);
+    let [origin, geometry] = known_children(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
-    let geometry = required(geometry, node, "geometry", &[], cx)?;
-    let [sphere, cuboid, cylinder, capsule, mesh] = children(geometry, SHAPES, cx);
+    let geometry = required_child(geometry, node, "geometry", &[], cx)?;
+    let [sphere, cuboid, cylinder, capsule, mesh] = known_children(geometry, SHAPES, cx);
     report_several(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
@@ -30,9 +33,9 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
         }
         (_, Some(cuboid), ..) => {
             check_attributes(cuboid, &["size"], &[], cx);
-            let size: Placed<[f64; 3]> = numbers(cuboid, "size", cx)?;
+            let size: Placed<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
-                positive(x, &size.place, cx)?;
+                check_positive(x, &size.place, cx)?;
             }
             Shape::Cuboid(size.value)
         }
@@ -49,30 +52,30 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
         _ => {
             let message = "collision geometry without a supported shape";
             let help = "supported are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
-            cx.error(&place(geometry, cx), message.to_string(), |d| d.help(help));
+            cx.report_error(&element_position(geometry, cx), message.to_string(), |d| d.add_help(help));
             return None;
         }
     };
-    Some(FileCollision { origin, shape, place: place(node, cx) })
+    Some(FileCollision { origin, shape, place: element_position(node, cx) })
 }
 
 /// Reports the shapes of a geometry after the first one.
 fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     if let Some(second) = shapes.iter().flatten().nth(1) {
         let help = "write a `<collision>` for each shape";
-        cx.error(&place(*second, cx), "second shape of one geometry", |d| d.help(help));
+        cx.report_error(&element_position(*second, cx), "second shape of one geometry", |d| d.add_help(help));
     }
 }
 
 fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
-    let read = number(node, attribute, cx)?;
-    positive(read.value, &read.place, cx)
+    let read = read_number_attribute(node, attribute, cx)?;
+    check_positive(read.value, &read.place, cx)
 }
 
-fn positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
+fn check_positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
     if x <= 0.0 {
         let help = "sizes of collision geometry are lengths in m";
-        cx.error(place, format!("this length must be positive, but it is {x}"), |d| d.help(help));
+        cx.report_error(place, format!("this length must be positive, but it is {x}"), |d| d.add_help(help));
         return None;
     }
     Some(x)

@@ -10,7 +10,7 @@ use crate::syntax::{self, Collision, ExprKind, Name, Shape};
 /// Returns the index of the selected shape of a link, if one is selected.
 fn shape_index(e: &syntax::Expr) -> Option<usize> {
     match &e.kind {
-        ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal()? as usize),
+        ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal_number()? as usize),
         _ => None,
     }
 }
@@ -25,10 +25,10 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Vec<Surface<'g>>> {
         let known = &self.description.collisions;
         let frame = match link {
-            Some(link) => Some(self.scope.place(link, cx)?),
+            Some(link) => Some(self.scope.resolve_placement(link, cx)?),
             None => None,
         };
-        let name = link.and_then(|link| link.name());
+        let name = link.and_then(|link| link.as_name());
         let parts: Vec<&Collision> =
             known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
         let parts = match shape_index(e) {
@@ -37,8 +37,8 @@ impl<'g> Builder<'_, 'g> {
         };
         if parts.is_empty() {
             let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
-            cx.error(e.place.clone(), format!("{whose} has no collision geometry"))
-                .help("only links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
+            cx.report_error(e.place.clone(), format!("{whose} has no collision geometry"))
+                .add_help("only links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
             return None;
         }
         let mut meshes: Vec<&Name> =
@@ -47,8 +47,8 @@ impl<'g> Builder<'_, 'g> {
         if !meshes.is_empty() {
             let names: Vec<String> = meshes.iter().map(|name| format!("`{}`", name.text)).collect();
             let message = format!("the collision geometry of {} is a mesh", names.join(", "));
-            cx.error(e.place.clone(), message)
-                .help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
+            cx.report_error(e.place.clone(), message)
+                .add_help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
             return None;
         }
         let surfaces = parts.into_iter().map(|part| self.collision(part, frame.as_ref(), &e.place, cx));
@@ -68,11 +68,11 @@ impl<'g> Builder<'_, 'g> {
             Some(frame) => frame.clone(),
             None => {
                 let link = ExprKind::Name(part.on.body.text.clone());
-                self.scope.place(&syntax::Expr { kind: link, place: place.clone() }, cx)?
+                self.scope.resolve_placement(&syntax::Expr { kind: link, place: place.clone() }, cx)?
             }
         };
-        let pose = frame.pose.then(&self.endpoint(&part.on, cx)?);
-        let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
+        let pose = frame.pose.compose_with(&self.frame_of_endpoint(&part.on, cx)?);
+        let (z, length) = (Vec3::coordinate_axis(g, 2), |x: f64| g.num(x));
         let form = match part.shape {
             Shape::Sphere(radius) => SurfaceForm::Sphere(length(radius)),
             Shape::Cuboid(edges) => SurfaceForm::Cuboid(edges.map(length)),

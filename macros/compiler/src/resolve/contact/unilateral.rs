@@ -3,7 +3,7 @@
 use super::force::check_relative_rotation;
 use super::surface::{Surface, SurfaceForm};
 use super::terrain::Terrain;
-use super::{PointContact, SurfacePair, perpendicular, sphere_contact, support_point};
+use super::{PointContact, SurfacePair, perpendicular_directions, sphere_contact, support_point};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
@@ -14,7 +14,7 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::is_power_used;
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
-use crate::syntax::contact::collision;
+use crate::syntax::contact::collision_link;
 use crate::syntax::{self, ExprKind, GROUND, WrittenArguments};
 
 /// Maximum number of contact points of a mechanism: the generated code grows with their number.
@@ -79,8 +79,11 @@ impl<'g> Builder<'_, 'g> {
         let count = self.model.contacts.len();
         if count > MAX_CONTACT_POINTS {
             let place = description.contacts.first().map_or(&description.name.place, |c| &c.name.place);
-            cx.error(place.clone(), format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"))
-                .help("each adds code: use fewer contact points, or divide the mechanism");
+            cx.report_error(
+                place.clone(),
+                format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"),
+            )
+            .add_help("each adds code: use fewer contact points, or divide the mechanism");
         }
     }
 
@@ -99,8 +102,8 @@ impl<'g> Builder<'_, 'g> {
         if let Some(None) = soft {
             return;
         }
-        let place = contact.first.place.join(&contact.second.place);
-        let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
+        let place = contact.first.place.extend_to(&contact.second.place);
+        let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
         let mut points: Vec<CandidatePoint<'g>> = Vec::new();
         for first in &firsts {
             for second in &seconds {
@@ -120,8 +123,8 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         if separable.is_empty() || (separable.len() < points.len() && !whole && !contact.of_file) {
-            cx.error(place, "these surfaces cannot move relative to each other")
-                .help("a contact is between surfaces of bodies that move relative to each other");
+            cx.report_error(place, "these surfaces cannot move relative to each other")
+                .add_help("a contact is between surfaces of bodies that move relative to each other");
             return;
         }
         check_relative_rotation(contact, &separable, cx);
@@ -167,7 +170,8 @@ impl<'g> Builder<'_, 'g> {
             cx,
         )?;
         // Equals the velocity from the twists of links, with fewer terms to differentiate.
-        let [x, y, z] = motion_rates(self.model.space(), &pair.center.value.0, false)[..] else {
+        let [x, y, z] = motion_rates(self.model.configuration_space(), &pair.center.value.0, false)[..]
+        else {
             return None;
         };
         pair.center.rate = Vec3([x, y, z]);
@@ -181,7 +185,8 @@ impl<'g> Builder<'_, 'g> {
                 true => format!("{CYLINDER_HELP}; {SUPPORTED_PAIRS}"),
                 false => SUPPORTED_PAIRS.to_string(),
             };
-            cx.error(place.clone(), "the contact point of these surfaces is not supported").help(help);
+            cx.report_error(place.clone(), "the contact point of these surfaces is not supported")
+                .add_help(help);
             return None;
         }
         let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
@@ -277,13 +282,13 @@ impl<'g> Builder<'_, 'g> {
         let restitution = self.restitution(given, name, cx);
         let (friction, stiction) = (friction?, stiction?);
         if let Some(e) = given.get(Key::StaticFriction).filter(|_| given.get(Key::Friction).is_some()) {
-            match (friction.value(), stiction.value()) {
+            match (friction.constant_value(), stiction.constant_value()) {
                 (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
                         true => format!("`{name}` has stiction, but no sliding friction"),
                         false => format!("stiction, {static_value}, is less than friction, {kinetic}"),
                     };
-                    cx.error(e.place.clone(), message).help(
+                    cx.report_error(e.place.clone(), message).add_help(
                         "`friction` is the coefficient while surfaces slide, `stiction` the larger one at \
                          rest",
                     );
@@ -291,7 +296,7 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => {
                     let quantity = || format!("the friction of `{name}` and its stiction");
-                    self.scope.require(Rule::Order, quantity, &[friction, stiction]);
+                    self.scope.record_requirement(Rule::Order, quantity, &[friction, stiction]);
                 }
             }
         }
@@ -312,7 +317,7 @@ impl<'g> Builder<'_, 'g> {
         name: &str,
         cx: &mut Diagnostics,
     ) -> (Option<Expr<'g>>, bool) {
-        let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution).unzip();
+        let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution_coefficient).unzip();
         let value = self.coefficient(e, "restitution", Rule::Fraction, name, cx);
         (value, of_impulses == Some(true))
     }
@@ -327,22 +332,22 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Expr<'g>> {
         let Some(e) = e else { return Some(self.scope.graph.zero()) };
-        let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+        let value =
+            self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
         let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
-        if let Some(n) = value.value().filter(|n| !(0.0..=maximum).contains(n)) {
+        if let Some(n) = value.constant_value().filter(|n| !(0.0..=maximum).contains(n)) {
             let range = if maximum < 2.0 { "must be between 0 and 1" } else { "cannot be negative" };
-            cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
-                match maximum < 2.0 {
+            cx.report_error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"))
+                .add_help(match maximum < 2.0 {
                     true => {
                         "the ratio of the speeds after and before the impact: 0 without rebound, 1 without \
                          loss of energy"
                     }
                     false => "it opposes the motion by definition: give its magnitude",
-                },
-            );
+                });
             return None;
         }
-        self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);
+        self.scope.record_requirement(rule, || format!("the {what} of `{name}`"), &[value]);
         Some(value)
     }
 
@@ -353,7 +358,7 @@ impl<'g> Builder<'_, 'g> {
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Vec<Surface<'g>>> {
-        if let Some(link) = collision(e) {
+        if let Some(link) = collision_link(e) {
             return self.collisions(e, link, cx);
         }
         let is_place = match &e.kind {
@@ -362,7 +367,10 @@ impl<'g> Builder<'_, 'g> {
             _ => false,
         };
         if is_place {
-            return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: SurfaceForm::Point }]);
+            return Some(vec![Surface {
+                frame: self.scope.resolve_placement(e, cx)?,
+                form: SurfaceForm::Point,
+            }]);
         }
         Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
@@ -382,7 +390,7 @@ impl<'g> Builder<'_, 'g> {
         let SurfaceForm::Plane(n) = &pair.b.form else {
             return self.curved_contacts(pair, c, &rotate_b);
         };
-        let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+        let [(first, e1), (second, e2)] = perpendicular_directions(*n).map(|(word, e)| (word, rotate_b(e)));
         let normal = rotate_b(*n);
         let touch = |point: Vec3<'g>| PointContact {
             gap: normal.dot(c + point),
@@ -431,7 +439,7 @@ impl<'g> Builder<'_, 'g> {
             }
             _ => return Vec::new(),
         };
-        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::axis(g, k)));
+        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
         let touches = places.into_iter().map(|place| {
             let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), rotate_b);
             PointContact { point: touch.point + place, ..touch }
@@ -479,7 +487,7 @@ impl<'g> Builder<'_, 'g> {
                 let axis = rotate_b(*axis);
                 let height = axis.dot(c);
                 let outward = c - axis * height;
-                let size = outward.norm().extreme(Extreme::Max, *wide);
+                let size = outward.norm().minimum_or_maximum(Extreme::Max, *wide);
                 let inner = axis * clamp(height, *length * half) + outward * (*wide / size);
                 sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), c - inner, rotate_b)
             }
@@ -501,7 +509,7 @@ fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
 /// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
 /// the body is then used.
 fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
-    let [(_, fixed), _] = perpendicular(axis);
+    let [(_, fixed), _] = perpendicular_directions(axis);
     let (a, fixed) = (rotate(axis), rotate(fixed));
     let cosine = a.dot(normal);
     let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
@@ -513,7 +521,7 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'
 
 /// Clamps `x` to the interval from `-limit` to `limit`.
 pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
-    x.extreme(Extreme::Max, -limit).extreme(Extreme::Min, limit)
+    x.minimum_or_maximum(Extreme::Max, -limit).minimum_or_maximum(Extreme::Min, limit)
 }
 
 /// Returns the closest points of two line segments, as signed distances from their centres along their unit
@@ -527,7 +535,7 @@ pub(super) fn nearest<'g>(
 ) -> (Expr<'g>, Expr<'g>) {
     let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
     let one = cosine.num(1.0);
-    let across = (one - cosine * cosine).extreme(Extreme::Max, cosine.num(PARALLEL));
+    let across = (one - cosine * cosine).minimum_or_maximum(Extreme::Max, cosine.num(PARALLEL));
     let guess = clamp((cosine * second - first) / across, own_reach);
     let far = clamp(second + cosine * guess, reach);
     (clamp(cosine * far - first, own_reach), far)

@@ -71,15 +71,17 @@ pub struct Wrench {
 
 impl DriveOn {
     /// Returns the target with all weights multiplied by a factor.
-    pub fn scaled(&self, factor: f64) -> DriveOn {
+    pub fn scaled_target(&self, factor: f64) -> DriveOn {
         match self {
             DriveOn::Sum(terms) => {
                 DriveOn::Sum(terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect())
             }
             DriveOn::Length(e) if factor == 1.0 => DriveOn::Length(e.clone()),
-            DriveOn::Length(e) => {
-                DriveOn::Length(Expr::binary(BinaryOp::Mul, Expr::number(factor, &e.place), e.clone()))
-            }
+            DriveOn::Length(e) => DriveOn::Length(Expr::binary_operation(
+                BinaryOp::Mul,
+                Expr::number_at(factor, &e.place),
+                e.clone(),
+            )),
             DriveOn::Wrench(wrench) => DriveOn::Wrench(Wrench {
                 force: wrench.force.map(|x| x * factor),
                 torque: wrench.torque.map(|x| x * factor),
@@ -89,7 +91,7 @@ impl DriveOn {
     }
 
     /// Returns the joints of a sum with their weights; empty for other targets.
-    pub fn terms(&self) -> &[(Name, f64)] {
+    pub fn weighted_joints(&self) -> &[(Name, f64)] {
         match self {
             DriveOn::Sum(terms) => terms,
             DriveOn::Length(_) | DriveOn::Wrench(_) => &[],
@@ -137,7 +139,7 @@ pub enum Target {
 
 impl Target {
     /// Returns the source position of the target.
-    pub fn place(&self) -> &Place {
+    pub fn source_position(&self) -> &Place {
         match self {
             Target::On(e) | Target::Between(_, e) => &e.place,
         }
@@ -151,7 +153,7 @@ impl Action {
     }
 
     /// Returns the argument that gives the force law, with its expression.
-    pub fn law(&self) -> Option<(Key, &Expr)> {
+    pub fn written_law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
         self.arguments.iter().find(|(key, _)| laws.contains(key))
     }
