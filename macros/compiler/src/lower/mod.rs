@@ -32,8 +32,8 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
     lower_without(outputs, &|_| false)
 }
 
-/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see
-/// [`hoisted`].
+/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see the
+/// module `hoist`.
 pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select_instructions(outputs, known);

@@ -45,7 +45,7 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
-/// as [`super::constraints::solve`] does. The signs `σ` are arguments.
+/// as [`super::constraints::solve_constrained`] does. The signs `σ` are arguments.
 pub fn solve_with_friction<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
