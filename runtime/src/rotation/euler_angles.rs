@@ -100,7 +100,7 @@ impl EulerSequence {
         } else {
             [r21.atan2(r11), T::zero()]
         };
-        Angles { angles: standard.from_standard_sequence([a, middle, c]), singular }
+        Angles { angles: standard.reorder_from_standard([a, middle, c]), singular }
     }
 
     /// Returns the other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or

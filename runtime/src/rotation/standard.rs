@@ -45,7 +45,7 @@ impl Standard {
 
     /// Converts Euler angles, their rates, or the columns that multiply rates, from the standard sequence to
     /// the given sequence.
-    pub(super) fn from_standard_sequence<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
+    pub(super) fn reorder_from_standard<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
         let [a, b, c] = self.with_sign_of_third_axis(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }
