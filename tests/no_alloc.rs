@@ -5,7 +5,7 @@ use linkwork::batch::{Rollout, unwatched};
 use linkwork::integrate::{EventDriven, ImplicitMidpoint, Rk4, Rosenbrock, SemiImplicitEuler, TimeStepping};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Crossing;
-use linkwork::{Batch, Constrained, Mechanism, contact, frame, mechanism, simulate};
+use linkwork::{Batch, Constrained, Mechanism, contact, discrete, frame, mechanism, simulate};
 use linkwork_models::{Bicycle, BricardLinkage, FourBar};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -269,7 +269,7 @@ fn constraints() {
 }
 
 /// Box that falls on its face and slides.
-#[mechanism(gravity = -9.81 * z)]
+#[mechanism(gravity = -9.81 * z, derivatives)]
 struct Crate {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
     hull: Body,
@@ -295,6 +295,9 @@ fn contacts() {
         0,
         "event by event"
     );
+    let (u, step) = (SVector::zeros(), TimeStepping::step(0.02));
+    let transition = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
+    assert!(transition().v[2].abs() < 0.2 && heap_calls(transition) == 0, "transition");
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

@@ -84,8 +84,9 @@
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
+use crate::discrete::Transition;
 use crate::integrate::{
-    ContinuousInputs, Dynamics, Error, State, System, check_positive, enforce_closed_contacts,
+    ContinuousInputs, Dynamics, Error, State, System, TimeStepping, check_positive, enforce_closed_contacts,
     project_end_of_step, rk4_step_with_contacts,
 };
 use crate::private::{constant, epsilon, to_f64};
@@ -101,11 +102,13 @@ mod landing;
 mod lawful;
 mod layout;
 mod light;
+mod observer;
 mod overlap;
 mod phase;
 mod problem;
 mod response;
 mod selection;
+mod sensitivity;
 mod solution;
 mod stepping;
 mod total;
@@ -132,6 +135,8 @@ use problem::{Problem, entry};
 #[doc(hidden)]
 pub use response::responses;
 use selection::Selection;
+#[doc(hidden)]
+pub use sensitivity::differentiate_step;
 use solution::{Acted, act};
 #[doc(hidden)]
 pub use stepping::step;
@@ -245,6 +250,20 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         _touches: &[Touch; NK],
         _gains: [Self::Scalar; 2],
     ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
+        None
+    }
+
+    /// Writes a step of time stepping with its derivatives; `None` without [`ContactDerivatives`]. Called by
+    /// [`discrete::transition`](crate::discrete::transition).
+    #[doc(hidden)]
+    fn differentiate_step(
+        &self,
+        _method: &TimeStepping<Self::Scalar>,
+        _t: Self::Scalar,
+        _state: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        _u: &SVector<Self::Scalar, NU>,
+        _into: &mut Transition<Self::Scalar, NQ, NV, NU>,
+    ) -> Option<Result<(), Error>> {
         None
     }
 

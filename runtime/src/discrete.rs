@@ -38,7 +38,7 @@ use crate::blocks::{NearlyIdentity, zeros};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
 use crate::derivatives::{Derivatives, entry_of_blocks, stack_blocks};
 use crate::integrate::{
-    ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System,
+    ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System, TimeStepping,
 };
 use crate::private::to_f64;
 use crate::{Mechanism, Real};
@@ -52,11 +52,14 @@ mod plain;
 mod projected;
 mod projection;
 mod second;
+mod time_stepping;
 
 pub use explicit::semi_implicit_into;
+pub(crate) use explicit::{Sensitive, Start};
 pub(crate) use implicit::eliminated;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
+pub(crate) use time_stepping::{Manifold, smooth_motion};
 
 /// Returns configuration and velocity after one step of a method under constant inputs `u`.
 ///
@@ -135,7 +138,7 @@ where
 /// constraints. Columns are along all displacements, including those that violate the constraints, which the
 /// projection removes. The mechanism needs these options:
 ///
-/// - `derivatives` for [`Rk4`], and for [`SemiImplicitEuler`] without constraints;
+/// - `derivatives` for [`Rk4`] and [`TimeStepping`], and for [`SemiImplicitEuler`] without constraints;
 /// - `momentum_derivatives` for [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), and for
 ///   [`SemiImplicitEuler`] under constraints. A mechanism without this option does not compile here:
 ///
@@ -154,13 +157,55 @@ where
 /// let step = discrete::transition(&Bead {}, &ImplicitMidpoint::step(0.01), 0.0, &q, &v, &u);
 /// ```
 ///
-/// Implicit steps are differentiated by the implicit function theorem. Contact modes must not change within a
-/// step, and contacts must not slide.
+/// Implicit steps are differentiated by the implicit function theorem.
+///
+/// # Contacts
+///
+/// Steps of [`TimeStepping`] of a mechanism with [contacts](crate::contact) are differentiated in the contact
+/// modes that the step has found: the conditions of separated, sticking and sliding contacts and of impacts
+/// that hold with equality are linearised. No modes are declared. A step changes its derivatives where the
+/// modes change, and there they are one-sided:
+///
+/// - A contact that stays closed and whose gap is zero to rounding has the derivative with respect to
+///   displacements that open the gap. The step closes this gap, so that the derivative of the gap is zero.
+/// - A contact at the edge of sticking and sliding sticks. A contact without impulse at the edge of
+///   separation is separated.
+///
+/// The fractions of restitution and of the displacement at the end of the step that the energy allows count
+/// as constant, and the correction of creep of bodies at rest as zero. If normal impulses are not determined
+/// and contacts slide in different directions, as for a box that rotates on its face, the derivatives assume
+/// the smallest change of the impulses; those of the search for impulses may differ from them. Poisson's
+/// restitution, constraints and declared speeds are not supported.
+///
+/// ```
+/// use linkwork::discrete;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z, derivatives)]
+/// struct Ball {
+///     #[particle(mass = 0.1)]
+///     ball: Particle,
+///     #[joint(ground -> ball, along = z)]
+///     height: Sleeve,
+///     #[contact(ball, ground.plane(z), restitution = 0.7)]
+///     bounce: Contact,
+/// }
+///
+/// # fn main() -> Result<(), Error> {
+/// let (method, u) = (TimeStepping::step(1e-3).midpoint(), [].into());
+/// // A step into the ground reverses the velocity, and −0.7 times its change remains.
+/// let next = discrete::transition(&Ball {}, &method, 0.0, &[1e-4].into(), &[-3.0].into(), &u)?;
+/// assert!((next.v[0] - 2.1).abs() < 1e-12 && (next.v_by_v[0] + 0.7).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 ///
-/// The errors of [`step`], and [`Error::Constraint`] with [`Singular`](crate::ConstraintError::Singular)
-/// where constraints lose rank.
+/// The errors of [`step`]; [`Error::Constraint`] with [`Singular`](crate::ConstraintError::Singular) where
+/// constraints lose rank, and with [`NoDerivatives`](crate::ConstraintError::NoDerivatives) where Poisson's
+/// restitution acts or impulses violate the contact conditions by more than `1e-6` of the largest contact
+/// velocity.
 pub fn transition<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -201,9 +246,15 @@ where
 {
     const {
         assert!(
-            !M::CONTACTING,
-            "a step with derivatives needs a mechanism without contacts that open and close: enforce chosen \
-             contacts by `contact::hold`, or ignore all by `contact::apart`"
+            !M::CONTACTING || S::CONTACTS,
+            "a step with derivatives of a mechanism with contacts that open and close needs the method \
+             `TimeStepping`; with other methods, enforce chosen contacts by `contact::hold`"
+        );
+        assert!(
+            !M::CONTACTING || M::LOCATABLE && !M::CONSTRAINED && !M::SPEEDS,
+            "a step with derivatives of a mechanism with contacts that open and close needs a mechanism \
+             without constraints, declared speeds and states of first order: enforce chosen contacts by \
+             `contact::hold`"
         )
     };
     const {
@@ -239,7 +290,7 @@ pub trait FixedStep<T: Real>: Method<T> {}
 
 impl<T: Real> FixedStep<T> for Rk4<T> {}
 impl<T: Real> FixedStep<T> for SemiImplicitEuler<T> {}
-impl<T: Real> FixedStep<T> for crate::integrate::TimeStepping<T> {}
+impl<T: Real> FixedStep<T> for TimeStepping<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
@@ -268,11 +319,11 @@ where
     }
 }
 
-/// Methods with differentiable steps: [`SemiImplicitEuler`], [`Rk4`] and
-/// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint).
+/// Methods with differentiable steps: [`SemiImplicitEuler`], [`Rk4`],
+/// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint) and [`TimeStepping`].
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no derivatives",
-    note = "those of `Rk4`, `SemiImplicitEuler` and `ImplicitMidpoint` have"
+    note = "those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint` and `TimeStepping` have"
 )]
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// Whether steps need derivatives of momenta: without constraints, with constraints.
@@ -423,6 +474,24 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
             v_by_q: zeros(),
             v_by_v: zeros(),
             v_by_u: zeros(),
+            chained: None,
+        }
+    }
+
+    /// Returns the transition to a configuration and a velocity, given their derivatives.
+    pub(crate) fn from_sensitive(
+        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
+        v: &Sensitive<T, NV, NU>,
+    ) -> Self {
+        Self {
+            q: *q,
+            v: v.value,
+            q_by_q: motion.by_q,
+            q_by_v: motion.by_v,
+            q_by_u: motion.by_u,
+            v_by_q: v.by_q,
+            v_by_v: v.by_v,
+            v_by_u: v.by_u,
             chained: None,
         }
     }

@@ -8,7 +8,7 @@ use linkwork::prelude::*;
 
 /// Quadruped, with its own coefficient of friction for each foot.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
-struct Solo {
+pub struct Solo {
     #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
     front_left: Contact,
     #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.3)]
@@ -21,7 +21,7 @@ struct Solo {
 
 /// Ball in a hollow, in wind that changes with time.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Hollow {
+pub struct Hollow {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
     ball: Body,
     #[joint(ground -> ball)]

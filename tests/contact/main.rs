@@ -4,6 +4,7 @@
 mod bodies;
 mod both;
 mod boxes;
+mod control;
 mod derivatives;
 mod events;
 mod files;
@@ -21,6 +22,7 @@ mod ratchet;
 mod scenes;
 mod soft;
 mod starts;
+mod steps;
 mod stiction;
 mod terrain;
 mod turning;

@@ -58,6 +58,12 @@ pub enum ConstraintError {
         /// Name of the contact with the largest violation.
         constraint: &'static str,
     },
+    /// A step has no exact derivatives: Poisson's restitution acts in it, its impulses violate the contact
+    /// conditions, or the mechanism has no derivatives of its contacts.
+    NoDerivatives {
+        /// Name of the contact.
+        constraint: &'static str,
+    },
     /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
     /// and 1.
     Coefficient {
@@ -120,6 +126,11 @@ impl fmt::Display for ConstraintError {
             Self::Contact { constraint } => {
                 write!(f, "no impulses at the contact `{constraint}` prevent penetration")
             }
+            Self::NoDerivatives { constraint } => write!(
+                f,
+                "the impulses of the contact `{constraint}` have no derivatives: they violate the contact \
+                 conditions, its restitution is a ratio of impulses, or the mechanism is loaded at run time"
+            ),
             Self::Coefficient { constraint, value } => write!(
                 f,
                 "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, \

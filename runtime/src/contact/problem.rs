@@ -15,11 +15,13 @@ mod linear;
 mod newton;
 mod restitution;
 mod search;
+mod sensitivity;
 mod transport;
 mod trial;
 
 pub(super) use basis::{Basis, dot};
 pub(super) use linear::Equations;
+pub(super) use sensitivity::Linearised;
 use trial::{Mode, Trial};
 
 /// A number for each rate.

@@ -2,7 +2,8 @@
 
 use super::{Contacts, Responses, Rows};
 use crate::Real;
-use nalgebra::{SMatrix, SVector};
+use crate::blocks::transposed;
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// What impulses at contacts that are closed do; zeros of others.
 #[doc(hidden)]
@@ -86,6 +87,32 @@ impl<T: Real, const N: usize> Factor<T, N> {
     /// Returns the solution `x` of `L Lᵀ x = p`.
     pub(super) fn solve(&self, p: [T; N]) -> [T; N] {
         self.solve_upper(self.solve_lower(p))
+    }
+
+    /// Returns the solutions `X` of `L Lᵀ X = P`, with operations on rows of all columns at once.
+    pub(super) fn solve_all(&self, p: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        let Self { rows, starts } = self;
+        let subtract = |from: &mut [T; N], factor: T, row: &[T; N]| {
+            from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
+        };
+        let mut x = transposed(p).data.0;
+        for i in 0..N {
+            let (above, below) = x.split_at_mut(i);
+            let Some(row) = below.first_mut() else { break };
+            for (factor, other) in rows[i].iter().zip(above.iter()).skip(starts[i]) {
+                subtract(row, *factor, other);
+            }
+            row.iter_mut().for_each(|entry| *entry *= rows[i][i]);
+        }
+        for i in (0..N).rev() {
+            let (above, below) = x.split_at_mut(i);
+            let Some(row) = below.first_mut() else { break };
+            row.iter_mut().for_each(|entry| *entry *= rows[i][i]);
+            for (factor, other) in rows[i].iter().zip(above).skip(starts[i]) {
+                subtract(other, *factor, row);
+            }
+        }
+        transposed(&SMatrix::from_array_storage(ArrayStorage(x)))
     }
 
     /// Returns the solution `y` of `L y = p`.

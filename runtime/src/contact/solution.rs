@@ -14,7 +14,7 @@ use nalgebra::SVector;
 /// Closed contacts of a step, with their impulses and the effects of these on velocities. Its matrices are
 /// large, so it is filled in place.
 pub(super) struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
-    selection: Selection<CK, CR>,
+    pub(super) selection: Selection<CK, CR>,
     pub(super) problem: Problem<T, CK, CR>,
     pub(super) impulses: Total<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.

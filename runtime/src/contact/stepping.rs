@@ -1,6 +1,7 @@
 //! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
 use super::layout::Layout;
+use super::observer::{Closing, Observer, Unobserved};
 use super::problem::{Problem, entry, put};
 use super::selection::{FEW, Selection};
 use super::total::Total;
@@ -148,8 +149,37 @@ pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: u
     t: T,
     (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+    given: Assumed<'_, T, NV>,
+    h: T,
+) -> Result<Touched<T, NQ, NV>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    observed_step(mechanism, t, (start, v), (q, free), given, h, &mut Unobserved)
+}
+
+/// Computes [`step`], and passes the impulses of the contacts to an observer.
+///
+/// # Errors
+///
+/// Those of [`impact`](super::impact).
+pub(super) fn observed_step<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     (given, impulses): Assumed<'_, T, NV>,
     h: T,
+    observer: &mut impl Observer<T, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
 where
     T: Real,
@@ -180,13 +210,13 @@ where
     let run = (came, (start, v), (q, free), (given, impulses));
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
     if const { NR > SMALL } && rows <= SMALL {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, t, run, &closed, led, observer)
     } else if const { NR > MEDIUM } && rows <= MEDIUM {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(mechanism, t, run, &closed, led, observer)
     } else if const { NR > LARGE } && rows <= LARGE {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, t, run, &closed, led, observer)
     } else {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, t, run, &closed, led, observer)
     }
 }
 
@@ -217,6 +247,7 @@ fn act_in_step<
     (came, (start, v), (q, free), (given, recorded)): Run<'_, T, NQ, NV, NR>,
     closed: &[bool; NK],
     led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
+    observer: &mut impl Observer<T, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
 where
     T: Real,
@@ -231,6 +262,7 @@ where
     let after =
         act(mechanism, t, (q, free), closed, (before, Some(((given, recorded), is_moving))), &mut acted)?.v;
     if h == T::zero() {
+        observer.observe(&acted, None);
         let (held, violation) = (after - free, acted.problem.violation());
         let impulses = Impulses::record(&selection, &acted.problem.spread(&acted.impulses));
         return Ok(Touched { q: *q, v: after, held, impulses, violation });
@@ -270,14 +302,17 @@ where
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
     let own = selection.gaps(&gaps);
-    if problem.is_shut(&own, touching_distance()) {
-        return Ok(touched);
+    let mut closing = Closing { gaps: own, reach: touching_distance(), pushes: None, part: T::one() };
+    if !problem.is_shut(&own, touching_distance()) {
+        let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
+        closing.reach += speed * h;
+        closing.pushes = problem.close(impulses, &own, (touching_distance(), closing.reach));
     }
-    let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
-    match problem.close(impulses, &own, (touching_distance(), touching_distance::<T>() + speed * h)) {
-        Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
-        None => Ok(touched),
+    if let Some(pushes) = &closing.pushes {
+        (touched, closing.part) = pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most);
     }
+    observer.observe(&acted, Some(&closing));
+    Ok(touched)
 }
 
 /// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick
@@ -391,16 +426,17 @@ where
     mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q)
 }
 
-/// The state after a displacement, or the part of it after which the energy is no more than `most`, which is
-/// asked for where it grows, or than before. Where surfaces overlap before, as `gaps` say, none do so deeper
-/// after it than the deepest, those of contacts that were open among them.
+/// Returns the state after a displacement, and the fraction of the displacement that was applied. The energy
+/// after it is at most `most`, which is evaluated only if the energy grows, or the energy before it. If
+/// surfaces overlap before, with the gaps `gaps`, none overlap more deeply afterwards than the deepest did,
+/// including those of contacts that were open.
 fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     (from, gaps): (&Touched<T, NQ, NV>, &SVector<T, NK>),
     push: &SVector<T, NV>,
     most: impl Fn() -> T,
-) -> Touched<T, NQ, NV>
+) -> (Touched<T, NQ, NV>, T)
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -424,11 +460,11 @@ where
         }
         let after = energy(mechanism, t, &to);
         if after <= before + rounding(before) {
-            return to;
+            return (to, part);
         }
         let most = *allowed.get_or_insert_with(&most);
         if after <= most + rounding(before) {
-            return to;
+            return (to, part);
         }
         if most <= before {
             break;
@@ -436,5 +472,5 @@ where
         // The energy is about linear.
         part *= (most - before) / (after - before) * constant(0.98);
     }
-    *from
+    (*from, T::zero())
 }

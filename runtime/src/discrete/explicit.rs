@@ -2,7 +2,7 @@
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
-use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, zeros};
+use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, sum_into, zeros};
 use crate::constraint::ConstrainedDerivatives;
 use crate::derivatives::{Derivatives, accelerated_into};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -12,44 +12,48 @@ use nalgebra::{SMatrix, SVector};
 /// Vector of the tangent space with its derivatives with respect to the state at the start of a step and to
 /// the inputs.
 #[derive(Clone, Copy)]
-pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
-    pub(super) value: SVector<T, NV>,
-    pub(super) by_q: SMatrix<T, NV, NV>,
-    pub(super) by_v: SMatrix<T, NV, NV>,
-    pub(super) by_u: SMatrix<T, NV, NU>,
+pub(crate) struct Sensitive<T, const NV: usize, const NU: usize> {
+    pub(crate) value: SVector<T, NV>,
+    pub(crate) by_q: SMatrix<T, NV, NV>,
+    pub(crate) by_v: SMatrix<T, NV, NV>,
+    pub(crate) by_u: SMatrix<T, NV, NU>,
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     /// Returns the velocity at the start of the step, with its derivatives: the identity with respect to
     /// itself, otherwise zero.
-    pub(super) fn start_velocity(v: &SVector<T, NV>) -> Self {
+    pub(crate) fn start_velocity(v: &SVector<T, NV>) -> Self {
         let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
     }
 
     /// Returns the zero displacement of the configuration at the start, which moves with that configuration.
-    pub(super) fn zero_displacement() -> Self {
+    pub(crate) fn zero_displacement() -> Self {
         let (by_v, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
     }
 
     /// Returns the vector `self + s other` together with its derivatives.
-    pub(super) fn plus_scaled(&self, s: T, other: &Self) -> Self {
-        Self {
-            value: self.value + other.value * s,
-            by_q: self.by_q + other.by_q * s,
-            by_v: self.by_v + other.by_v * s,
-            by_u: self.by_u + other.by_u * s,
-        }
+    pub(crate) fn plus_scaled(&self, s: T, other: &Self) -> Self {
+        let mut sum =
+            Self { value: self.value + other.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        sum_into(&self.by_q, s, &other.by_q, &mut sum.by_q);
+        sum_into(&self.by_v, s, &other.by_v, &mut sum.by_v);
+        sum_into(&self.by_u, s, &other.by_u, &mut sum.by_u);
+        sum
     }
 
-    pub(super) fn scaled_derivatives(&self, s: T) -> Self {
-        Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
+    pub(crate) fn scaled_derivatives(&self, s: T) -> Self {
+        let mut multiple = Self { value: self.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        multiple_into(s, &self.by_q, &mut multiple.by_q);
+        multiple_into(s, &self.by_v, &mut multiple.by_v);
+        multiple_into(s, &self.by_u, &mut multiple.by_u);
+        multiple
     }
 
     /// Returns a function of two vectors with derivatives, by the chain rule; `by_a` and `by_b` are the
     /// Jacobians of the function.
-    pub(super) fn compose_derivatives(
+    pub(crate) fn compose_derivatives(
         value: SVector<T, NV>,
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
         (by_b, b): (&SMatrix<T, NV, NV>, &Self),
@@ -65,11 +69,11 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
 }
 
 /// Start of a step: mechanism, time, configuration and inputs.
-pub(super) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
-    pub(super) mechanism: &'a M,
-    pub(super) t: T,
-    pub(super) q: &'a SVector<T, NQ>,
-    pub(super) u: &'a SVector<T, NU>,
+pub(crate) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+    pub(crate) mechanism: &'a M,
+    pub(crate) t: T,
+    pub(crate) q: &'a SVector<T, NQ>,
+    pub(crate) u: &'a SVector<T, NU>,
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Start<'_, M, T, NQ, NV, NU>
@@ -79,7 +83,7 @@ where
 {
     /// Returns the configuration `q ⊕ displacement`, and the displacement of that configuration with
     /// derivatives with respect to the start and the inputs.
-    pub(super) fn displace_configuration(
+    pub(crate) fn displace_configuration(
         &self,
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
@@ -102,7 +106,7 @@ where
 
     /// Returns the acceleration at a time `h` after the start, with its derivatives with respect to the start
     /// of the step.
-    pub(super) fn acceleration_after(
+    pub(crate) fn acceleration_after(
         &self,
         h: T,
         (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
@@ -116,7 +120,7 @@ where
 
     /// Returns the acceleration at a time `h` after the start, in a given state, with its derivatives with
     /// respect to that state and to the inputs.
-    pub(super) fn acceleration_in_state(
+    pub(crate) fn acceleration_in_state(
         &self,
         h: T,
         state: (&SVector<T, NQ>, &SVector<T, NV>),
@@ -128,27 +132,16 @@ where
     }
 
     /// Returns the state after a step with a given displacement and final velocity.
-    pub(super) fn end_of_step(
+    pub(crate) fn end_of_step(
         &self,
         displacement: &Sensitive<T, NV, NU>,
         v: &Sensitive<T, NV, NU>,
     ) -> Transition<T, NQ, NV, NU> {
-        let (q, motion) = self.displace_configuration(displacement);
-        Transition {
-            q,
-            v: v.value,
-            q_by_q: motion.by_q,
-            q_by_v: motion.by_v,
-            q_by_u: motion.by_u,
-            v_by_q: v.by_q,
-            v_by_v: v.by_v,
-            v_by_u: v.by_u,
-            chained: None,
-        }
+        Transition::from_sensitive(&self.displace_configuration(displacement), v)
     }
 
     /// Returns the configuration at the start; its derivative with respect to itself is the identity.
-    pub(super) fn start_configuration(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+    pub(crate) fn start_configuration(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         (*self.q, Sensitive::zero_displacement())
     }
 }

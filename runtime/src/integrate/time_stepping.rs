@@ -148,6 +148,16 @@ impl<T: Real> TimeStepping<T> {
     pub const fn leapfrog(self) -> Self {
         Self { stages: Stages::Leapfrog, ..self }
     }
+
+    /// Returns the length of a step, s.
+    pub(crate) fn length(&self) -> T {
+        self.step
+    }
+
+    /// Whether steps have the four stages of [`Rk4`](super::Rk4), instead of a midpoint.
+    pub(crate) fn has_four_stages(&self) -> bool {
+        self.stages == Stages::RungeKutta
+    }
 }
 
 /// Contribution of the contacts to the velocity in the last step, per second.

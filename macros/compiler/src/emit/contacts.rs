@@ -125,6 +125,18 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             }}",
             inputs = s.shape_type(Shape::Matrix(nv, s.nu)),
         );
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn differentiate_step(&self, method: &::linkwork::integrate::TimeStepping<{scalar}>, \
+             t: {scalar}, state: (&{q}, &{v}), u: &{u}, \
+             into: &mut ::linkwork::discrete::Transition<{scalar}, {nq}, {nv}, {nu}>) -> \
+             ::core::option::Option<::core::result::Result<(), ::linkwork::integrate::Error>> {{
+                let done = ::linkwork::__private::differentiate_step(self, method, t, state, u, into);
+                ::core::option::Option::Some(done)
+            }}",
+            nq = s.nq,
+            nu = s.nu,
+        );
     }
     let _ = writeln!(
         out,

@@ -438,7 +438,7 @@ pub(super) fn eliminate<T: Real, const N: usize, const NR: usize>(
 /// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion:
 /// where bodies of very different masses touch little is left, but more than rounding would leave of nothing.
 /// `ε^(5/8)`.
-fn independent<T: Real>() -> T {
+pub(super) fn independent<T: Real>() -> T {
     let half = epsilon::<T>().sqrt();
     half * half.sqrt().sqrt()
 }

@@ -1,0 +1,356 @@
+//! Derivatives of impulses, from the conditions that hold with equality in the contact modes that were found.
+//!
+//! With the contact velocities `u = E + W Λ`, pressed and sticking contacts have `δE + W δΛ = 0` at their
+//! rows, separated ones `δΛ = 0`, and sliding ones, with the slip direction `d = −uₜ/|uₜ|`,
+//! `δΛₜ = μ d δΛₙ − μ Λₙ (1 − d dᵀ) δuₜ / |uₜ|`.
+
+use super::super::total::Total;
+use super::linear::{identify, independent, square};
+use super::trial::Mode;
+use super::{List, Problem, Square, entry};
+use crate::Real;
+use crate::private::{constant, epsilon};
+use nalgebra::{SMatrix, SVector};
+
+/// Number of refinements of equations among dependent rows.
+const PASSES: usize = 3;
+/// Addition to the diagonal that makes dependent rows independent, relative to the largest entry.
+const LIFT: f64 = 1e-6;
+/// Violation of the contact conditions, relative to the largest contact velocity, above which impulses have
+/// no derivatives.
+const VIOLATED: f64 = 1e-6;
+/// Largest change of friction by its rotation in a step, relative to its magnitude (`transport`).
+const LARGEST: f64 = 0.125;
+
+/// Rows of contact velocities.
+pub(in super::super) type Chosen<const NR: usize> = Total<bool, NR>;
+
+/// Derivatives of the friction impulses that a rotation of the slip direction adds, with respect to the
+/// impulses at the start and to the slip velocities.
+pub(in super::super) struct Rotated<T, const NR: usize> {
+    /// The impulses.
+    pub(in super::super) impulses: SVector<T, NR>,
+    pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
+    pub(in super::super) by_slip: SMatrix<T, NR, NR>,
+}
+
+/// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
+pub(in super::super) struct Linearised<T, const NR: usize> {
+    system: Square<T, NR>,
+    wanted: Square<T, NR>,
+    /// Triangular factors of the system, with a small addition to the diagonal if rows depend on each other,
+    /// and the row of each pivot.
+    factors: Square<T, NR>,
+    pivots: List<usize, NR>,
+    is_dependent: bool,
+    places: List<usize, NR>,
+    size: usize,
+}
+
+impl<T: Real, const NR: usize> Linearised<T, NR> {
+    /// Returns equations of impulses that are constant.
+    fn new(places: List<usize, NR>, size: usize) -> Self {
+        let (mut system, pivots) = (square(), Total::repeat(0));
+        identify(&mut system, size);
+        Self { system, wanted: square(), factors: square(), pivots, is_dependent: false, places, size }
+    }
+
+    /// Factorises the system by Gaussian elimination with pivots of the columns, and stores the inverses of
+    /// the pivots. Impulses without a pivot stay constant. Returns false if rows depend on each other.
+    fn factorise(&mut self) -> bool {
+        let Self { system, factors, pivots: exchanges, size, .. } = self;
+        let mut is_regular = true;
+        for column in 0..*size {
+            let mut best = column;
+            for row in column + 1..*size {
+                if factors[row][column].abs() > factors[best][column].abs() {
+                    best = row;
+                }
+            }
+            factors.exchange(best, column);
+            exchanges[column] = best;
+            let mut pivots = factors[column];
+            let is_small = pivots[column].abs() <= system[column][column].abs() * independent();
+            is_regular &= !is_small;
+            let inverse = if is_small { T::zero() } else { T::one() / pivots[column] };
+            (factors[column][column], pivots[column]) = (inverse, inverse);
+            for row in column + 1..*size {
+                let row = &mut factors[row];
+                let factor = row[column] * inverse;
+                row[column] = factor;
+                if factor != T::zero() {
+                    let entries = row.get_mut(column + 1..*size).unwrap_or_default();
+                    let others = pivots.get(column + 1..*size).unwrap_or_default();
+                    entries.iter_mut().zip(others).for_each(|(entry, pivot)| *entry -= factor * *pivot);
+                }
+            }
+        }
+        is_regular
+    }
+
+    /// Solves for right-hand sides in place, with the factors.
+    fn substitute<const C: usize>(&self, right: &mut Total<[T; C], NR>) {
+        let subtract = |from: &mut [T; C], factor: T, row: &[T; C]| {
+            from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
+        };
+        (0..self.size).for_each(|column| right.exchange(self.pivots[column], column));
+        for column in 0..self.size {
+            let value = right[column];
+            for row in column + 1..self.size {
+                let factor = self.factors[row][column];
+                if factor != T::zero() {
+                    subtract(&mut right[row], factor, &value);
+                }
+            }
+        }
+        for row in (0..self.size).rev() {
+            let mut sum = right[row];
+            for (factor, other) in self.factors[row].iter().zip(right.iter()).take(self.size).skip(row + 1) {
+                subtract(&mut sum, *factor, other);
+            }
+            let inverse = self.factors[row][row];
+            right[row] = sum.map(|sum| sum * inverse);
+        }
+    }
+
+    /// Returns the changes of the impulses with changes `rates` of the contact velocities without them, both
+    /// at the rows of the mechanism.
+    pub(in super::super) fn changes<const C: usize>(&self, rates: &SMatrix<T, NR, C>) -> SMatrix<T, NR, C> {
+        let mut right = Total::<[T; C], NR>::repeat([T::zero(); C]);
+        for (right, wanted) in right.iter_mut().zip(self.wanted.iter()).take(self.size) {
+            for (place, factor) in self.places.iter().zip(wanted.iter()).take(self.size) {
+                if *factor != T::zero() {
+                    let columns = right.iter_mut().zip(&rates.data.0);
+                    columns.for_each(|(to, from)| {
+                        *to += *factor * from.get(*place).copied().unwrap_or(T::zero())
+                    });
+                }
+            }
+        }
+        let mut changes = right;
+        self.substitute(&mut changes);
+        for _ in 1..if self.is_dependent { PASSES } else { 1 } {
+            let mut left = right;
+            for (left, row) in left.iter_mut().zip(self.system.iter()).take(self.size) {
+                for (factor, change) in row.iter().zip(changes.iter()).take(self.size) {
+                    left.iter_mut().zip(change).for_each(|(left, change)| *left -= *factor * *change);
+                }
+            }
+            self.substitute(&mut left);
+            for (change, more) in changes.iter_mut().zip(left.iter()) {
+                change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
+            }
+        }
+        let mut all = SMatrix::<T, NR, C>::zeros();
+        for (place, row) in self.places.iter().zip(changes.iter()).take(self.size) {
+            for (to, change) in all.data.0.iter_mut().zip(row) {
+                to.iter_mut().skip(*place).take(1).for_each(|entry| *entry = *change);
+            }
+        }
+        all
+    }
+}
+
+impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+    /// Checks that impulses have derivatives.
+    ///
+    /// # Errors
+    ///
+    /// The contact with Poisson's restitution, or the one that violates the contact conditions most if the
+    /// violation is larger than the errors of the search.
+    pub(in super::super) fn check_derivatives(&self, impulses: &List<T, NR>) -> Result<(), usize> {
+        if self.is_compressed {
+            let is_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
+            return Err(self.contacts[(0..self.count).find(is_compressed).unwrap_or_default()].0);
+        }
+        let is_solved = self.violation <= self.speed() * constant(VIOLATED);
+        if is_solved { Ok(()) } else { Err(self.contacts[self.tried(*impulses).worst.1].0) }
+    }
+
+    /// Returns the linearised equations of impulses, and true if no contact slides or separates. A contact
+    /// at the edge of two modes has that of sticking, or of separation.
+    pub(in super::super) fn linearised(&self, impulses: &List<T, NR>) -> (Linearised<T, NR>, bool) {
+        let rates = self.rates(impulses);
+        let modes = self.modes(&self.friction, impulses, &rates);
+        let still = self.rounding(impulses);
+        let mut equations = Linearised::new(self.places, self.size);
+        let (mut held, mut is_whole) = (Chosen::repeat(false), true);
+        for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
+            let (n, tangents) = self.of(k);
+            if self.is_gap(k) {
+                held[n] = modes[k].0 > T::zero();
+                is_whole &= held[n];
+            }
+            if self.friction[k] == T::zero() {
+                continue;
+            }
+            let speed = tangents.clone().fold(T::zero(), |sum, i| sum + rates[i] * rates[i]).sqrt();
+            match modes[k].1 {
+                Mode::Open => is_whole = false,
+                Mode::Slip { direction, .. } if speed > still => {
+                    let largest = self.friction[k] * self.bearing(k, impulses[n]);
+                    self.put_sliding(k, (direction, largest / speed), &mut equations);
+                    is_whole = false;
+                }
+                _ => tangents.for_each(|i| held[i] = true),
+            }
+        }
+        self.hold_rows(&held, &mut equations);
+        (equations, is_whole)
+    }
+
+    /// Writes the equations of a contact that slides in a direction with the ratio of friction to slip
+    /// velocity.
+    fn put_sliding(
+        &self,
+        k: usize,
+        (direction, ratio): ([T; 2], T),
+        Linearised { system, wanted, .. }: &mut Linearised<T, NR>,
+    ) {
+        let (n, tangents) = self.of(k);
+        for (i, d) in tangents.clone().zip(direction) {
+            system[i][n] -= self.friction[k] * d;
+            // Along a single tangent the direction does not rotate.
+            let others = if tangents.len() == 2 { tangents.clone() } else { 0..0 };
+            for (j, other) in others.zip(direction) {
+                let across = (if i == j { T::one() } else { T::zero() } - d * other) * ratio;
+                wanted[i][j] -= across;
+                system[i].iter_mut().zip(self.weights[j].iter()).for_each(|(to, w)| *to += across * *w);
+            }
+        }
+    }
+
+    /// Returns the equations of impulses that keep the contact velocities of chosen rows constant; of least
+    /// norm if these rows depend on each other.
+    pub(in super::super) fn constant_rates(&self, held: &Chosen<NR>) -> Linearised<T, NR> {
+        let mut equations = Linearised::new(self.places, self.size);
+        self.hold_rows(held, &mut equations);
+        equations
+    }
+
+    /// Returns all rows in which contacts can have impulses.
+    pub(in super::super) fn all_rows(&self) -> Chosen<NR> {
+        let mut rows = Chosen::repeat(false);
+        for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
+            let (n, _) = self.of(k);
+            self.all_of(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
+        }
+        rows
+    }
+
+    /// Returns the diagonal matrix that is one at chosen rows.
+    pub(in super::super) fn held_matrix(&self, held: &Chosen<NR>) -> SMatrix<T, NR, NR> {
+        let mut chosen = SVector::<T, NR>::zeros();
+        for i in (0..self.size).filter(|i| held[*i]) {
+            super::put(&mut chosen, self.places[i], T::one());
+        }
+        SMatrix::from_diagonal(&chosen)
+    }
+
+    /// Returns impulses, without those of compression, at the rows of the mechanism.
+    pub(in super::super) fn spread_alone(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
+        self.scatter(impulses)
+    }
+
+    /// Adds the equations `W δΛ = −δE` at the rows `held`, and factorises the system.
+    fn hold_rows(&self, held: &Chosen<NR>, equations: &mut Linearised<T, NR>) {
+        let mut count = 0;
+        for i in (0..self.size).filter(|i| held[*i]) {
+            (equations.system[i], equations.wanted[i][i]) = (self.weights[i], -T::one());
+            count += 1;
+        }
+        equations.factors = equations.system;
+        equations.is_dependent = count > self.velocities || !equations.factorise();
+        if equations.is_dependent {
+            equations.factors = equations.system;
+            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
+            for i in (0..self.size).filter(|i| held[*i]) {
+                equations.factors[i][i] += reach * constant(LIFT);
+            }
+            equations.factorise();
+        }
+    }
+
+    /// Returns half of the difference of friction impulses from those against the slip velocities `slip`, for
+    /// contacts that slide throughout a step, with its derivatives; as `transport` determines it.
+    pub(in super::super) fn rotated_friction(
+        &self,
+        impulses: &SVector<T, NR>,
+        slip: &SVector<T, NR>,
+    ) -> Rotated<T, NR> {
+        let (impulses, slip) = (self.gather(impulses), self.gather(slip));
+        let mut found =
+            Rotated { impulses: SVector::zeros(), by_impulses: SMatrix::zeros(), by_slip: SMatrix::zeros() };
+        let half = constant::<T>(0.5);
+        for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
+            let (n, tangents) = self.of(k);
+            let largest = self.friction[k] * impulses[n];
+            let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip[i] * slip[i]).sqrt();
+            let across = |i: usize| impulses[i] + largest * slip[i] / speed;
+            let size = tangents.clone().fold(T::zero(), |sum, i| sum + across(i) * across(i)).sqrt();
+            let slides = largest > T::zero() && speed * self.step[k] > largest;
+            if !slides || size > largest * constant(LARGEST) {
+                continue;
+            }
+            let place = |i: usize, j: usize| (self.places[i], self.places[j]);
+            for i in tangents.clone() {
+                let along = slip[i] / speed;
+                put_entry(&mut found.by_impulses, place(i, i), half);
+                put_entry(&mut found.by_impulses, place(i, n), half * self.friction[k] * along);
+                for j in tangents.clone() {
+                    let delta = if i == j { T::one() } else { T::zero() };
+                    let across = delta - along * slip[j] / speed;
+                    put_entry(&mut found.by_slip, place(i, j), half * largest / speed * across);
+                }
+            }
+            for i in tangents {
+                super::put(&mut found.impulses, self.places[i], across(i) * half);
+            }
+        }
+        found
+    }
+
+    /// Returns, for each contact whose restitution demands a normal velocity, the row of the mechanism and
+    /// the derivative of that velocity with respect to the normal velocity before.
+    pub(in super::super) fn rebound_factors(&self, before: &SVector<T, NR>) -> SVector<T, NR> {
+        let mut factors = SVector::zeros();
+        for k in (0..self.count).filter(|k| self.is_gap(*k) && self.least[*k] > T::zero()) {
+            let row = self.places[self.rows[k].first];
+            super::put(&mut factors, row, self.least[k] / entry(before, row));
+        }
+        factors
+    }
+
+    /// Returns the rows of normals whose gaps are zero after the displacement that closes gaps, and those
+    /// that it only keeps from penetrating deeper. `pushes` is the displacement, if there is any.
+    pub(in super::super) fn closed_rows(
+        &self,
+        impulses: &List<T, NR>,
+        (gaps, near, reach): (&SVector<T, NK>, T, T),
+        pushes: Option<&SVector<T, NR>>,
+    ) -> (Chosen<NR>, Chosen<NR>) {
+        let rates = self.rates(impulses);
+        let rest = self.rounding(impulses).max(self.violation) * constant(super::ROUNDINGS);
+        let enough = (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0));
+        let pushes = pushes.map(|pushes| self.gather(pushes));
+        let moved = pushes.map(|pushes| self.changes(&pushes));
+        let (mut closed, mut kept) = (Chosen::repeat(false), Chosen::repeat(false));
+        for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero()) {
+            let (n, gap) = (self.rows[k].first, entry(gaps, self.contacts[k].0));
+            let push = pushes.map_or(T::zero(), |pushes| pushes[n]);
+            let left = gap + moved.map_or(T::zero(), |moved| moved[n]);
+            let is_shut = left.abs() <= enough.max(gap.abs() * constant(0.5));
+            let stays = rates[n] <= rest && gap.abs() <= enough && gap <= reach;
+            closed[n] = if push == T::zero() { stays } else { is_shut };
+            kept[n] = push != T::zero() && !is_shut;
+        }
+        (closed, kept)
+    }
+}
+
+/// Sets an entry of a matrix; past the end it does nothing.
+fn put_entry<T: Real, const N: usize>(matrix: &mut SMatrix<T, N, N>, place: (usize, usize), value: T) {
+    if let Some(entry) = matrix.get_mut(place) {
+        *entry = value;
+    }
+}
