@@ -47,6 +47,10 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
+    // A file that would not compile as it is, for example with limits that exclude every value, has no valid
+    // struct either.
+    let graph = Graph::new();
+    input.checked(build_model(description, &graph, cx), cx)?;
     let mut struct_of = Struct::new(description);
     let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
