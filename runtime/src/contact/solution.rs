@@ -87,15 +87,16 @@ where
     };
     // Contact forces on bodies at rest do not rotate.
     let still = SVector::<T, NV>::zeros();
+    let recorded = recorded.map(|all| problem.gather(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
         let rates = selection.rates(&(mechanism.contact_rates(t, q, &(free + given)) - after));
-        problem.transport(given, &rates, responses, &mut equations)
+        problem.transport(given, (&rates, recorded.as_ref()), responses, &mut equations)
     });
     let start = transported.map(|(start, correction)| {
         solved.v += correction;
         start
     });
-    let start = recorded.map(|all| problem.gather(&all)).or(start);
+    let start = recorded.or(start);
     acted.free = solved.v;
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());
