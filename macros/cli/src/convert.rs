@@ -6,6 +6,7 @@ use crate::input::Input;
 use crate::names::Names;
 use crate::written::{self, Role, format_number, format_vector};
 use clap::ArgMatches;
+use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
@@ -50,7 +51,7 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     // A file that would not compile as it is, for example with limits that exclude every value, has no valid
     // struct either.
     let graph = Graph::new();
-    input.checked(build_model(description, &graph, cx), cx)?;
+    input.checked(compile(&source, &graph, cx), cx)?;
     let mut struct_of = Struct::new(description);
     let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));

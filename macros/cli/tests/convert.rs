@@ -373,23 +373,25 @@ fn what_cannot_be_converted_is_reported() {
 /// end link.
 #[test]
 fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
-    let inertial = r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+    let inertial = "<inertial><mass value='1'/>\
+        <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let alone = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
     let file = |name: &str, tip: &str, limits: &str| {
-        written(
-            name,
-            &format!(
-                r#"<robot name="two"><link name="base"/><link name="a">{inertial}</link><link name="b">{tip}</link>
-<joint name="j" type="revolute"><parent link="base"/><child link="a"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-<joint name="k" type="revolute"><parent link="a"/><child link="b"/>{limits}</joint></robot>"#
-            ),
-        )
+        let joint = |name: &str, parent: &str, child: &str, limits: &str| {
+            format!(
+                "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
+                 {limits}</joint>"
+            )
+        };
+        let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
+        let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
+        written(name, &format!("<robot name='two'>{links}{joints}</robot>"))
     };
-    let far = r#"<mimic joint="j" multiplier="2" offset="5"/><limit lower="-1" upper="1" effort="1" velocity="1"/>"#;
-    let near = r#"<mimic joint="j" multiplier="2" offset="2"/><limit lower="-1" upper="1" effort="1" velocity="1"/>"#;
-    let alone = r#"<limit lower="-1" upper="1" effort="1" velocity="1"/>"#;
+    let far = format!("<mimic joint='j' multiplier='2' offset='5'/>{alone}");
+    let near = format!("<mimic joint='j' multiplier='2' offset='2'/>{alone}");
     for (name, tip, limits, expected) in [
-        ("far.urdf", inertial, far, Some("the limits of `j` exclude every value")),
-        ("near.urdf", inertial, near, None),
+        ("far.urdf", inertial, far.as_str(), Some("the limits of `j` exclude every value")),
+        ("near.urdf", inertial, &near, None),
         ("massless.urdf", "", alone, Some("singular")),
     ] {
         let file = file(name, tip, limits);

@@ -67,8 +67,8 @@ impl Terms {
 
     /// Combines the coefficients of each power; missing ones are zero.
     fn combine(&self, other: &Self, f: impl Fn(Coefficient, Coefficient) -> Coefficient) -> Self {
-        let at = |terms: &Self, k: usize| terms.0.get(k).copied().unwrap_or_default();
-        Self((0..self.0.len().max(other.0.len())).map(|k| f(at(self, k), at(other, k))).collect())
+        let entry = |terms: &Self, k: usize| terms.0.get(k).copied().unwrap_or_default();
+        Self((0..self.0.len().max(other.0.len())).map(|k| f(entry(self, k), entry(other, k))).collect())
     }
 
     fn plus(&self, other: &Self) -> Self {
@@ -99,7 +99,7 @@ impl Terms {
     }
 
     /// Returns the value at `x`, divided by `x` to the power `degree` if `x` is above one: without overflow.
-    fn at(&self, x: f64, degree: usize) -> Coefficient {
+    fn evaluate(&self, x: f64, degree: usize) -> Coefficient {
         let start = Coefficient::default();
         let horner = |sum: Coefficient, (c, by): (Coefficient, DoubleDouble)| Coefficient {
             value: sum.value * by + c.value,
@@ -115,7 +115,7 @@ impl Terms {
 
     /// Returns the value at `x` up to a positive factor.
     fn sign_at(&self, x: f64) -> f64 {
-        self.at(x, self.0.len().saturating_sub(1)).value.value()
+        self.evaluate(x, self.0.len().saturating_sub(1)).value.value()
     }
 
     /// Returns points between which the polynomial is monotonic, ascending: bounds of all positive roots, and
@@ -150,7 +150,7 @@ impl Terms {
     /// Returns the positive roots at which the sign changes by more than rounding errors of the coefficients.
     fn certain_roots(&self) -> Vec<f64> {
         let is_certain = |x: &f64| {
-            let Coefficient { value, error } = self.at(*x, self.0.len().saturating_sub(1));
+            let Coefficient { value, error } = self.evaluate(*x, self.0.len().saturating_sub(1));
             value.value().abs() > error
         };
         let points: Vec<f64> = self.separators().into_iter().filter(is_certain).collect();
@@ -317,10 +317,11 @@ impl LoopPolynomials {
     }
 
     /// Evaluates numerator and denominator.
-    fn at(&self, x: f64) -> Point {
+    fn point(&self, x: f64) -> Point {
         let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
         let root = x.sqrt();
-        let parts = [&self.numerator, &self.denominator].map(|p| [p.even.at(x, degree), p.odd.at(x, degree)]);
+        let parts = [&self.numerator, &self.denominator]
+            .map(|p| [p.even.evaluate(x, degree), p.odd.evaluate(x, degree)]);
         let [[ne, no], [de, d_o]] = parts;
         let x = Coefficient::exact(x);
         let square =
@@ -370,14 +371,14 @@ impl LoopPolynomials {
             is_negative.then_some(GainMargin { factor: -1.0 / value, frequency })
         };
         let between = self.imaginary().certain_roots().into_iter().filter_map(|x| {
-            let at = self.at(x);
+            let at = self.point(x);
             let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
             is_negative
                 .then(|| GainMargin { factor: -at.squares[1] / at.product.re, frequency: self.frequency(x) })
         });
         let top = self.period.and_then(|h| end(self.limit(false), PI / h));
         let phase = self.level().certain_roots().into_iter().map(|x| PhaseMargin {
-            degrees: (-self.at(x).product).arg().to_degrees(),
+            degrees: (-self.point(x).product).arg().to_degrees(),
             frequency: self.frequency(x),
         });
         Margins {
@@ -392,7 +393,7 @@ impl LoopPolynomials {
         let end = |value: f64| if value.is_finite() { (1.0 + value).abs() } else { f64::INFINITY };
         let ends = [(end(self.limit(false)), top), (end(self.limit(true)), 0.0)];
         let inner = self.slope().positive_roots().into_iter().filter_map(|x| {
-            let Point { product, squares, certain } = self.at(x);
+            let Point { product, squares, certain } = self.point(x);
             let value = product / squares[1];
             certain[1].then(|| ((1.0 + value).norm(), self.frequency(x)))
         });
