@@ -185,7 +185,7 @@ fn crossings_decades_apart() {
     for _ in 0..300 {
         let (a, b) = (random.log_uniform_number(1e-3, 1e3), random.log_uniform_number(1e-3, 1e3));
         let k = random.log_uniform_number(1e-12, 1e12);
-        let open = transfer(&[k], &[1.0, a + b, a * b, 0.0]);
+        let open = transfer_function(&[k], &[1.0, a + b, a * b, 0.0]);
         let margins = open.margins().unwrap();
         let ([gain], [phase]) = (&margins.gain[..], &margins.phase[..]) else {
             panic!("{a} {b} {k}: {margins:?}")
@@ -197,7 +197,8 @@ fn crossings_decades_apart() {
         let lag = (phase.frequency / a).atan() + (phase.frequency / b).atan();
         assert_relatively_close("degrees", phase.degrees, 90.0 - lag.to_degrees(), 1e-9);
         // With a zero-order hold of 1 s, an integrator of gain `k` has magnitude one at `2 asin(k / 2)`.
-        let held = transfer(&[k.min(1.0)], &[1.0, -1.0]).with_period(1.0).unwrap().margins().unwrap();
+        let held =
+            transfer_function(&[k.min(1.0)], &[1.0, -1.0]).with_period(1.0).unwrap().margins().unwrap();
         let ([gain], [phase]) = (&held.gain[..], &held.phase[..]) else { panic!("{k}: {held:?}") };
         assert_relatively_close("frequency", phase.frequency, 2.0 * (0.5 * k.min(1.0)).asin(), 1e-13);
         assert_relatively_close("factor", gain.factor, 2.0 / k.min(1.0), 1e-13);
@@ -207,7 +208,7 @@ fn crossings_decades_apart() {
 /// Compares all crossings of loops with large and small gains with values recomputed with 60 digits (mpmath).
 #[test]
 fn crossings_of_loops_with_extreme_gains() {
-    let steep = transfer(
+    let steep = transfer_function(
         &[8382104296.556898, 26490146733.51389, 65074465968.99992, 93444242998.93744],
         &[
             1.0,
@@ -218,7 +219,7 @@ fn crossings_of_loops_with_extreme_gains() {
             -0.001383857497498535,
         ],
     );
-    let slow = transfer(
+    let slow = transfer_function(
         &[-1714957.3087524266],
         &[
             1.0,
@@ -230,7 +231,7 @@ fn crossings_of_loops_with_extreme_gains() {
             0.0,
         ],
     );
-    let wide = transfer(
+    let wide = transfer_function(
         &[0.11444153383927728, 167.75050094755014, 58143.63665266256],
         &[
             1.0,
@@ -243,7 +244,8 @@ fn crossings_of_loops_with_extreme_gains() {
             0.0,
         ],
     );
-    let weak = transfer(&[2.2212423715779894e-12, 6.663565009317896e-15], &[1.0, 5.657373680400875, 0.0]);
+    let weak =
+        transfer_function(&[2.2212423715779894e-12, 6.663565009317896e-15], &[1.0, 5.657373680400875, 0.0]);
     let gains: [&[[f64; 2]]; 4] = [
         &[[0.0, 0.001383857497498535 / 93444242998.93744], [0.04131015381617908, 6.405517808976807e-16]],
         &[[0.00239056835589427, 2.4811137685910916e-15], [0.23881567495549713, 1.915898294253801e-09]],
