@@ -250,14 +250,14 @@ fn error_of_crossing_block(method: Stepping) -> f64 {
 }
 
 /// Returns the change of the same constant for a box, whose edges are not parallel to its path, and its
-/// rotation: friction has no moment about the normal if all corners slide alike.
+/// rotation: friction has no moment about the normal if all corners slide in the same direction.
 fn error_of_crossing_box(method: Stepping) -> f64 {
     let m = SlidingBox { slope: 0.3, friction: 0.3_f64.tan() };
     let (s, c) = 0.4_f64.sin_cos();
     let q: SVector<f64, 7> = [0.0, 0.0, 0.05, 0.0, 0.0, s, c].into();
     // The velocity is in the axes of the box, which is turned by 0.8 rad.
     let (sine, cosine) = 0.8_f64.sin_cos();
-    let v = [0.1 * cosine + sine, cosine - 0.1 * sine, 0.0, 0.0, 0.0, 0.0].into();
+    let v: SVector<f64, 6> = [0.1 * cosine + sine, cosine - 0.1 * sine, 0.0, 0.0, 0.0, 0.0].into();
     let end = end!(&m, q, v, method, 0.6);
     let downhill = end.v[0] * cosine - end.v[1] * sine;
     let conserved_sum = end.v.fixed_rows::<3>(0).norm() + downhill;

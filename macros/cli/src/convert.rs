@@ -48,7 +48,7 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
-    // A file that would not compile as it is, for example with limits that exclude every value, has no valid
+    // A file that would not compile itself, for example with limits that exclude every value, has no valid
     // struct either.
     let graph = Graph::new();
     input.checked(compile(&source, &graph, cx), cx)?;
