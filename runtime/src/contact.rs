@@ -88,7 +88,7 @@ use crate::integrate::{
     ContinuousInputs, Dynamics, Error, State, System, check_positive, enforce_closed_contacts,
     project_end_of_step, rk4_step_with_contacts,
 };
-use crate::private::{constant, epsilon, to_f64};
+use crate::private::{constant, epsilon, positive_part, to_f64};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -500,7 +500,7 @@ where
     let layout = Layout::of(mechanism);
     for (_, first) in layout.gaps() {
         if let Some(rate) = free.get_mut(first) {
-            *rate = rate.max(T::zero());
+            *rate = positive_part(*rate);
         }
     }
     free += (moved + mechanism.contact_bias(t, q, v)) * h;

@@ -7,7 +7,7 @@ use super::total::Total;
 use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use core::cell::Cell;
 use nalgebra::SVector;
 
@@ -106,7 +106,7 @@ where
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             let (by, place) = layout.pressing(k);
             let of = |vector: &SVector<T, NR>| entry(vector, place);
-            let parts = (of(&rates) * *h).max(T::zero());
+            let parts = positive_part(of(&rates) * *h);
             // Where faces and edges take turns a contact may be at another place than before.
             let Rows { first, count } = layout.rows(by);
             let ways = (first..first + count).fold(of(&apart).abs(), |sum, i| {

@@ -260,7 +260,7 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
         let [axis, angle] = arguments.as_slice() else { return None };
         return Some(axis_rotation(vector_components(axis)?, angle.literal_number()?));
     };
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut m = [[0.0; 3]; 3];
     (m[axis][axis], m[p][p], m[q][q], m[p][q], m[q][p]) = (1.0, c, c, -s, s);
