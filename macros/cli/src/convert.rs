@@ -51,7 +51,7 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     // A file that would not compile itself, for example with limits that exclude every value, has no valid
     // struct either.
     let graph = Graph::new();
-    input.checked(compile(&source, &graph, cx), cx)?;
+    input.result_without_errors(compile(&source, &graph, cx), cx)?;
     let mut struct_of = Struct::new(description);
     let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));

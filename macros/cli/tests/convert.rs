@@ -385,7 +385,7 @@ fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
         };
         let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
         let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
-        written(name, &format!("<robot name='two'>{links}{joints}</robot>"))
+        write_test_file(name, &format!("<robot name='two'>{links}{joints}</robot>"))
     };
     let far = format!("<mimic joint='j' multiplier='2' offset='5'/>{alone}");
     let near = format!("<mimic joint='j' multiplier='2' offset='2'/>{alone}");

@@ -114,7 +114,7 @@ macro_rules! elementary {
     (@vector_of $function:ident $name:ident $x:ident $y:ident) => {
         #[inline(always)]
         fn $name($x: Self, $y: Self) -> Self {
-            let ($x, $y) = ($x.numbers(), $y.numbers());
+            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
             Self::from_array(core::array::from_fn(|k| $function($x[k], $y[k])))
         }
     };
