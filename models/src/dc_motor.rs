@@ -4,8 +4,8 @@ use linkwork::mechanism;
 ///
 /// Source: Franklin, Powell and Emami-Naeini, *Feedback Control of Dynamic Systems* (2015), §2.3.
 ///
-/// - Coordinate: `shaft`, rad; state: `current`, A. Input: `voltage`, V. The language has no electrical units:
-///   the unit of the current is unknown to it, and those of the other electrical quantities follow from it.
+/// - Coordinate: `shaft`, rad; state: `current`, A. Input: `voltage`, V. The language has no electrical
+///   units: the unit of the current is unknown to it, and those of the other electrical quantities follow.
 /// - `L i̇ = u − k ω − R i` and `J ω̇ = k i − c ω`: the constant of the torque, N·m/A, is also that of the
 ///   back-EMF, V·s/rad.
 /// - Steady speed `k u / (k² + R c)`; with the shaft at rest the current rises as `(1 − e^(−R t / L)) u / R`.

@@ -9,9 +9,9 @@ use linkwork::mechanism;
 ///   `drift`, those of the delay.
 /// - The delay of `T` seconds is Padé's of second order, `1 − T s / D` with `D = 1 + T s / 2 + T² s² / 12`:
 ///   it has the gain 1 at all frequencies, and the phase `−2 atan((ω T / 2) / (1 − ω² T² / 12))`, which
-///   differs from `−ω T` by `(ω T)⁵ / 720`.
-/// - `demand = kp e + integral + kd N (e − smoothed)`; the torque is the demand within `±limit`. The excess is
-///   fed back to the integral: at a constant error the demand exceeds the limit by `ki e / tracking`.
+///   differs from `−ω T` by less than `(ω T)⁵ / 720`.
+/// - `demand = kp e + integral + kd N (e − smoothed)`; the torque is the demand within `±limit`. The excess
+///   is fed back to the integral: at a constant error the demand exceeds the limit by `ki e / tracking`.
 /// - Within the limit, the eigenvalues are the roots of
 ///   `D s (J s² + c s)(s + N) + (D − T s)(kp s (s + N) + ki (s + N) + kd N s²) = 0`.
 #[mechanism(derivatives)]

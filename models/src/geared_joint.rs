@@ -2,10 +2,11 @@ use linkwork::mechanism;
 
 /// Motor that drives a link through a gear with backlash, elastic teeth and losses proportional to the load.
 ///
-/// Source: Nordin and Gutman, *Controlling mechanical systems with backlash – a survey*, Automatica 38 (2002);
-/// Siciliano, Sciavicco, Villani and Oriolo, *Robotics* (2009), §5.2.
+/// Source: Nordin and Gutman, *Controlling mechanical systems with backlash – a survey*, Automatica 38
+/// (2002); Siciliano, Sciavicco, Villani and Oriolo, *Robotics* (2009), §5.2.
 ///
-/// - Coordinates: `motor` and `output`, the angles of rotor and link, rad. Input: `drive`, the motor's torque.
+/// - Coordinates: `motor` and `output`, the angles of rotor and link, rad. Input: `drive`, the torque of the
+///   motor, N·m. Output: `torque`, that of the teeth on the link.
 /// - The twist `δ = motor / n − output` is free within `±b / 2`; beyond, the teeth transmit the torque
 ///   `T = k (δ ∓ b / 2)` to the link.
 /// - Sliding teeth take the torque `μ |T| / n` from the motor, in the direction of its rotation. The

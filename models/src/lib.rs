@@ -115,10 +115,10 @@
 //! | drives | freedom | closed form in the test |
 //! | --- | --- | --- |
 //! | [`DcMotor`] (inductance, back-EMF) | 1 and 1 state | currents, speeds, eigenvalues, energy |
-//! | [`GearedJoint`] (backlash, load-dependent losses) | 2 | accelerations, efficiencies, period of oscillations through the backlash |
+//! | [`GearedJoint`] (backlash, losses) | 2 | accelerations, efficiencies, period of oscillations |
 //! | [`SeriesElasticJoint`] | 2 | accelerations, transfer function of the torque |
-//! | [`DelayedServo`] (PID with anti-windup) | 1 and 4 states | characteristic polynomial, limits of the integral, phase of the delay |
-//! | [`MuscleForearm`] (Hill-type, with a tendon) | 1 and 2 states | activation over time, hyperbolas of force and speed, isometric equilibrium |
+//! | [`DelayedServo`] (PID with anti-windup) | 1 and 4 states | characteristic polynomial, phase of the delay |
+//! | [`MuscleForearm`] (Hill-type) | 1 and 2 states | activation over time, force and speed |
 //!
 //! # By joint
 //!

@@ -1,6 +1,6 @@
-use crate::testing::{assert_close, assert_derivatives, assert_near, precisely};
-use linkwork::prelude::*;
+use crate::testing::{assert_close, assert_derivatives, assert_near, precise_integrator};
 use linkwork::at;
+use linkwork::prelude::*;
 use linkwork_models::DcMotor;
 
 const S: DcMotor = DcMotor {
@@ -31,7 +31,7 @@ fn current_and_speed_rise() -> Result<(), Error> {
     let heavy = DcMotor { inertia: 1e9, ..S };
     let whole = heavy.extended();
     let run = simulate(&whole).from([0.0], [0.0, 0.0]).inputs(|_, _, _| [12.0].into());
-    let end = run.duration(0.02).method(precisely()).finish()?;
+    let end = run.duration(0.02).method(precise_integrator()).finish()?;
     assert_close(end.v[1], 12.0 / 1.3 * (1.0 - (-1.3_f64).exp()), 1e-10);
 
     let whole = S.extended();

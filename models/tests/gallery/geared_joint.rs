@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_derivatives, assert_near, precisely};
+use crate::testing::{assert_close, assert_derivatives, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::GearedJoint;
 use std::f64::consts::PI;
@@ -57,7 +57,7 @@ fn twist_oscillates_through_the_backlash() -> Result<(), Error> {
     // The centre of mass is at rest: both speeds are inversely proportional to the inertias.
     let rotor = speed * reduced / (80.0 * 80.0 * 2e-5);
     let start = SVector::from([80.0 * rotor, rotor - speed]);
-    let run = simulate(&lossless).from([0.0, 0.0], start).duration(period).method(precisely());
+    let run = simulate(&lossless).from([0.0, 0.0], start).duration(period).method(precise_integrator());
     let end = run.finish()?;
     assert_near(end.v, start, 1e-5);
     assert_close(end.q[0] / 80.0 - end.q[1], 0.0, 1e-7);

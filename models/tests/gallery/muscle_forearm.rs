@@ -1,6 +1,6 @@
-use crate::testing::{assert_close, assert_derivatives, precisely};
-use linkwork::prelude::*;
+use crate::testing::{assert_close, assert_derivatives, precise_integrator};
 use linkwork::at;
+use linkwork::prelude::*;
 use linkwork_models::MuscleForearm;
 
 const S: MuscleForearm = MuscleForearm {
@@ -65,7 +65,7 @@ fn activation_over_time() -> Result<(), Error> {
     let whole = S.extended();
     let run = |from: f64, to: f64, time: f64| {
         let run = simulate(&whole).from([0.0], [0.0, from, 1.0]).inputs(move |_, _, _| [to].into());
-        run.duration(time).method(precisely()).finish().map(|end| end.v[1])
+        run.duration(time).method(precise_integrator()).finish().map(|end| end.v[1])
     };
     // Time of the rise from 0.1 to 0.9 at full excitation, by separation of the variables.
     let time = 0.015 * (-1.5 * (0.9 - 0.1) - 2.0 * (0.1_f64 / 0.9).ln());

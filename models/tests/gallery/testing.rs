@@ -77,8 +77,9 @@ pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
     let (mut by_q, mut by_v, mut by_u) = (linear.by_q, linear.by_v, linear.by_u);
     for k in 0..NV {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
-        let moved = |step| m.integrate(q, &step);
-        by_q.set_column(k, &slope(acceleration(&moved(step), v, u), acceleration(&moved(-step), v, u)));
+        let displaced = |step| m.integrate(q, &step);
+        let [above, below] = [step, -step].map(|step| acceleration(&displaced(step), v, u));
+        by_q.set_column(k, &slope(above, below));
         by_v.set_column(k, &slope(acceleration(q, &(v + step), u), acceleration(q, &(v - step), u)));
     }
     for k in 0..NU {

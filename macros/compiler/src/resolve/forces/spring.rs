@@ -93,10 +93,12 @@ fn energy_of<'g>(
     let force = read_scalar(e, cx)?;
     if symbols_in(&[force]).iter().any(|s| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_))) {
         let message = "the force of a spring is a law of `stretch`, but this contains coordinates";
-        cx.error(e.place.clone(), message).help("write the law in terms of `stretch` or `length`").help(
-            "a force that depends on other coordinates is a `Force` with a `value`, or follows from an \
+        cx.report_error(e.place.clone(), message)
+            .add_help("write the law in terms of `stretch` or `length`")
+            .add_help(
+                "a force that depends on other coordinates is a `Force` with a `value`, or follows from an \
              `energy`",
-        );
+            );
         return None;
     }
     let value_of_local = |e: &syntax::Expr| {
