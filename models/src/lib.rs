@@ -117,7 +117,7 @@
 //! | [`DcMotor`] (inductance, back-EMF) | 1 and 1 state | currents, speeds, eigenvalues, energy |
 //! | [`GearedJoint`] (backlash, losses) | 2 | accelerations, efficiencies, period of oscillations |
 //! | [`SeriesElasticJoint`] | 2 | accelerations, transfer function of the torque |
-//! | [`DelayedServo`] (PID with anti-windup) | 1 and 4 states | characteristic polynomial, phase of the delay |
+//! | [`DelayedServo`] (PID) | 1 and 4 states | characteristic polynomial, phase of the delay |
 //! | [`MuscleForearm`] (Hill-type) | 1 and 2 states | activation over time, force and speed |
 //!
 //! # By joint

@@ -14,13 +14,13 @@ pub(super) const OTHER_INPUTS: &str =
 pub(super) const TINY: f64 = 1e-15;
 
 /// Force as an expression of inputs, states, length and rate.
-pub(super) struct Law {
+pub(super) struct ActuatorLaw {
     place: Place,
     actuator: String,
     /// Inputs: the word that distinguishes each from the others of this actuator, and its unit.
     pub(super) inputs: Vec<(String, &'static str)>,
     /// States of first order.
-    pub(super) states: Vec<State>,
+    pub(super) states: Vec<ActuatorState>,
     /// Force.
     pub(super) force: Formula,
     /// Maximum force.
@@ -28,7 +28,7 @@ pub(super) struct Law {
 }
 
 /// State of first order of an actuator.
-pub(super) struct State {
+pub(super) struct ActuatorState {
     /// Name of the state's field.
     pub(super) ident: String,
     /// Documentation.
@@ -40,7 +40,7 @@ pub(super) struct State {
 }
 
 /// Name of an actuator, of its inputs and of its states.
-pub(super) struct Named<'n> {
+pub(super) struct ActuatorNames<'n> {
     /// Name of the actuator.
     pub(super) actuator: &'n str,
     /// Unit of the length of the actuator.
@@ -51,10 +51,10 @@ pub(super) struct Named<'n> {
     pub(super) input: &'n dyn Fn(&str) -> String,
 }
 
-impl Law {
+impl ActuatorLaw {
     /// Returns a law without force.
-    pub(super) fn new(named: &Named<'_>, place: &Place) -> Law {
-        Law {
+    pub(super) fn new(named: &ActuatorNames<'_>, place: &Place) -> ActuatorLaw {
+        ActuatorLaw {
             place: place.clone(),
             actuator: named.actuator.to_string(),
             inputs: Vec::new(),
@@ -80,14 +80,14 @@ impl Law {
     }
 
     /// Adds an input, and returns its value.
-    pub(super) fn input(&mut self, word: &str, unit: &'static str, named: &Named<'_>) -> Formula {
+    pub(super) fn input(&mut self, word: &str, unit: &'static str, named: &ActuatorNames<'_>) -> Formula {
         let name = (named.input)(word);
         self.inputs.push((name.clone(), unit));
         Formula::name(DriveQuantity::Input.name_for(&name), &self.place)
     }
 
     /// Returns the value of a state.
-    pub(super) fn state(&self, word: &str, named: &Named<'_>) -> Formula {
+    pub(super) fn state(&self, word: &str, named: &ActuatorNames<'_>) -> Formula {
         Formula::name((named.field)(word), &self.place)
     }
 
@@ -98,11 +98,11 @@ impl Law {
         what: &str,
         unit: &'static str,
         rate: Formula,
-        named: &Named<'_>,
+        named: &ActuatorNames<'_>,
     ) {
         let comma = if unit == "1" || unit == "any" { String::new() } else { format!(", {unit}") };
         let about = format!("{what} of the actuator `{}`{comma}.", named.actuator);
-        self.states.push(State { ident: (named.field)(word), about, unit, rate });
+        self.states.push(ActuatorState { ident: (named.field)(word), about, unit, rate });
     }
 
     /// Returns `b₀ + b₁ length + b₂ rate`.

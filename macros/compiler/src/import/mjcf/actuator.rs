@@ -4,7 +4,7 @@
 //! zero. The force is `gain · u + b₀ + b₁ length + b₂ rate`, or an expression of states and inputs (MuJoCo,
 //! *Computation*, "Actuation model").
 
-use super::activation::{Law, Named, OTHER_INPUTS};
+use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
 use super::defaults::Element;
 use super::formula::Formula;
 use super::law::{Force, read_force};
@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
             word => unused_name(&format!("{}_{word}", named.text), |name| names.contains(name)),
         };
         let length = if turns { "rad" } else { "m" };
-        let quantities = Named { actuator: &named.text, length, field: &field, input: &input };
+        let quantities = ActuatorNames { actuator: &named.text, length, field: &field, input: &input };
         let Some(force) = read_force(any, &classes, &quantities, cx) else { return };
         match force {
             Force::Affine { gain, bias } => {
@@ -171,7 +171,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the inputs, the states and the force of an actuator.
-    fn add_law(&mut self, name: Name, on: DriveOn, law: Law) {
+    fn add_law(&mut self, name: Name, on: DriveOn, law: ActuatorLaw) {
         for (input, unit) in law.inputs {
             let name = Name { text: input, place: name.place.clone() };
             let on = DriveOn::Sum(Vec::new());

@@ -1,7 +1,7 @@
 //! `<dcmotor>`: winding with resistance and inductance, back-EMF, temperature, cogging, friction of bristles,
 //! and the controller of the motor (MuJoCo 4.0, "DC motor technical note").
 
-use super::activation::{CONTROLS, Law, Named, OTHER_INPUTS, TINY, controls, refuse_limit};
+use super::activation::{ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, controls, refuse_limit};
 use super::defaults::Element;
 use super::formula::Formula;
 use super::record::Record;
@@ -10,10 +10,10 @@ use crate::import::imported::Placed;
 
 /// Writes the force of a motor with its states: temperature, deflection of the bristles, current.
 pub(super) fn write(
-    law: &mut Law,
+    law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let (dynprm, gain, bias) = (&record.dynprm, &record.gain, &record.bias);
@@ -91,11 +91,11 @@ fn refuse<T>(actuator: &Element<'_>, attribute: &str, message: &str, cx: &mut Cx
 
 /// Adds the inputs, and returns the voltage. The controller commands a torque and compensates the back-EMF.
 fn voltage(
-    law: &mut Law,
+    law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     gain: &[f64; 10],
     none: bool,
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<Formula> {
     let [resistance, constant, _, _, kp, ki, kd, maximum, ..] = *gain;
@@ -144,10 +144,10 @@ fn voltage(
 /// Adds the friction of LuGre's model: stiffness and damping of the bristles, and Coulomb torque, static
 /// torque and Stribeck speed.
 fn bristles(
-    law: &mut Law,
+    law: &mut ActuatorLaw,
     [stiffness, damping]: [f64; 2],
     [coulomb, held, stribeck]: [f64; 3],
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
 ) {
     let (rate, state) = (law.rate(), law.state("bristles", named));
     let decay = (-(rate.clone() * (1.0 / stribeck.max(TINY))).square()).function("exp");

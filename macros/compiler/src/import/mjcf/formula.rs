@@ -26,7 +26,7 @@ impl Formula {
         Formula::number(value, &self.0.place)
     }
 
-    fn with(self, op: BinaryOp, other: Formula) -> Formula {
+    fn operation(self, op: BinaryOp, other: Formula) -> Formula {
         Formula(Expr::binary_operation(op, self.0, other.0))
     }
 
@@ -68,28 +68,28 @@ impl Formula {
 impl Add for Formula {
     type Output = Formula;
     fn add(self, other: Formula) -> Formula {
-        self.with(BinaryOp::Add, other)
+        self.operation(BinaryOp::Add, other)
     }
 }
 
 impl Sub for Formula {
     type Output = Formula;
     fn sub(self, other: Formula) -> Formula {
-        self.with(BinaryOp::Sub, other)
+        self.operation(BinaryOp::Sub, other)
     }
 }
 
 impl Mul for Formula {
     type Output = Formula;
     fn mul(self, other: Formula) -> Formula {
-        self.with(BinaryOp::Mul, other)
+        self.operation(BinaryOp::Mul, other)
     }
 }
 
 impl Div for Formula {
     type Output = Formula;
     fn div(self, other: Formula) -> Formula {
-        self.with(BinaryOp::Div, other)
+        self.operation(BinaryOp::Div, other)
     }
 }
 

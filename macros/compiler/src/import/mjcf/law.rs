@@ -1,6 +1,6 @@
 //! Parameters of an actuator → its force, with the states of its activation.
 
-use super::activation::{CONTROLS, Law, Named, OTHER_INPUTS, TINY, controls, refuse_limit};
+use super::activation::{ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, controls, refuse_limit};
 use super::dc_motor;
 use super::defaults::Element;
 use super::muscle;
@@ -18,7 +18,7 @@ pub(super) enum Force {
         bias: [f64; 3],
     },
     /// Any other force.
-    Law(Law),
+    Law(ActuatorLaw),
 }
 
 /// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
@@ -26,7 +26,7 @@ pub(super) enum Force {
 pub(super) fn read_force<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<Force> {
     let record = read_record(actuator, classes, cx);
@@ -40,7 +40,7 @@ pub(super) fn read_force<'a>(
         let bias = if record.bias_kind == "affine" { [b0, b1, b2] } else { [0.0; 3] };
         return Some(Force::Affine { gain: g0, bias });
     }
-    let mut law = Law::new(named, &element_position(actuator.node, cx));
+    let mut law = ActuatorLaw::new(named, &element_position(actuator.node, cx));
     match record.gain_kind {
         "dcmotor" => dc_motor::write(&mut law, actuator, &record, named, cx)?,
         "pid" => pid(&mut law, actuator, &record, named, cx)?,
@@ -98,10 +98,10 @@ fn check(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
 
 /// Writes the force `gain · w + bias` with an optional state `w` in the place of the input.
 fn general(
-    law: &mut Law,
+    law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let muscle = match [record.dynamics, record.gain_kind, record.bias_kind].contains(&"muscle") {
@@ -151,10 +151,10 @@ fn general(
 /// Writes the force of a PID controller: `kp (pos − length) + kv (vel − rate) + ff + ki z` with
 /// `ż = pos − length`.
 fn pid(
-    law: &mut Law,
+    law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
-    named: &Named<'_>,
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let has_states = record.dynamics == "pid";

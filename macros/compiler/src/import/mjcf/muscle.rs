@@ -1,7 +1,7 @@
 //! Muscles: curves of force over length and speed, and the rate of the activation (MuJoCo, *Modeling*,
 //! "Muscles").
 
-use super::activation::{Law, OTHER_INPUTS, TINY};
+use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
 use super::defaults::Element;
 use super::formula::Formula;
 use super::record::Record;
@@ -55,13 +55,13 @@ impl Muscle {
     }
 
     /// Returns the normalised length.
-    fn length(&self, prm: &[f64; 9], law: &Law) -> Formula {
+    fn length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> Formula {
         let unit = self.unit_length(prm);
         law.length() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
     }
 
     /// Returns the force at full activation, which is negative.
-    pub(super) fn gain(&self, law: &Law) -> Formula {
+    pub(super) fn gain(&self, law: &ActuatorLaw) -> Formula {
         let [_, _, force, _, lmin, lmax, vmax, _, fvmax] = self.gain;
         let length = self.length(&self.gain, law);
         let speed = law.rate() * (1.0 / (self.unit_length(&self.gain) * vmax));
@@ -83,7 +83,7 @@ impl Muscle {
     }
 
     /// Returns the passive force, which is negative.
-    pub(super) fn bias(&self, law: &Law) -> Formula {
+    pub(super) fn bias(&self, law: &ActuatorLaw) -> Formula {
         let [_, _, force, _, _, lmax, _, fpmax, _] = self.bias;
         let length = self.length(&self.bias, law);
         let border = 0.5 * (1.0 + lmax);
@@ -109,7 +109,12 @@ fn refuse<T>(
 
 /// Returns the rate of the activation. Time constants depend on the activation and on the direction of its
 /// change; `dynprm` contains both, and the width over which they are blended.
-pub(super) fn activation_rate(law: &Law, input: Formula, state: Formula, record: &Record<'_>) -> Formula {
+pub(super) fn activation_rate(
+    law: &ActuatorLaw,
+    input: Formula,
+    state: Formula,
+    record: &Record<'_>,
+) -> Formula {
     let [rise, fall, width, ..] = record.dynprm;
     let factor = state.clone().clamp(0.0, 1.0) * 1.5 + 0.5;
     let excess = input.clamp(0.0, 1.0) - state;

@@ -160,18 +160,18 @@ fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<
     let (times, mut gain) = if known { (own.dynprm, own.gain) } else { (list(&[0.01, 0.04]), MUSCLE) };
     let [rise, fall, width, ..] = times;
     // Negative values leave those of the defaults.
-    let kept = |found: f64, usual: f64| if found >= 0.0 { found } else { usual };
+    let nonnegative_or = |found: f64, usual: f64| if found >= 0.0 { found } else { usual };
     let times = some(node, "timeconst", [rise, fall], cx).map_or([rise, fall], |found| found.value);
     let range = some(node, "range", [gain[0], gain[1]], cx).map_or([gain[0], gain[1]], |found| found.value);
-    gain[0] = kept(range[0], gain[0]);
-    gain[1] = kept(range[1], gain[1]);
+    gain[0] = nonnegative_or(range[0], gain[0]);
+    gain[1] = nonnegative_or(range[1], gain[1]);
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
     for (k, attribute) in ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"].into_iter().enumerate()
     {
-        gain[k + 2] = kept(said(attribute).unwrap_or(-1.0), gain[k + 2]);
+        gain[k + 2] = nonnegative_or(said(attribute).unwrap_or(-1.0), gain[k + 2]);
     }
     let width = said("tausmooth").unwrap_or(width);
-    let dynprm = list(&[kept(times[0], rise), kept(times[1], fall), width]);
+    let dynprm = list(&[nonnegative_or(times[0], rise), nonnegative_or(times[1], fall), width]);
     Record {
         written: "muscle",
         dynamics: "muscle",

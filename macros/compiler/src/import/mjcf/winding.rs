@@ -40,7 +40,7 @@ pub(super) fn parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_>) -> 
     [dynprm, gain, bias]
 }
 
-/// Returns resistance and motor constant from those of the file and from the nominal voltage, stall torque and
+/// Returns resistance and motor constant from those of the file, nominal voltage, stall torque and
 /// no-load speed.
 fn winding([torque, mut emf]: [f64; 2], resistance: f64, nominal: [f64; 3], friction: f64) -> [f64; 2] {
     let [voltage, stall, speed] = nominal;
