@@ -54,6 +54,7 @@
 //! - [contact](guide/contact/index.html): impacts, friction, joint stops;
 //! - [functions](guide/functions/index.html) that are generated, and printed equations;
 //! - [simulating](guide/simulating/index.html): integrators, inputs, events;
+//! - [drives](guide/drives/index.html): motors, gears, series springs, delays, controllers, muscles;
 //! - [control](guide/control/index.html): regulators, estimators, optimal control;
 //! - [batches](guide/batches/index.html): many states at once;
 //! - [live pages](guide/live/index.html): simulation in a browser;
