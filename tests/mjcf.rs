@@ -108,6 +108,40 @@ fn cables_and_sites() {
     check_robot(&Cables, "cables");
 }
 
+/// Motors, filters, integrals, cylinders and muscles with their states, and polynomial springs and dampers.
+/// The script `peers/drives.py` computed the reference values.
+#[test]
+fn drives_with_states() {
+    #[mechanism(mjcf = "data/mjcf/drives.xml", derivatives)]
+    #[derive(Clone, Copy)]
+    struct Drives;
+
+    assert_eq!(Drives::INPUTS[6..11], ["triceps", "servo_pos", "servo_vel", "servo_ff", "holding"]);
+    assert_eq!(Drives::INPUTS[14..], ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]);
+    let drives = Drives::FILE;
+    let whole = drives.extended();
+    let rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
+        whole.forward_dynamics(0.0, q, v, &whole.generalized_forces(0.0, q, v, u))
+    };
+    for case in Record::load("mujoco/drives.json").records_with_key("cases") {
+        let (q, u) = (case.vector_with_key("q"), case.vector_with_key("u"));
+        let v =
+            SVector::from_column_slice(&[case.numbers_with_key("v"), case.numbers_with_key("x")].concat());
+        let expected = [case.numbers_with_key("a"), case.numbers_with_key("rates")].concat();
+        assert_close("rates", rates(&q, &v, &u).as_slice(), &expected, FORWARD);
+
+        let linear = at(&whole, 0.0).linear_motion(&q, &v, &u);
+        let step = SVector::<f64, 18>::from_fn(|k, _| (1.3 * k as f64).cos());
+        let displaced = |h: f64| {
+            let q = whole.integrate(&q, &(step * h));
+            rates(&q, &(v + step * h), &(u + step * h))
+        };
+        let slope = (displaced(1e-6) - displaced(-1e-6)) / 2e-6;
+        let found = (linear.by_q + linear.by_v + linear.by_u) * step;
+        assert_close("derivatives", found.as_slice(), slope.as_slice(), 1e-6);
+    }
+}
+
 /// The drag of a medium acts on each body as on the box with the same inertia.
 #[test]
 fn a_medium_brakes() {

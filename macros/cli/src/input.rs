@@ -11,6 +11,7 @@ use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::{
     DeclaredStruct, Source, compile, compile_with, derive_above, mechanism_declarations, read_source,
+    reject_reproducible,
 };
 use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
@@ -132,7 +133,9 @@ impl Input {
         let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
         linkwork_jit::without_rust(&mut source);
         let passes = Passes { lanes: false, ..Passes::default() };
-        let (model, output) = self.result_without_errors(compile_with(&source, graph, passes, cx), cx)?;
+        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with(&source, graph, passes, cx));
+        let (model, output) = self.result_without_errors(compiled, cx)?;
         let equations = output.equations.mathml.clone();
         let robot = linkwork_jit::compiled(&source, &model, output);
         Ok(Loaded { source, model, robot, equations })

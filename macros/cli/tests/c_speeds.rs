@@ -16,14 +16,20 @@ fn format_c_array(name: &str, numbers: &[f64]) -> String {
     format!("    const double {name}[] = {{{}}};\n", list.join(", "))
 }
 
-/// Returns the numbers that the C program prints, one line per function.
-fn compile_and_run(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds");
+/// A function of the exported code, its call, and the results in Rust.
+type Entry = (&'static str, String, Vec<f64>);
+
+/// Exports the mechanism in an arithmetic, and compiles it with the given flags. Returns the numbers that the
+/// program prints, one line per function.
+fn compile_and_run(entries: &[Entry], given: &str, arithmetic: &str, flags: &[&str]) -> Vec<Vec<f64>> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds").join(arithmetic);
     std::fs::create_dir_all(&folder).expect("a folder of the tests'");
     let exported = Command::new(env!("CARGO_BIN_EXE_linkwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(["export", "c", "--out"])
         .arg(&folder)
+        .arg("--with")
+        .arg(format!("arithmetic = {arithmetic}"))
         .arg("tests/mechanisms/speeds.rs")
         .output()
         .expect("the command starts");
@@ -45,7 +51,8 @@ fn compile_and_run(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f
     std::fs::write(folder.join("main.c"), main).expect("a file of the tests'");
     let compiled = Command::new("cc")
         .current_dir(&folder)
-        .args(["-std=c99", "-O1", "-Wall", "-Wextra", "-pedantic", "-Werror"])
+        .args(["-Wall", "-Wextra", "-pedantic", "-Werror"])
+        .args(flags)
         .args(["-o", "main", "juggler.c", "main.c", "-lm"])
         .output()
         .expect("the compiler starts");
@@ -62,8 +69,8 @@ fn concatenate_results(parts: &[&[f64]]) -> Vec<f64> {
     parts.concat()
 }
 
-#[test]
-fn speeds_are_the_same_in_c() {
+/// Returns the functions with their results in Rust, and the declarations of their arguments in C.
+fn entries() -> (Vec<Entry>, String) {
     let m = Juggler { axial: 0.7 };
     const N: usize = Juggler::NV;
     let sample_vector = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
@@ -168,22 +175,48 @@ fn speeds_are_the_same_in_c() {
     given.push_str(&format_c_array("q", q.as_slice()));
     given.push_str(&format_c_array("there", there.as_slice()));
     given.push_str(&format_c_array("u", u.as_slice()));
-    let calls: Vec<(&str, String, Vec<f64>)> = entries
-        .into_iter()
-        .map(|(name, call, expected)| {
-            // Calls have the frame argument directly after the parameters.
-            (name, format!("juggler_{name}{call}"), expected)
-        })
-        .collect();
-    let borrowed: Vec<(&str, &str, Vec<f64>)> =
-        calls.iter().map(|(name, call, expected)| (*name, call.as_str(), expected.clone())).collect();
-    let found = compile_and_run(&borrowed, &given);
-    assert_eq!(found.len(), borrowed.len());
-    for ((name, _, expected), found) in borrowed.iter().zip(found) {
-        let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
-        assert_eq!(found.len(), expected.len(), "{name}");
-        for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
-            assert!((found - expected).abs() < 1e-11 * size, "{name}, {k}: {found} is not {expected}");
+    // Calls have the frame argument directly after the parameters.
+    let entries = entries.into_iter();
+    let calls = entries.map(|(name, call, expected)| (name, format!("juggler_{name}{call}"), expected));
+    (calls.collect(), given)
+}
+
+/// Checks results with a tolerance relative to the largest entry.
+fn check(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+    let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+    assert_eq!(found.len(), expected.len(), "{name}");
+    for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert!((found - expected).abs() <= tolerance * size, "{name}, {k}: {found} is not {expected}");
+    }
+}
+
+#[test]
+fn speeds_are_the_same_in_c() {
+    let (entries, given) = entries();
+    let found = compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
+    assert_eq!(found.len(), entries.len());
+    for ((name, _, expected), found) in entries.iter().zip(found) {
+        check(name, &found, expected, 1e-11);
+    }
+}
+
+/// Compilers may fuse products and sums by default, and use other instructions. Rust does not, and without
+/// instructions for fused products its operations are those of reproducible arithmetic. Differences of
+/// configurations contain an arc tangent of the platform.
+#[test]
+fn reproducible_code_in_c_has_the_bits_of_rust() {
+    let (mut entries, given) = entries();
+    entries.retain(|(name, ..)| !name.ends_with("transition"));
+    let found = compile_and_run(&entries, &given, "reproducible", &["-std=gnu11", "-O2", "-march=native"]);
+    assert_eq!(found.len(), entries.len());
+    let same_operations = cfg!(all(target_arch = "x86_64", not(target_feature = "fma"), debug_assertions));
+    let mut others = Vec::new();
+    for ((name, _, expected), found) in entries.iter().zip(found) {
+        check(name, &found, expected, 1e-11);
+        if found != *expected {
+            others.push(*name);
         }
     }
+    let expected: &[&str] = if same_operations { &["difference"] } else { &others };
+    assert_eq!(others, expected, "functions with other bits");
 }

@@ -144,6 +144,21 @@ fn what_cannot_be_done_is_said() {
         (&["export", "wgsl", "pendulum.rs", "--scalar", "double"], 2, "WGSL has no double precision"),
         (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "use `--prefix x2x`"),
         (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "use `--prefix class_`"),
+        (
+            &["export", "cuda", "pendulum.rs", "--with", "arithmetic = reproducible"],
+            1,
+            "kernels have no reproducible arithmetic",
+        ),
+        (
+            &["simulate", "pendulum.rs", "--with", "arithmetic = reproducible"],
+            1,
+            "loaded mechanisms have no reproducible arithmetic",
+        ),
+        (
+            &["export", "c", "pendulum.rs", "--with", "arithmetic = reproducible", "--scalar", "float"],
+            1,
+            "single precision has no reproducible arithmetic in C",
+        ),
         (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write options that request functions"),
     ] {
         let (found, _, error) = run_linkwork(&here, arguments);

@@ -367,3 +367,44 @@ fn what_cannot_be_converted_is_reported() {
     let (status, stderr) = run_command_line(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
     assert!(status == Some(2) && stderr.contains("a file that ends in .rs, not panda.sdf"), "{stderr}");
 }
+
+/// Checks that `convert` rejects what `check` rejects, with the same messages: errors that only the whole
+/// mechanism shows, such as limits of a mimic joint and its leader that exclude every value, and a massless
+/// end link.
+#[test]
+fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
+    let inertial = "<inertial><mass value='1'/>\
+        <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let alone = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+    let file = |name: &str, tip: &str, limits: &str| {
+        let joint = |name: &str, parent: &str, child: &str, limits: &str| {
+            format!(
+                "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
+                 {limits}</joint>"
+            )
+        };
+        let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
+        let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
+        write_test_file(name, &format!("<robot name='two'>{links}{joints}</robot>"))
+    };
+    let far = format!("<mimic joint='j' multiplier='2' offset='5'/>{alone}");
+    let near = format!("<mimic joint='j' multiplier='2' offset='2'/>{alone}");
+    for (name, tip, limits, expected) in [
+        ("far.urdf", inertial, far.as_str(), Some("the limits of `j` exclude every value")),
+        ("near.urdf", inertial, &near, None),
+        ("massless.urdf", "", alone, Some("singular")),
+    ] {
+        let file = file(name, tip, limits);
+        let run = |command: &str| {
+            let mut of = Command::new(env!("CARGO_BIN_EXE_linkwork"));
+            let output = of.arg(command).arg(&file).output().unwrap();
+            (output.status.success(), String::from_utf8(output.stderr).unwrap())
+        };
+        let (check, convert) = (run("check"), run("convert"));
+        assert_eq!(check.0, expected.is_none(), "{check:?}");
+        assert_eq!(convert.0, check.0, "{convert:?}");
+        if let Some(expected) = expected {
+            assert!(check.1.contains(expected) && convert.1.contains(expected), "{check:?} {convert:?}");
+        }
+    }
+}

@@ -354,15 +354,20 @@ fn derive_functions<'g>(
     let facts = Facts { calls, calls_linear, ..facts.clone() };
     let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
     let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
-    finish_lowering(&mut functions);
+    finish_lowering(&mut functions, requests.reproducible);
     functions
 }
 
-/// Applies the last passes of lowering, which consider whole programs.
-fn finish_lowering(functions: &mut [Function]) {
+/// Applies the last passes of lowering, which consider whole programs. In reproducible arithmetic, a program
+/// computes the same bits as its variant with lanes.
+fn finish_lowering(functions: &mut [Function], reproducible: bool) {
     for f in functions {
         pipeline::begin_function(&f.name);
         f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
+        if let Some(simd) = f.program.simd.take_if(|_| reproducible) {
+            let program = simd.without_lanes().run_passes(&[pipeline::SCHEDULE]);
+            f.program = Program { simd: Some(simd), ..program };
+        }
     }
 }
 

@@ -97,10 +97,12 @@ pub fn export_c(
     cx: &mut Diagnostics,
 ) -> Option<export::c::Files> {
     let graph = Graph::new();
-    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    // Reproducible programs without lanes compute the same bits as those with lanes.
+    let reproducible = source.mechanism.requests.reproducible;
+    let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
+    let options = &export::c::Options { left_out: rust_only(source), reproducible, ..options.clone() };
     export::c::export_c_source(&model, &output, &tables, options)
         .map_err(|unfit| report_unfit(&model, unfit, cx))
         .ok()
@@ -143,6 +145,7 @@ pub fn export_fmu(
     start: &export::fmu::StartValues,
     cx: &mut Diagnostics,
 ) -> Option<export::fmu::FmuFiles> {
+    reject_reproducible(source, "FMUs", cx)?;
     let graph = Graph::new();
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
@@ -164,6 +167,7 @@ fn compile_for_registers<'g>(
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
+    reject_reproducible(source, "kernels", cx)?;
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, mut output) = compile_with(source, graph, passes, cx)?;
     check_tree(&model, &output, cx)?;
@@ -173,6 +177,19 @@ fn compile_for_registers<'g>(
         function.program = std::mem::take(&mut function.program).with_few_live_values(&lengths);
     }
     Some((model, output))
+}
+
+/// Rejects mechanisms with reproducible arithmetic, which the target, a plural, does not have.
+pub fn reject_reproducible(source: &Source, target: &str, cx: &mut Diagnostics) -> Option<()> {
+    if !source.mechanism.requests.reproducible {
+        return Some(());
+    }
+    let place = source.mechanism.description.name.place.clone();
+    cx.report_error(place, format!("{target} have no reproducible arithmetic")).add_help(
+        "remove `arithmetic = reproducible`, or compile the mechanism in Rust or with `linkwork export c`: \
+         both have the same bits on every machine",
+    );
+    None
 }
 
 /// Rejects mechanisms with constraints or contacts, whose functions need solvers.
@@ -218,6 +235,10 @@ fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut 
         export::c::Unfit::SingleCasadi => (
             "CasADi has no functions of single precision".to_string(),
             "export them in double precision".to_string(),
+        ),
+        export::c::Unfit::Irreproducible(what) => (
+            format!("{what} has no reproducible arithmetic in C"),
+            "remove it or `arithmetic = reproducible`; functions in Rust are reproducible".to_string(),
         ),
         export::c::Unfit::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),

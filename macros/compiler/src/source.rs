@@ -47,7 +47,7 @@ pub fn read_source(
 /// Merges the mechanism of an imported file into the description. Elements of the file precede those of the
 /// struct.
 fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
-    let Mechanism { description, shell, .. } = mechanism;
+    let Mechanism { description, shell, requests, .. } = mechanism;
     // All of it: a part that is not named here does not compile.
     let import::Imported {
         bodies,
@@ -58,6 +58,7 @@ fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx
         gravity,
         limits,
         fields,
+        rates,
         is_ground,
         contacts,
         collisions,
@@ -69,19 +70,27 @@ fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx
     for field in &fields {
         if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
             cx.report_error(own.place.clone(), format!("the name `{}` is used twice", own.text)).add_help(
-                format!(
-                    "the field for the inertial parameters of `{}` has this name: choose another",
-                    field.of
-                ),
+                format!("the field for values of `{}` in the file has this name: choose another", field.of),
             );
         }
     }
     for field in &fields {
         let place = description.name.place.clone();
         let name_at_place = |text| syntax::Name { text, place: place.clone() };
+        if let Some((text, rate)) = rates.iter().find(|(text, _)| *text == field.ident) {
+            description.states.push((name_at_place(text.clone()), description.parameters.len()));
+            description.outputs.push(syntax::Definition {
+                name: name_at_place(format!("{text}{}", syntax::RATE_OF_STATE)),
+                rank: syntax::Rank::Scalar,
+                value: rate.clone(),
+                resolved_in: None,
+            });
+        }
         description.parameters.extend(field.member_accesses().into_iter().map(name_at_place));
         description.file_units.extend(&field.units);
     }
+    requests.file_parameters |= !rates.is_empty();
+    requests.sensitivities |= requests.derivatives && !rates.is_empty();
     shell.file_fields = fields;
     let own_bodies = std::mem::replace(&mut description.bodies, bodies);
     let own_joints = std::mem::replace(&mut description.joints, joints);

@@ -173,3 +173,15 @@ fn a_mistake_leaves_every_frame() {
     assert!(!generated_code("", CART).contains(any));
     assert!(generated_code("", &format!("{CART} #[output(unknown)] mistake: Scalar,")).contains(any));
 }
+
+/// An input that only the rate of a state contains has no generalized force, even if a force depends on
+/// velocities.
+#[test]
+fn inputs_of_states_have_no_generalized_force() {
+    let fields = "lag: f64, command: Input, #[state(rate = (command - level) / lag)] level: State, \
+                  #[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] pin: Pin, \
+                  #[acts(on = cable(arm.at(x) / ground.at(2 * y), ground.cylinder(0.1, z)), value = -3 * \
+                  rate(cable(arm.at(x) / ground.at(2 * y), ground.cylinder(0.1, z))))] rope: Force,";
+    let emitted = generated_code("", fields);
+    assert!(!emitted.contains("compile_error"), "{emitted}");
+}

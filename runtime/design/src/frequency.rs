@@ -13,6 +13,8 @@ pub struct FrequencyMap {
     c: DMatrix<f64>,
     d: DMatrix<f64>,
     period: Option<f64>,
+    /// Whether `h` results from rounded rotations of the states.
+    is_transformed: bool,
 }
 
 impl FrequencyMap {
@@ -70,9 +72,16 @@ impl FrequencyMap {
         factors.solve_in_place(&mut x);
         factors.solve_left(&mut y);
         let value = (complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
-        // The entries of the matrices have rounding errors; this sums the effect of each on the value.
-        let (size_x, size_y) = (x.norm(), y.norm());
-        let through = size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x;
+        // The entries of the matrices have rounding errors; this sums the effect of each on the value. The
+        // transformation to Hessenberg form has errors in proportion to the norm.
+        let through = if self.is_transformed {
+            let (size_x, size_y) = (x.norm(), y.norm());
+            size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x
+        } else {
+            let (size_x, size_y) = (x.map(|x| x.norm()), y.map(|y| y.norm()));
+            let sizes = factors.sizes(&size_x) + self.h.abs() * &size_x + &size_x * s.norm() + self.b.abs();
+            (size_y * sizes)[(0, 0)] + (self.c.abs() * size_x)[(0, 0)]
+        };
         let rounding = 4.0 * f64::EPSILON * (self.h.nrows() + 1) as f64;
         let error = rounding * (through + self.d[(0, 0)].abs());
         Ok(Sample { value, slope: -(y * x)[(0, 0)], error })
@@ -118,6 +127,19 @@ impl Factors {
                 x[(i, j)] = (x[(i, j)] - sum) / self.u[(i, i)];
             }
         }
+    }
+
+    /// Returns `|L| |U| x` for a vector of magnitudes, with the magnitudes of the entries of the factors of
+    /// `M = L U`: the rounding errors of a solution `x` are in proportion to it.
+    fn sizes(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut sizes = self.u.map(|u| u.norm()).upper_triangle() * x;
+        for (k, (swapped, factor)) in self.steps.iter().enumerate().rev() {
+            sizes[k + 1] += factor.norm() * sizes[k];
+            if *swapped {
+                sizes.swap_rows(k, k + 1);
+            }
+        }
+        sizes
     }
 
     /// Solves `y M = r` with the factorised matrix `M`; the row vector `y` replaces `r`.
@@ -225,11 +247,12 @@ impl StateSpace {
     pub fn frequency_map(&self) -> Result<FrequencyMap, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let (d, period) = (self.d.clone(), self.period);
-        if self.order() < 3 {
-            return Ok(FrequencyMap { h: a, b, c, d, period });
+        let is_hessenberg = (0..a.ncols()).all(|j| a.column(j).iter().skip(j + 2).all(|x| *x == 0.0));
+        if is_hessenberg {
+            return Ok(FrequencyMap { h: a, b, c, d, period, is_transformed: false });
         }
         let (q, h) = Hessenberg::new(a).unpack();
-        Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period })
+        Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period, is_transformed: true })
     }
 
     /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency.

@@ -1,6 +1,7 @@
 //! Stability margins of a feedback loop: gain margins, phase margins and the distance from −1.
 
 use crate::frequency::{FrequencyMap, Sample, stability_boundary_point};
+use crate::loop_polynomials::LoopPolynomials;
 use crate::matrices::C;
 use crate::norms::Extreme;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
@@ -117,7 +118,7 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
 }
 
 /// Maximum relative rounding error of a response value that counts as reliable.
-const CERTAIN: f64 = 0.05;
+pub(crate) const CERTAIN: f64 = 0.05;
 
 /// Open loop whose stability margins are computed, with its sampling period.
 struct Loop {
@@ -202,6 +203,7 @@ impl StateSpace {
         let mut points = self.root_frequencies()?;
         points.extend(self.level_frequencies(1.0)?);
         points.extend(self.real_frequencies()?);
+        points.extend(self.factor_frequencies());
         points.sort_by(f64::total_cmp);
         points.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
@@ -216,6 +218,16 @@ impl StateSpace {
             if high > 8.0 * low { vec![2.0 * low, middle, 0.5 * high] } else { vec![middle] }
         });
         Ok(between.collect())
+    }
+
+    /// Returns the frequencies of the crossings that follow from zeros, poles and gain. The eigenvalues of a
+    /// pencil miss some if crossings are decades apart.
+    fn factor_frequencies(&self) -> Vec<f64> {
+        let factors = self.zeros_poles_gain();
+        let found = factors.and_then(|factors| Ok(LoopPolynomials::from_factors(&factors)?.frequencies()));
+        let mut found = found.unwrap_or_default();
+        found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        found
     }
 
     /// Computes the minimum distance of the response from −1, which is the minimum gain of `1 + G`.
@@ -244,12 +256,14 @@ impl StateSpace {
 }
 
 impl TransferFunction {
-    /// Computes the margins of this transfer function as the open loop of a negative feedback.
+    /// Computes the margins of this transfer function as the open loop of a negative feedback, with 32 digits
+    /// from its coefficients.
     ///
     /// # Errors
     ///
-    /// [`Error::Improper`], [`Error::NotConverged`].
+    /// [`Error::Improper`], [`Error::NotFinite`] if the squares of the coefficients overflow.
     pub fn margins(&self) -> Result<Margins, Error> {
-        self.state_space()?.margins()
+        self.check_proper()?;
+        Ok(LoopPolynomials::new(self)?.margins())
     }
 }

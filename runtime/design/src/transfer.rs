@@ -117,6 +117,12 @@ impl TransferFunction {
         self.numerator.degree() <= self.denominator.degree()
     }
 
+    /// Reports an error if the numerator has the higher degree.
+    pub(crate) fn check_proper(&self) -> Result<(), Error> {
+        let (numerator, denominator) = (self.numerator.degree(), self.denominator.degree());
+        if self.is_proper() { Ok(()) } else { Err(Error::Improper { numerator, denominator }) }
+    }
+
     /// Returns the roots of the denominator.
     ///
     /// # Errors
@@ -181,10 +187,8 @@ impl TransferFunction {
     ///
     /// [`Error::Improper`].
     pub fn state_space(&self) -> Result<StateSpace, Error> {
+        self.check_proper()?;
         let n = self.denominator.degree();
-        if !self.is_proper() {
-            return Err(Error::Improper { numerator: self.numerator.degree(), denominator: n });
-        }
         let direct = self.numerator.coefficient(n);
         let a = DMatrix::from_fn(n, n, |i, j| match i {
             0 => -self.denominator.coefficient(n - 1 - j),
@@ -365,10 +369,14 @@ impl StateSpace {
         output: impl Into<crate::Port<'a>>,
         input: impl Into<crate::Port<'a>>,
     ) -> Result<ZerosPolesGain, Error> {
-        let channel = self.channel(output, input)?.minimal(0.0)?;
-        let (zeros, poles) = (channel.zeros()?, channel.poles()?);
-        let direct = channel.d[(0, 0)];
-        let response = channel.frequency_map()?;
+        self.channel(output, input)?.minimal(0.0)?.zeros_poles_gain()
+    }
+
+    /// Returns the zeros, poles and gain of a system with one input and one output.
+    pub(crate) fn zeros_poles_gain(&self) -> Result<ZerosPolesGain, Error> {
+        let (zeros, poles) = (self.zeros()?, self.poles()?);
+        let direct = self.d[(0, 0)];
+        let response = self.frequency_map()?;
         // The gain is evaluated at a point that is far from all zeros and poles: on the real axis, right
         // of all of them by the geometric mean of their magnitudes.
         let sizes: Vec<f64> = zeros.iter().chain(&poles).map(|x| x.norm()).filter(|x| *x > 0.0).collect();

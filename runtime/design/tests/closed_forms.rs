@@ -128,7 +128,7 @@ fn magnitudes_that_do_not_cross_one() {
 #[test]
 fn gain_margins_of_loops_with_an_integrator() {
     let mut random = Random(3);
-    for _ in 0..300 {
+    for _ in 0..120 {
         let (a, b) = (random.log_uniform_number(0.1, 10.0), random.log_uniform_number(0.1, 10.0));
         let (k, h) = (random.log_uniform_number(1e-3, 1e3), random.log_uniform_number(1e-3, 0.3));
         let system = state_space(&[k], &[1.0, a + b, a * b, 0.0]);
@@ -175,6 +175,103 @@ fn margins_of_held_integrators() {
     assert_relatively_close("frequency", low.frequency, 6.9937676541209, 1e-11);
     assert_relatively_close("factor", high.factor, 4822.08927739, 1e-8);
     assert_eq!(margins.gain_reduction(), None);
+}
+
+/// Checks `k / (s (s + a) (s + b))` with crossings up to 15 decades apart: the response is real at `√(a b)`,
+/// and has magnitude one where `x (x + a²) (x + b²) = k²` with `x = ω²`.
+#[test]
+fn crossings_decades_apart() {
+    let mut random = Random(9);
+    for _ in 0..300 {
+        let (a, b) = (random.log_uniform_number(1e-3, 1e3), random.log_uniform_number(1e-3, 1e3));
+        let k = random.log_uniform_number(1e-12, 1e12);
+        let open = transfer_function(&[k], &[1.0, a + b, a * b, 0.0]);
+        let margins = open.margins().unwrap();
+        let ([gain], [phase]) = (&margins.gain[..], &margins.phase[..]) else {
+            panic!("{a} {b} {k}: {margins:?}")
+        };
+        assert_relatively_close("frequency", gain.frequency, (a * b).sqrt(), 1e-13);
+        assert_relatively_close("factor", gain.factor, a * b * (a + b) / k, 1e-13);
+        let x = phase.frequency.powi(2);
+        assert_relatively_close("magnitude", x * (x + a * a) * (x + b * b), k * k, 1e-12);
+        let lag = (phase.frequency / a).atan() + (phase.frequency / b).atan();
+        assert_relatively_close("degrees", phase.degrees, 90.0 - lag.to_degrees(), 1e-9);
+        // With a zero-order hold of 1 s, an integrator of gain `k` has magnitude one at `2 asin(k / 2)`.
+        let held =
+            transfer_function(&[k.min(1.0)], &[1.0, -1.0]).with_period(1.0).unwrap().margins().unwrap();
+        let ([gain], [phase]) = (&held.gain[..], &held.phase[..]) else { panic!("{k}: {held:?}") };
+        assert_relatively_close("frequency", phase.frequency, 2.0 * (0.5 * k.min(1.0)).asin(), 1e-13);
+        assert_relatively_close("factor", gain.factor, 2.0 / k.min(1.0), 1e-13);
+    }
+}
+
+/// Compares all crossings of loops with large and small gains with values recomputed with 60 digits (mpmath).
+#[test]
+fn crossings_of_loops_with_extreme_gains() {
+    let steep = transfer_function(
+        &[8382104296.556898, 26490146733.51389, 65074465968.99992, 93444242998.93744],
+        &[
+            1.0,
+            -0.5152020682763674,
+            1.2074879781514056,
+            -0.7767410453600813,
+            0.002016026377416458,
+            -0.001383857497498535,
+        ],
+    );
+    let slow = transfer_function(
+        &[-1714957.3087524266],
+        &[
+            1.0,
+            4.8016267146869085,
+            1.0542071457621687,
+            0.2738782644189882,
+            -0.0007385319316432803,
+            1.5650073620452797e-06,
+            0.0,
+        ],
+    );
+    let wide = transfer_function(
+        &[0.11444153383927728, 167.75050094755014, 58143.63665266256],
+        &[
+            1.0,
+            -0.7768608453432341,
+            23.407347795049848,
+            1.0447362983656336,
+            2.3242893998160503,
+            0.09534291584289714,
+            0.006677738576904043,
+            0.0,
+        ],
+    );
+    let weak =
+        transfer_function(&[2.2212423715779894e-12, 6.663565009317896e-15], &[1.0, 5.657373680400875, 0.0]);
+    let gains: [&[[f64; 2]]; 4] = [
+        &[[0.0, 0.001383857497498535 / 93444242998.93744], [0.04131015381617908, 6.405517808976807e-16]],
+        &[[0.00239056835589427, 2.4811137685910916e-15], [0.23881567495549713, 1.915898294253801e-09]],
+        &[[0.05442139518586992, 4.698567604304131e-09], [713.5845483346278, 787025555371896.5]],
+        &[],
+    ];
+    let phases = [
+        [91553.83276991732, -0.002300198663442053],
+        [10.790929269990698, -155.8287840426211],
+        [5.669252226295807, -116.58429641104428],
+        [1.17785484674679e-15, 90.00000000002248],
+    ];
+    for ((open, gains), [frequency, degrees]) in [steep, slow, wide, weak].iter().zip(gains).zip(phases) {
+        for (margins, exact) in
+            [(open.margins().unwrap(), 1e-12), (open.state_space().unwrap().margins().unwrap(), 1e-6)]
+        {
+            assert_eq!(margins.gain.len(), gains.len(), "{open}: {margins:?}");
+            for (found, [frequency, factor]) in margins.gain.iter().zip(gains) {
+                assert_relatively_close("frequency", found.frequency, *frequency, exact);
+                assert_relatively_close("factor", found.factor, *factor, exact);
+            }
+            let [phase] = margins.phase[..] else { panic!("{open}: {margins:?}") };
+            assert_relatively_close("frequency", phase.frequency, frequency, exact);
+            assert_relatively_close("degrees", phase.degrees, degrees, exact);
+        }
+    }
 }
 
 /// Checks that `((z − 1) / h)^k` times the matched system tends to `s^k` times the continuous system for low

@@ -18,6 +18,7 @@ use linkwork_compiler::passes::Passes;
 use linkwork_compiler::syntax::{Printed, RATE_OF_STATE};
 use linkwork_compiler::{
     DeclaredStruct, Source, compile_with, derive_above, import, mechanism_declarations, read_source,
+    reject_reproducible,
 };
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -149,7 +150,8 @@ impl Loader {
         }
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: false, ..Passes::default() };
-        let compiled = compile_with(&source, &graph, passes, cx);
+        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with(&source, &graph, passes, cx));
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
             return Err(self.report_errors(cx));
         };

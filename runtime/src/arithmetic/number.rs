@@ -59,7 +59,7 @@ macro_rules! elementary {
             $(
                 #[inline(always)]
                 fn $name($x: Self $(, $y: Self)?) -> Self {
-                    $x.$name($($y)?)
+                    elementary!(@number $name $x $($y)?)
                 }
             )+
 
@@ -96,6 +96,28 @@ macro_rules! elementary {
             }
         }
     };
+    (@number min $x:ident $y:ident) => {
+        smaller($x, $y)
+    };
+    (@number max $x:ident $y:ident) => {
+        larger($x, $y)
+    };
+    (@number $name:ident $x:ident $($y:ident)?) => {
+        $x.$name($($y)?)
+    };
+    (@vector min $x:ident $y:ident) => {
+        elementary!(@vector_of smaller min $x $y);
+    };
+    (@vector max $x:ident $y:ident) => {
+        elementary!(@vector_of larger max $x $y);
+    };
+    (@vector_of $function:ident $name:ident $x:ident $y:ident) => {
+        #[inline(always)]
+        fn $name($x: Self, $y: Self) -> Self {
+            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
+            Self::from_array(core::array::from_fn(|k| $function($x[k], $y[k])))
+        }
+    };
     (@vector sqrt $x:ident) => {
         #[inline(always)]
         fn sqrt($x: Self) -> Self {
@@ -124,3 +146,22 @@ macro_rules! elementary {
 }
 
 elementary_functions!(elementary);
+
+/// Returns the smaller number; the other number if one is NaN. With the feature `reproducible` a zero has the
+/// sign plus; otherwise the sign of the minimum of two zeros depends on the target.
+#[inline(always)]
+fn smaller<T: Real>(x: T, y: T) -> T {
+    match cfg!(feature = "reproducible") {
+        true => T::min(x, y) + T::zero(),
+        false => T::min(x, y),
+    }
+}
+
+/// Returns the larger number; the other number if one is NaN. Zeros are treated as by [`smaller`].
+#[inline(always)]
+fn larger<T: Real>(x: T, y: T) -> T {
+    match cfg!(feature = "reproducible") {
+        true => T::max(x, y) + T::zero(),
+        false => T::max(x, y),
+    }
+}

@@ -182,7 +182,10 @@ where
         acted: &Acted<T, NV, CK, CR>,
         closing: Option<&Closing<T, CK, CR>>,
     ) {
-        let Some(responses) = &acted.responses else { return };
+        if !acted.is_loaded() {
+            return;
+        }
+        let responses = acted.responses();
         let contact = |contact| {
             let index = acted.selection.contact(contact);
             let constraint = M::CONTACTS.get(index).copied().unwrap_or_default();
@@ -190,7 +193,7 @@ where
         };
         let regular = acted.problem.check_derivatives(&acted.impulses).map_err(contact);
         self.found = Some(regular.map(|()| {
-            let closed = Closed::new(self.contacts, self.at, acted, &responses.velocities);
+            let closed = Closed::new(self.contacts, self.at, acted, &responses);
             let after = closed.after();
             let Some(closing) = closing else { return (after, None) };
             let (place, v) = self.contacts.state_after(self.at, &after);
@@ -306,7 +309,7 @@ where
     ) -> Self {
         let (m, q) = (contacts.mechanism, at.q);
         let jacobian = selected(&acted.selection, &m.contact_jacobian(at.t, q));
-        let factor = if m.features().feedback { None } else { Factor::factorise(m.mass_matrix(at.t, q)) };
+        let factor = if m.features().feedback { None } else { Factor::factorise(&m.mass_matrix(at.t, q)) };
         Self { contacts, at, acted, responses, jacobian, factor }
     }
 

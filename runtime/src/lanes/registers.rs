@@ -23,7 +23,7 @@ pub trait VectorLoop {
 /// Available instructions, for single numbers and for several lanes at once.
 pub trait Registers: Copy + 'static {
     /// Whether the processor has a fused multiply-add instruction; otherwise `mul_add` would be a slow
-    /// library call.
+    /// library call. False with the feature `reproducible`, because other processors lack the instruction.
     const FUSED: bool;
     /// Whether there are 32 registers of eight double-precision numbers; otherwise there are 16 of four.
     const WIDE: bool;
@@ -105,7 +105,11 @@ macro_rules! operations {
 }
 
 impl Registers for Compiled {
-    const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+    const FUSED: bool = cfg!(all(
+        feature = "std",
+        not(feature = "reproducible"),
+        any(target_feature = "fma", target_arch = "aarch64")
+    ));
     const WIDE: bool = cfg!(target_feature = "avx512f");
 
     #[inline(always)]

@@ -111,7 +111,7 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
         .map(absolute_source_folder)
         .transpose()?
         .or_else(sources::of_command);
-    let manifest = manifest_text(prefix, linkwork.as_deref());
+    let manifest = manifest_text(prefix, linkwork.as_deref(), requests.reproducible);
     let text = match matches.get_flag("expanded") {
         true => write::library_text(&known, &description, "")? + &expansion,
         false => write::library_text(&known, &description, &declaration_with_absolute_paths(input)?)?,
@@ -332,11 +332,12 @@ fn step_functions(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
 }
 
 /// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
-fn manifest_text(prefix: &str, linkwork: Option<&Path>) -> String {
+fn manifest_text(prefix: &str, linkwork: Option<&Path>, reproducible: bool) -> String {
+    let features = if reproducible { "\n[features]\ndefault = [\"linkwork/reproducible\"]\n" } else { "" };
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname \
          = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
-         [dependencies]\n{}\n{}\n\n[workspace]\n",
+         [dependencies]\n{}\n{}\n{features}\n[workspace]\n",
         prefix.replace('_', "-"),
         manifest_dependency("linkwork", "runtime", linkwork),
         manifest_dependency("linkwork-library", "runtime/library", linkwork),

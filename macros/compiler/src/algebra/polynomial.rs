@@ -430,12 +430,12 @@ impl Ring {
                 Atom::Wave(w) => {
                     let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
                     let angle = angles.map(|(a, n)| f64::from(n) * term_value(a, &values)).sum::<f64>();
-                    if w.cosine { angle.cos() } else { angle.sin() }
+                    if w.cosine { libm::cos(angle) } else { libm::sin(angle) }
                 }
                 Atom::Inverse(p) => 1.0 / value_of(p),
                 Atom::Call(f, p) => f.evaluate_at(value_of(p)),
-                Atom::Atan2(y, x) => value_of(y).atan2(value_of(x)),
-                Atom::Power(a, b) => value_of(a).powf(value_of(b)),
+                Atom::Atan2(y, x) => libm::atan2(value_of(y), value_of(x)),
+                Atom::Power(a, b) => libm::pow(value_of(a), value_of(b)),
                 Atom::Extreme(f, a, b) => f.evaluate_extreme(value_of(a), value_of(b)),
                 Atom::Table(_, lookup, x) => {
                     lookup.evaluate_surrogate(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of)))
@@ -451,5 +451,5 @@ fn value_at_atoms(p: &Polynomial, atoms: &[f64]) -> f64 {
 }
 
 fn term_value(t: &Term, atoms: &[f64]) -> f64 {
-    t.monomial.atoms_with_powers().fold(t.coefficient, |v, (k, n)| v * atoms[k].powi(i32::from(n)))
+    t.monomial.atoms_with_powers().fold(t.coefficient, |v, (k, n)| (0..n).fold(v, |v, _| v * atoms[k]))
 }

@@ -42,6 +42,13 @@ impl Emitted {
     }
 }
 
+/// Code that does not compile if the runtime's arithmetic depends on the processor.
+const REPRODUCIBLE: &str = "const _: () = {
+    const fn require<T: ::linkwork::__private::absent::HasReproducibleArithmetic>() {}
+    require::<()>()
+};
+";
+
 /// Returns the generated code of a mechanism without errors.
 pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     let spelling = scalar_spelling(interface);
@@ -97,6 +104,9 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         &Head::new(interface, &s),
     );
     write_absent(&mut emitted.text, interface, &s);
+    if interface.facts.requests.reproducible {
+        emitted.text.push_str(REPRODUCIBLE);
+    }
     measurements::write_impls(
         &mut emitted.text,
         &interface.shell.ident.to_string(),

@@ -34,8 +34,10 @@ pub fn write_methods(
     };
     for f in functions.iter().filter(is_batched) {
         let exact = match f.program.simd {
-            None => "bit for bit",
-            Some(_) => "up to rounding: the function of a single state uses the lanes for limbs or joints",
+            Some(_) if !i.facts.requests.reproducible => {
+                "up to rounding: the function of a single state uses the lanes for limbs or joints"
+            }
+            _ => "bit for bit",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let docs = if f.is_hidden() { Vec::new() } else { docs };

@@ -29,8 +29,8 @@ fn atmosphere_state(h: f64) -> [f64; 3] {
         let depth = h.min(end) - base;
         let next = temperature + depth * lapse;
         pressure *= match *lapse == 0.0 {
-            true => (-FALL_OVER_GAS * depth / temperature).exp(),
-            false => (next / temperature).powf(-FALL_OVER_GAS / lapse),
+            true => libm::exp(-FALL_OVER_GAS * depth / temperature),
+            false => libm::pow(next / temperature, -FALL_OVER_GAS / lapse),
         };
         temperature = next;
         if h < end {

@@ -158,7 +158,7 @@ impl Value for Rounded {
     fn sum(lanes: &[Rounded]) -> Rounded {
         let mut sum = Rounded { value: 0.0, error: 0.0 };
         for lane in lanes {
-            sum = Rounded { value: sum.value + lane.value, error: sum.error.hypot(lane.error) };
+            sum = Rounded { value: sum.value + lane.value, error: libm::hypot(sum.error, lane.error) };
         }
         sum
     }
@@ -173,11 +173,11 @@ impl Value for Rounded {
                 at[k] += by;
                 (step(node, at) - value).abs()
             });
-            error = error.hypot(moved[0].max(moved[1]));
+            error = libm::hypot(error, moved[0].max(moved[1]));
         }
         // If both factors are only rounding error, the first-order terms above miss the error of the product.
         if let (Node::Mul(..), [a, b, _]) = (node, operands) {
-            error = error.hypot(a.error * b.error);
+            error = libm::hypot(error, a.error * b.error);
         }
         Rounded { value, error }
     }
@@ -219,8 +219,8 @@ fn step(node: Node, [a, b, c]: [f64; 3]) -> f64 {
         Node::Mul(..) => a * b,
         Node::Div(..) => a / b,
         Node::Call(f, _) => f.evaluate_at(a),
-        Node::Atan2(..) => a.atan2(b),
-        Node::Pow(..) => a.powf(b),
+        Node::Atan2(..) => libm::atan2(a, b),
+        Node::Pow(..) => libm::pow(a, b),
         Node::Extreme(f, ..) => f.evaluate_extreme(a, b),
         Node::Table(lookup, ..) => lookup.evaluate_surrogate([a, b, c]),
         Node::Symbol(_)

@@ -85,7 +85,7 @@ impl<'g> Expr<'g> {
     /// Returns the angle, rad, of the point (`abscissa`, `self`).
     pub fn atan2(self, abscissa: Expr<'g>) -> Expr<'g> {
         if let (Some(y), Some(x)) = (self.constant_value(), abscissa.constant_value()) {
-            return self.num(y.atan2(x));
+            return self.num(libm::atan2(y, x));
         }
         self.graph.expr(self.graph.intern_node(Node::Atan2(self.id, abscissa.id)))
     }
@@ -102,7 +102,7 @@ impl<'g> Expr<'g> {
     /// Returns a power. Integer exponents up to eight become products.
     pub fn pow(self, exponent: Expr<'g>) -> Expr<'g> {
         match (self.constant_value(), exponent.constant_value()) {
-            (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
+            (Some(x), Some(n)) if libm::pow(x, n).is_finite() => self.num(libm::pow(x, n)),
             (_, Some(n)) if n == n.trunc() && n.abs() <= 8.0 => {
                 let product = (0..n.abs() as u32).fold(self.graph.one(), |p, _| p * self);
                 if n < 0.0 { self.graph.one() / product } else { product }

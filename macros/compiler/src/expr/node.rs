@@ -71,17 +71,17 @@ impl Function {
     /// Evaluates the elementary function at a number.
     pub fn evaluate_at(self, x: f64) -> f64 {
         match self {
-            Function::Sin => x.sin(),
-            Function::Cos => x.cos(),
-            Function::Tan => x.tan(),
-            Function::Asin => x.asin(),
-            Function::Acos => x.acos(),
-            Function::Atan => x.atan(),
-            Function::Sinh => x.sinh(),
-            Function::Cosh => x.cosh(),
-            Function::Tanh => x.tanh(),
-            Function::Exp => x.exp(),
-            Function::Ln => x.ln(),
+            Function::Sin => libm::sin(x),
+            Function::Cos => libm::cos(x),
+            Function::Tan => libm::tan(x),
+            Function::Asin => libm::asin(x),
+            Function::Acos => libm::acos(x),
+            Function::Atan => libm::atan(x),
+            Function::Sinh => libm::sinh(x),
+            Function::Cosh => libm::cosh(x),
+            Function::Tanh => libm::tanh(x),
+            Function::Exp => libm::exp(x),
+            Function::Ln => libm::log(x),
             Function::Sqrt => x.sqrt(),
             Function::Abs => x.abs(),
             Function::Signum => x.signum(),
@@ -150,8 +150,9 @@ impl Lookup {
         let cubic_of_variable = |(k, x): (usize, f64)| {
             let (order, pace, phase) =
                 (self.derivative_order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table_index() as f64);
-            let derivative =
-                |n: usize| pace.powi(n as i32) * (phase + std::f64::consts::FRAC_PI_2 * n as f64).sin();
+            let derivative = |n: usize| {
+                libm::pow(pace, n as f64) * libm::sin(phase + std::f64::consts::FRAC_PI_2 * n as f64)
+            };
             (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
         };
         x.into_iter().take(self.variable_count()).enumerate().map(cubic_of_variable).product()

@@ -64,7 +64,7 @@ pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Returns the Euclidean norm of a vector.
 pub(in crate::import) fn length(a: Vector) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
+    libm::hypot(libm::hypot(a[0], a[1]), a[2])
 }
 
 /// Returns the product of a matrix and a vector.
@@ -117,7 +117,7 @@ pub(in crate::import) fn axis_rotation(axis: Vector, angle: f64) -> Matrix {
 
 /// Returns sine and cosine, exact at multiples of a right angle.
 fn sin_cos(angle: f64) -> (f64, f64) {
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let round_noise_to_zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
     (round_noise_to_zero(s), round_noise_to_zero(c))
 }
@@ -127,19 +127,19 @@ pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
     let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale_vector(axis, 1.0 / size) };
-    axis_rotation(axis, size.atan2(direction[2]))
+    axis_rotation(axis, libm::atan2(size, direction[2]))
 }
 
 /// Returns roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. The rotations are removed
 /// one after the other, which stays accurate at the singularity (pitch ±90°).
 pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
-    let upright = m[0][0].hypot(m[1][0]) < 1e-12;
-    let yaw = if upright { 0.0 } else { round_to_right_angle(m[1][0].atan2(m[0][0])) };
+    let upright = libm::hypot(m[0][0], m[1][0]) < 1e-12;
+    let yaw = if upright { 0.0 } else { round_to_right_angle(libm::atan2(m[1][0], m[0][0])) };
     m = matrix_product(&axis_rotation([0.0, 0.0, 1.0], -yaw), &m);
-    let pitch = round_to_right_angle((-m[2][0]).atan2(m[0][0]));
+    let pitch = round_to_right_angle(libm::atan2(-m[2][0], m[0][0]));
     m = matrix_product(&axis_rotation([0.0, 1.0, 0.0], -pitch), &m);
-    let roll = round_to_right_angle(m[2][1].atan2(m[1][1]));
+    let roll = round_to_right_angle(libm::atan2(m[2][1], m[1][1]));
     [roll, pitch, yaw]
 }
 
@@ -158,8 +158,8 @@ pub(in crate::import) fn eigen_decomposition(s: &Matrix) -> (Vector, Matrix) {
             .into_iter()
             .max_by(|a, b| s[a.0][a.1].abs().total_cmp(&s[b.0][b.1].abs()));
         let Some((i, j)) = largest.filter(|(i, j)| s[*i][*j] != 0.0) else { break };
-        let angle = 0.5 * (2.0 * s[i][j]).atan2(s[j][j] - s[i][i]);
-        let (sin, cos) = angle.sin_cos();
+        let angle = 0.5 * libm::atan2(2.0 * s[i][j], s[j][j] - s[i][i]);
+        let (sin, cos) = libm::sincos(angle);
         let mut turn = IDENTITY;
         (turn[i][i], turn[j][j], turn[i][j], turn[j][i]) = (cos, cos, sin, -sin);
         s = matrix_product(&matrix_product(&transpose(&turn), &s), &turn);

@@ -16,6 +16,7 @@ pub mod pipeline;
 mod program;
 mod reassociate;
 mod registers;
+mod scalars;
 mod schedule;
 mod share_subsums;
 mod terms;

@@ -47,7 +47,8 @@ const FUSE: Pass = Pass {
     about: "a product whose only use is a sum becomes one instruction with it",
     run: Program::with_fused_products,
 };
-const SCHEDULE: Pass = Pass {
+/// Order of the instructions.
+pub const SCHEDULE: Pass = Pass {
     name: "schedule",
     about: "instructions are put in an order that keeps the processor busy",
     run: Program::schedule_instructions,

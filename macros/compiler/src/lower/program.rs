@@ -264,7 +264,7 @@ impl Program {
                 }
                 Op::Pow(a, b) => {
                     let (a, b) = (constant_value(a)?, constant_value(b)?);
-                    (a.powf(b), format!("pow({a}, {b})"))
+                    (libm::pow(a, b), format!("pow({a}, {b})"))
                 }
                 Op::Div(a, b) => {
                     let (a, b) = (constant_value(a)?, constant_value(b)?);
@@ -339,8 +339,8 @@ impl Op {
             Op::MulSub(..) => get(0).mul_add(get(1), -get(2)),
             Op::NegMulAdd(..) => (-get(0)).mul_add(get(1), get(2)),
             Op::Call(f, _) => f.evaluate_at(get(0)),
-            Op::Atan2(..) => get(0).atan2(get(1)),
-            Op::Pow(..) => get(0).powf(get(1)),
+            Op::Atan2(..) => libm::atan2(get(0), get(1)),
+            Op::Pow(..) => libm::pow(get(0), get(1)),
             Op::Extreme(f, ..) => f.evaluate_extreme(get(0), get(1)),
             Op::Table(lookup, ..) => {
                 table(lookup, std::array::from_fn(|k| if k < lookup.variable_count() { get(k) } else { 0.0 }))

@@ -103,10 +103,10 @@ impl Choices {
     /// component of a vector normal to the joint's axis. Right angles cost nothing.
     fn add_heading(&mut self, v: Vector) {
         let (x, y) = (v[(self.a + 1) % 3], v[(self.a + 2) % 3]);
-        if round_noise_to_zero(x.hypot(y), norm(v)) == 0.0 {
+        if round_noise_to_zero(libm::hypot(x, y), norm(v)) == 0.0 {
             return;
         }
-        let angle = y.atan2(x);
+        let angle = libm::atan2(y, x);
         let rest = angle - (angle / FRAC_PI_2).round() * FRAC_PI_2;
         push_distinct(&mut self.angles, round_noise_to_zero(rest, 2.0 * angle.abs()), 1.0);
     }

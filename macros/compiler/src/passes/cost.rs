@@ -79,7 +79,7 @@ fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
             continue;
         }
         let n = across.map(|c| c / length);
-        let mut angle = dot(n, column(m, j)).atan2(dot(n, column(m, i)));
+        let mut angle = libm::atan2(dot(n, column(m, j)), dot(n, column(m, i)));
         let mut x = n;
         // Right angles cost nothing: the angle is reduced to within 45°.
         while angle.abs() > 0.5 * FRAC_PI_2 + 1e-6 {

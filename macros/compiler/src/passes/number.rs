@@ -33,7 +33,7 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Returns the length of a vector.
 pub fn norm(a: Vector) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
+    libm::hypot(libm::hypot(a[0], a[1]), a[2])
 }
 
 /// Returns the vector `s a + b`.
@@ -77,7 +77,7 @@ pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 /// Returns the matrix of the rotation by an angle about coordinate axis `k`.
 pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let (sin, cos) = (clean_entry(sin), clean_entry(cos));
     let mut m = IDENTITY;
     (m[i][i], m[i][j], m[j][i], m[j][j]) = (cos, -sin, sin, cos);

@@ -40,7 +40,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 fn length(v: [f64; 3]) -> f64 {
-    v[0].hypot(v[1]).hypot(v[2])
+    libm::hypot(libm::hypot(v[0], v[1]), v[2])
 }
 
 /// Divides a vector by its length; components that are exactly ±1 are preserved.

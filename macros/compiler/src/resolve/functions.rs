@@ -240,8 +240,8 @@ impl<'g> Scope<'_, 'g> {
 fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(x) = base.constant_value() else { return true };
     let what = match exponent.constant_value() {
-        Some(n) if x.powf(n).is_finite() => return true,
-        Some(n) if x.powf(n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
+        Some(n) if libm::pow(x, n).is_finite() => return true,
+        Some(n) if libm::pow(x, n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
         Some(n) => format!("`pow` is infinite at {x} and {n}"),
         None if x >= 0.0 => return true,
         None => format!("powers of {x} are defined only for integer exponents"),

@@ -36,6 +36,9 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the value of a name in an expression.
     pub fn resolve_name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let Some(value) = self.kinematics.drive_quantities.get(name) {
+            return Some(Value::Scalar(*value));
+        }
         // Expressions of a file refer to its joints even if the language has another meaning for the name.
         if e.place.file.is_some()
             && let Some(value) = self.resolve_coordinate(name, e, cx)

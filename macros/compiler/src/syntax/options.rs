@@ -14,7 +14,7 @@ use proc_macro2::{Span, TokenStream};
 const LARGEST_SNAP: f64 = 0.01;
 
 /// Options of `#[mechanism(…)]` that take a value.
-const OPTIONS: [&str; 22] = [
+const OPTIONS: [&str; 23] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -35,6 +35,7 @@ const OPTIONS: [&str; 22] = [
     "snap",
     "parameters",
     "processor",
+    "arithmetic",
     "skip_passes",
     "equations",
 ];
@@ -91,6 +92,7 @@ pub fn read_options(
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
+    requests.reproducible = choice("arithmetic", ["fast", "reproducible"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &requested, description, cx);
     requests.skipped = skipped::read_skipped(&mut arguments, cx);
     let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);

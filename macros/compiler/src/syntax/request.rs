@@ -77,6 +77,8 @@ macro_rules! words {
             pub file_inertials: bool,
             /// Whether only instructions of the compilation target are used.
             pub target_only: bool,
+            /// Whether results have the same bits on every machine, and in C.
+            pub reproducible: bool,
             /// Compiler passes over the model that are skipped.
             pub skipped: Skipped,
             /// Equations of motion that are printed in the documentation.

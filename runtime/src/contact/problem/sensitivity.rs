@@ -5,7 +5,8 @@
 //! `δΛₜ = μ d δΛₙ − μ Λₙ (1 − d dᵀ) δuₜ / |uₜ|`.
 
 use super::super::total::Total;
-use super::linear::{identify, independent, square};
+use super::banded::identify;
+use super::linear::{independent, square};
 use super::trial::Mode;
 use super::{List, Problem, Square, entry};
 use crate::Real;
@@ -51,7 +52,7 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
     /// Returns equations of impulses that are constant.
     fn new(places: List<usize, NR>, size: usize) -> Self {
         let (mut system, pivots) = (square(), Total::repeat(0));
-        identify(&mut system, size);
+        let _ = identify(&mut system, size);
         Self { system, wanted: square(), factors: square(), pivots, is_dependent: false, places, size }
     }
 
@@ -215,7 +216,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for (j, other) in others.zip(direction) {
                 let across = (if i == j { T::one() } else { T::zero() } - d * other) * ratio;
                 wanted[i][j] -= across;
-                system[i].iter_mut().zip(self.weights[j].iter()).for_each(|(to, w)| *to += across * *w);
+                (0..self.size).for_each(|column| system[i][column] += across * self.weight(j, column));
             }
         }
     }
@@ -256,14 +257,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn hold_rows(&self, held: &Chosen<NR>, equations: &mut Linearised<T, NR>) {
         let mut count = 0;
         for i in (0..self.size).filter(|i| held[*i]) {
-            (equations.system[i], equations.wanted[i][i]) = (self.weights[i], -T::one());
+            (0..self.size).for_each(|j| equations.system[i][j] = self.weight(i, j));
+            equations.wanted[i][i] = -T::one();
             count += 1;
         }
         equations.factors = equations.system;
         equations.is_dependent = count > self.velocities || !equations.factorise();
         if equations.is_dependent {
             equations.factors = equations.system;
-            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
+            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
             for i in (0..self.size).filter(|i| held[*i]) {
                 equations.factors[i][i] += reach * constant(LIFT);
             }

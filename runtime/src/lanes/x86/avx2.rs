@@ -189,7 +189,7 @@ mod with_features {
 }
 
 impl Registers for Avx2 {
-    const FUSED: bool = true;
+    const FUSED: bool = !cfg!(feature = "reproducible");
     const WIDE: bool = false;
 
     #[inline(always)]

@@ -62,7 +62,7 @@ mod with_features {
 }
 
 impl Registers for Avx512 {
-    const FUSED: bool = true;
+    const FUSED: bool = !cfg!(feature = "reproducible");
     const WIDE: bool = true;
 
     #[inline(always)]

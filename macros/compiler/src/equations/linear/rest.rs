@@ -246,7 +246,7 @@ pub fn values_at_random_parameters(value: impl Fn(u64) -> Option<f64>) -> Vec<f6
 
 /// Returns a random positive value for a parameter. Values of later seeds deviate further from one.
 pub fn random_parameter(s: Symbol, seed: u64) -> f64 {
-    sample_of_symbol(s, seed).powi(1 + (seed / 20).min(6) as i32)
+    libm::pow(sample_of_symbol(s, seed), (1 + (seed / 20).min(6)) as f64)
 }
 
 /// Returns the name of a function whose argument at rest is at a kink, a jump, or a point with an infinite

@@ -98,7 +98,7 @@ impl Number {
         if let Some((p, q, root)) = multiple_of_root(value) {
             return Number::Root(p, q, root);
         }
-        let exponent = value.log10().floor() as i32;
+        let exponent = libm::log10(value).floor() as i32;
         if !(-4..9).contains(&exponent) {
             let text = format!("{value:.5e}");
             let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
@@ -125,7 +125,7 @@ fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
 /// for π itself also whole degrees up to two revolutions.
 fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
     for power in [1, 2, -1, -2] {
-        let factor = value / PI.powi(power.into());
+        let factor = value / libm::pow(PI, power.into());
         if let Some((p, q)) = fraction_of_number(factor).filter(|(p, _)| *p <= SIMPLE) {
             return Some((p, q, power));
         }

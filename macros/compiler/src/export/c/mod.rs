@@ -13,6 +13,7 @@ mod function;
 mod in_speeds;
 mod manifold;
 mod names;
+mod own_functions;
 mod pieces;
 mod scalar;
 mod signatures;

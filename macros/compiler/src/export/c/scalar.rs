@@ -20,8 +20,18 @@ pub fn numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
-/// Converts code for `double` to `float`. Comments do not change.
+/// Converts code for `double` to `float`.
 pub fn in_single_precision(code: &str) -> String {
+    replaced(code, &single_precision_literal, &word_in_single_precision)
+}
+
+/// Replaces the numbers of code, and its words, which are given together with the code after them. Comments
+/// do not change.
+pub fn replaced(
+    code: &str,
+    number: &dyn Fn(&str) -> String,
+    replaced_word: &dyn Fn(&str, &str) -> String,
+) -> String {
     let mut out = String::with_capacity(code.len());
     let mut rest = code;
     while let Some(first) = rest.chars().next() {
@@ -36,8 +46,8 @@ pub fn in_single_precision(code: &str) -> String {
         };
         let (word, after) = rest.split_at(length);
         match first {
-            c if c.is_ascii_digit() => out.push_str(&single_precision_literal(word)),
-            _ => out.push_str(&self::word_in_single_precision(word, after)),
+            c if c.is_ascii_digit() => out.push_str(&number(word)),
+            _ => out.push_str(&replaced_word(word, after)),
         }
         rest = after;
     }

@@ -7,6 +7,7 @@ use super::function::{
     Outline, element_of_output, function_declaration, function_definition, public_identifier, public_name,
     result_arrays,
 };
+use super::own_functions;
 use super::scalar::in_single_precision;
 use super::support::Support;
 use super::{frames, manifold, names, steps, tables};
@@ -23,6 +24,8 @@ pub struct Options {
     pub prefix: String,
     /// Whether numbers have single precision.
     pub single: bool,
+    /// Whether results have the same bits with every compiler and mathematical library.
+    pub reproducible: bool,
     /// Parameters to fix in an additional source file with CasADi's interface; `None` for no such file.
     pub casadi: Option<Vec<(String, f64)>>,
     /// Lines that are added to [`Files::left_out`].
@@ -47,6 +50,8 @@ pub struct Files {
 /// Reason why a mechanism cannot be exported to C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfit {
+    /// The results of this element or option differ from those in Rust by rounding.
+    Irreproducible(&'static str),
     /// The mechanism declares generalized speeds, but CasADi's functions take joint velocities.
     CasadiSpeeds,
     /// The named program contains vector lanes.
@@ -76,6 +81,9 @@ pub fn export_c_source(
     if options.single && options.casadi.is_some() {
         return Err(Unfit::SingleCasadi);
     }
+    if options.reproducible && (options.single || options.casadi.is_some()) {
+        return Err(Unfit::Irreproducible(if options.single { "single precision" } else { "CasADi" }));
+    }
     let named = Named::from_model(model, tables, &options.prefix);
     let o = &named.outline_of_mechanism(model, output);
     let mut chosen = Selection::new(output);
@@ -87,15 +95,22 @@ pub fn export_c_source(
         chosen.left_out.extend(names.collect::<Vec<_>>());
     }
     let mut support = Support::new(options.single);
-    let steps = steps::Steps::new(model, output);
+    let mut steps = steps::Steps::new(model, output);
+    if options.reproducible && std::mem::take(&mut steps.has_transitions) {
+        let line = "rk4_transition and semi_implicit_euler_transition: their bits would not be those of Rust";
+        chosen.left_out.push(line.to_string());
+    }
     let bodies = function_definitions(model, output, &chosen, &steps, o, &mut support)?;
+    if let Some(what) = support.irreproducible().filter(|_| options.reproducible) {
+        return Err(Unfit::Irreproducible(what));
+    }
     let casadi = match &options.casadi {
         Some(given) => {
             Some(write_casadi(model, &chosen, o, [steps.has_steps, steps.has_transitions], given)?)
         }
         None => None,
     };
-    let mut header = header_text(model, output, &chosen, o);
+    let mut header = header_text(model, output, &chosen, o, options.reproducible);
     header.push_str(&steps.step_declarations(o));
     header.push_str("#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     let mut source = format!(
@@ -104,13 +119,14 @@ pub fn export_c_source(
         o.prefix,
         o.prefix
     );
-    let mut includes: Vec<&str> = support.required_headers().to_vec();
-    includes.push("math.h");
-    for name in includes {
+    let includes = if options.reproducible { own_functions::HEADERS } else { support.required_headers() };
+    for name in includes.iter().chain(&["math.h"]) {
         let _ = writeln!(source, "#include <{name}>");
     }
-    let texts = support.support_definitions(model.nv(), &o.prefix);
-    let _ = writeln!(source, "\n{texts}\n{}", bodies.trim_end());
+    support.is_reproducible = options.reproducible;
+    let code = format!("{}\n{}\n", support.support_definitions(model.nv(), &o.prefix), bodies.trim_end());
+    let code = if options.reproducible { own_functions::with_own_functions(&code) } else { code };
+    let _ = write!(source, "\n{code}");
     let convert_to_precision = |text: String| if options.single { in_single_precision(&text) } else { text };
     Ok(Files {
         header: convert_to_precision(header),
@@ -567,7 +583,26 @@ pub fn reaction_docs(name: &str) -> String {
     )
 }
 
-fn header_text(model: &Model<'_>, output: &Output, chosen: &Selection<'_>, o: &Outline<'_>) -> String {
+/// Comment of the header about options of the compiler.
+const FLAGS: &str = "
+ * Compile with -O2 or -O3, and for the local processor (-march=native): products and sums are then fused to
+ * one instruction. -fno-math-errno saves checks after square roots; do not use -ffast-math.
+ */
+";
+/// Comment of the header about options of the compiler, if results are reproducible.
+const REPRODUCIBLE_FLAGS: &str = "
+ * Results have the same bits on every machine, with every compiler and all of its options but -ffast-math.
+ * -fno-math-errno saves checks after square roots.
+ */
+";
+
+fn header_text(
+    model: &Model<'_>,
+    output: &Output,
+    chosen: &Selection<'_>,
+    o: &Outline<'_>,
+    reproducible: bool,
+) -> String {
     let upper = o.prefix.to_ascii_uppercase();
     let mut text = format!(
         "/* The mechanism `{}`, generated by Linkwork.\n *\n * SI units, angles in radians. Vectors are \
@@ -581,11 +616,8 @@ fn header_text(model: &Model<'_>, output: &Output, chosen: &Selection<'_>, o: &O
         text.push_str(" *\n * Not in C:\n");
         chosen.left_out.iter().for_each(|line| text.push_str(&docs::wrap_paragraph(line, " *   ", " *   ")));
     }
-    text.push_str(
-        " *\n * Compile with -O2 or -O3, and for the local processor (-march=native): products and sums are \
-         then fused to\n * one instruction. -fno-math-errno saves checks after square roots; do not use \
-         -ffast-math.\n */\n",
-    );
+    text.push_str(" *");
+    text.push_str(if reproducible { REPRODUCIBLE_FLAGS } else { FLAGS });
     let guard = format!("{upper}_H");
     let _ = writeln!(text, "#ifndef {guard}\n#define {guard}\n");
     text.push_str(&size_macros(model, output, o));

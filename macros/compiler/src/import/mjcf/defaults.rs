@@ -166,12 +166,16 @@ impl<'a> Element<'a> {
         self.number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
-    /// Returns the linear coefficient of a force. Newer versions of the format give a polynomial; nonzero
-    /// coefficients of higher order are reported.
+    /// Returns the coefficients of a polynomial force from the first order on, or `None` if they are zero.
+    pub(super) fn polynomial(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<[f64; 3]>> {
+        self.some(attribute, [0.0; 3], cx).filter(|found| found.value != [0.0; 3])
+    }
+
+    /// Returns the coefficient of a force on a joint with several coordinates, which must be linear.
     pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        let Placed { value: [linear, square, cube], place } = self.some(attribute, [0.0; 3], cx)?;
+        let Placed { value: [linear, square, cube], place } = self.polynomial(attribute, cx)?;
         if square != 0.0 || cube != 0.0 {
-            let message = format!("`{attribute}` is a polynomial, as MuJoCo reads it since version 3.7");
+            let message = format!("a polynomial `{attribute}` is supported only on a `hinge` or a `slide`");
             cx.report_error(&place, message, |d| {
                 d.add_help("expected one number: a linear coefficient").add_help(help)
             });

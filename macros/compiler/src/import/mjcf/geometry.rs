@@ -266,10 +266,10 @@ pub(super) fn extent(
 fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
     let round = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
-        "sphere" => (4.0 / 3.0 * PI * x.powi(3), [0.4 * x * x; 3]),
+        "sphere" => (4.0 / 3.0 * PI * x * x * x, [0.4 * x * x; 3]),
         "capsule" => {
             let height = 2.0 * z;
-            let (ball, tube) = (4.0 / 3.0 * PI * x.powi(3), PI * x * x * height);
+            let (ball, tube) = (4.0 / 3.0 * PI * x * x * x, PI * x * x * height);
             let volume = ball + tube;
             let (ball, tube) = (ball / volume, tube / volume);
             let across = tube * (3.0 * x * x + height * height) / 12.0;

@@ -221,10 +221,11 @@ impl<'a> Reader<'a> {
 
     fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
         refuse_yield(element, cx);
-        let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) else { return };
         if joint.kind.rotates_about_one_axis().is_some() {
-            self.drive(joint, DriveLaw::Spring { stiffness: stiffness.value, free: rest });
-        } else {
+            if let Some(stiffness) = element.polynomial("stiffness", cx) {
+                self.drive(joint, DriveLaw::spring(stiffness.value, rest));
+            }
+        } else if let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) {
             let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
             cx.report_error(&stiffness.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
@@ -235,6 +236,14 @@ impl<'a> Reader<'a> {
             [("damping", true, self.dampers), ("frictionloss", false, self.friction)]
         {
             if !acts {
+                continue;
+            }
+            if is_damping
+                && joint.kind.rotates_about_one_axis().is_some()
+                && let Some(found) = element.polynomial(which, cx)
+                && found.value[1..] != [0.0; 2]
+            {
+                self.drive(joint, DriveLaw::damper(found.value));
                 continue;
             }
             let found = match is_damping {

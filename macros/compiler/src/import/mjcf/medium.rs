@@ -86,7 +86,7 @@ fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -
     let times = |factor: f64, e: Expr| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(factor, at), e);
     let mut terms = Vec::new();
     if viscosity > 0.0 {
-        for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean.powi(3), &omega)] {
+        for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean * mean * mean, &omega)] {
             terms.push(times(
                 factor * viscosity,
                 Expr::function_call_at("dot", vec![of.clone(), of.clone()], at),
@@ -96,7 +96,7 @@ fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -
     if density > 0.0 {
         for (k, axis) in transpose(&axes).into_iter().enumerate() {
             let [a, b, c] = [edges[k], edges[(k + 1) % 3], edges[(k + 2) % 3]];
-            for (factor, of) in [(b * c / 6.0, &v), (a * (b.powi(4) + c.powi(4)) / 192.0, &omega)] {
+            for (factor, of) in [(b * c / 6.0, &v), (a * (b * b * b * b + c * c * c * c) / 192.0, &omega)] {
                 let x = Expr::function_call_at("dot", vec![of.clone(), spot.vector_expression(axis, at)], at);
                 let square = Expr::binary_operation(BinaryOp::Mul, x.clone(), x.clone());
                 let cube =

@@ -17,11 +17,14 @@ use settings::Settings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+mod activation;
 mod actuator;
 mod body;
 mod contact;
+mod dc_motor;
 mod defaults;
 mod equality;
+mod formula;
 mod frame;
 mod geometry;
 mod include;
@@ -29,7 +32,9 @@ mod joint;
 mod law;
 mod medium;
 mod mesh;
+mod muscle;
 mod reader;
+mod record;
 mod rest;
 pub(in crate::import) mod schema;
 mod settings;
@@ -38,6 +43,7 @@ mod spatial;
 mod tendon;
 mod touch;
 mod visual;
+mod winding;
 
 /// Sections without influence on the motion, with the text that the generated documentation lists for each.
 const ASIDE: [(&str, &str); 3] =
@@ -162,9 +168,9 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     for drive in &robot.drives {
         let law = match drive.law {
             DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
-            DriveLaw::Slack { stiffness, range } => {
-                stiffness.is_finite() && range.into_iter().all(f64::is_finite)
-            }
+            DriveLaw::Slack { stiffness, range } => stiffness.into_iter().chain(range).all(f64::is_finite),
+            DriveLaw::PolynomialDamper(damping) => damping.into_iter().all(f64::is_finite),
+            DriveLaw::Expression { ref force, .. } => literals(force),
             DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
                 x.is_finite()
             }

@@ -101,24 +101,24 @@ equality/weld: active anchor body1 body2 class name relpose site1 site2 | @soft 
 equality/joint: active class joint1 joint2 name polycoef | @soft
 equality/tendon: active class name polycoef tendon1 tendon2 | @soft
 actuator: |
-actuator/general: @end @motor biasprm biastype body class dyntype gainprm gaintype inheritrange name | \
-    @still actdim actearly actlimited actrange dynprm ffrange input velrange
+actuator/general: @end @motor biasprm biastype body class dynprm dyntype gainprm gaintype inheritrange \
+    input lengthrange name | @still actdim actearly actlimited actrange ffrange velrange
 actuator/motor: @end @motor class name | @still
 actuator/position: @end @motor class dampratio inheritrange kp kv name timeconst | @still
 actuator/velocity: @end @motor class kv name | @still
 actuator/intvelocity: @end @motor class dampratio kp kv name | @still actlimited actrange inheritrange
 actuator/damper: @end @motor class kv name | @still
 actuator/cylinder: @end @motor area bias class diameter name timeconst | @still
-actuator/muscle: @end @motor class force fpmax fvmax lmax lmin name range scale vmax | @still tausmooth \
-    timeconst
+actuator/muscle: @end @motor class force fpmax fvmax lengthrange lmax lmin name range scale tausmooth \
+    timeconst vmax | @still
 actuator/adhesion: body class ctrlrange delay forcelimited forcerange gain group name | ctrllimited \
     interp nsample user
 actuator/orientation: class group joint name refsite site | ctrlrange dampratio delay forcelimited \
     forcerange input interp kp kv nsample user
-actuator/pid: @end @motor class name | @still dampratio ffrange imax inheritrange input ki kp kv \
-    posrange slewmax velrange
-actuator/dcmotor: @end @motor class name | @still cogging controller inductance input lugre motorconst \
-    nominal resistance saturation thermal
+actuator/pid: @end @motor class dampratio imax input ki kp kv name slewmax | @still ffrange inheritrange \
+    posrange velrange
+actuator/dcmotor: @end @motor class cogging controller inductance input lugre motorconst name nominal \
+    resistance saturation thermal | @still
 sensor: |
 sensor/touch,accelerometer,velocimeter,gyro,force,torque,magnetometer,camprojection,rangefinder,jointpos,jointvel: \
     | @sensed data
@@ -142,7 +142,7 @@ keyframe/key: | act ctrl mpos mquat name plastic qpos qvel time
 ";
 
 /// Elements that are rejected or skipped with all their contents.
-const WHOLE: [&str; 10] = [
+pub(in crate::import) const WHOLE: [&str; 10] = [
     "composite",
     "flexcomp",
     "replicate",

@@ -1,8 +1,8 @@
 //! Actuators on sites: a force and a torque in the axes of the site, or in the axes of a reference site,
 //! which receives the reaction.
 
+use super::activation::OTHER_INPUTS;
 use super::defaults::Element;
-use super::law::OTHER_INPUTS;
 use super::reader::Reader;
 use super::spatial::Spot;
 use crate::import::context::{Cx, quote_word};

@@ -182,7 +182,7 @@ impl<'a> Reader<'a> {
             return refusal(format!("a tendon that runs inside of the cylinder {}", quote_word(&said.text)));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(Around { frame, radius, way: CablePath::Turning(y.atan2(x)) }))
+        Some(Ok(Around { frame, radius, way: CablePath::Turning(libm::atan2(y, x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
@@ -197,13 +197,13 @@ impl<'a> Reader<'a> {
             return None;
         };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
-        let [far_a, far_b] = [a, b].map(|[x, y, _]| x.hypot(y));
+        let [far_a, far_b] = [a, b].map(|[x, y, _]| libm::hypot(x, y));
         if far_a < *radius || far_b < *radius {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
             return Some(Refusal { place: place.clone(), message });
         }
-        let angle = |[x, y, _]: Vector| y.atan2(x);
-        let shortest = |angle: f64| angle.sin().atan2(angle.cos());
+        let angle = |[x, y, _]: Vector| libm::atan2(y, x);
+        let shortest = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
         let winding = shortest(*side - angle(a)) + shortest(angle(b) - *side);
         *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
@@ -313,16 +313,16 @@ impl Around {
         let flat = |[x, y, _]: Vector| [x, y, 0.0];
         let round = |a: Vector, b: Vector, angle: f64| {
             let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
-            let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(self.radius));
+            let touched = tangents.iter().fold(angle, |angle, t| angle - libm::atan2(*t, self.radius));
             let straight = length(add(a, scale_vector(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
         let turning = |sign: f64| {
-            let angle = (-sign * cross(a, b)[2]).atan2(-dot(flat(a), flat(b))) + PI;
-            round(flat(a), flat(b), angle).hypot(a[2] - b[2])
+            let angle = libm::atan2(-sign * cross(a, b)[2], -dot(flat(a), flat(b))) + PI;
+            libm::hypot(round(flat(a), flat(b), angle), a[2] - b[2])
         };
         match self.way {
-            CablePath::Ball => round(a, b, length(cross(a, b)).atan2(dot(a, b))),
+            CablePath::Ball => round(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
             CablePath::Turning(sign) => turning(sign),
             CablePath::Shorter => turning(1.0).min(turning(-1.0)),
         }

@@ -121,12 +121,12 @@ impl<'a> Reader<'a> {
         }
         if self.springs {
             refuse_yield(&element, cx);
-            let stiffness = element.linear("stiffness", IGNORE_PASSIVE, cx);
+            let stiffness = element.polynomial("stiffness", cx);
             laws.extend(stiffness.map(|k| (spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
         }
         if self.dampers {
-            let damping = element.linear("damping", IGNORE_PASSIVE, cx);
-            laws.extend(damping.map(|found| (DriveLaw::Damper(found.value), IGNORE_PASSIVE)));
+            let damping = element.polynomial("damping", cx);
+            laws.extend(damping.map(|found| (DriveLaw::damper(found.value), IGNORE_PASSIVE)));
         }
         if self.friction {
             let loss = element.nonzero("frictionloss", cx);
@@ -136,7 +136,7 @@ impl<'a> Reader<'a> {
             && let Some(on) = taken_over(&path, help, cx)
         {
             let drive = |law| Drive { name: named.clone(), on: on.clone(), law };
-            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(*law)));
+            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(law.clone())));
         }
         Some(Tendon { name: named, path })
     }
@@ -190,7 +190,7 @@ impl<'a> Reader<'a> {
 /// Reads the spring of a tendon. The attribute `springlength` specifies its free length or a range of free
 /// lengths; −1 means that neither is specified. In this case the free length is that in the configuration in
 /// which all joint springs are relaxed.
-fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
+fn spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
     // A single length is the range of two equal ones, even if the defaults have two different ones.
     let found =
@@ -204,8 +204,8 @@ fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> 
         });
     }
     match [low, high] {
-        [NONE, NONE] => DriveLaw::Spring { stiffness, free: rest },
+        [NONE, NONE] => DriveLaw::spring(stiffness, rest),
         [low, high] if low < high => DriveLaw::Slack { stiffness, range: [low, high] },
-        [low, _] => DriveLaw::Spring { stiffness, free: low },
+        [low, _] => DriveLaw::spring(stiffness, low),
     }
 }

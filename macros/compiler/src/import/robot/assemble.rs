@@ -57,6 +57,14 @@ pub(in crate::import) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
+    let (fields, rates) = robot
+        .states
+        .into_iter()
+        .map(|(field, rate)| {
+            let name = field.ident.clone();
+            (field, (name, rate))
+        })
+        .unzip();
     // The order has all of them.
     links.iter().flatten().for_each(|link| cx.report_lost(&link.name));
     given.iter().flatten().for_each(|(joint, _)| cx.report_lost(&joint.name));
@@ -69,7 +77,8 @@ pub(in crate::import) fn assemble(
         contacts: robot.contacts,
         gravity: robot.gravity,
         limits,
-        fields: Vec::new(),
+        fields,
+        rates,
         is_ground,
         collisions,
         visuals,

@@ -28,11 +28,15 @@ fn without_locked(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Driv
     match &mut drive.law {
         DriveLaw::Spring { free, .. } => *free -= offset,
         DriveLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
+        DriveLaw::Expression { offset: constant, .. } => *constant = offset,
         DriveLaw::Damper(_)
+        | DriveLaw::PolynomialDamper(_)
         | DriveLaw::Friction(_)
         | DriveLaw::Inerter(_)
         | DriveLaw::Push(_)
         | DriveLaw::Input(_) => {}
     }
-    (!terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
+    // The rates of states may contain the length of an element that acts on nothing.
+    let is_kept = matches!(drive.law, DriveLaw::Input(_) | DriveLaw::Expression { .. });
+    (!terms.is_empty() || is_kept).then_some(drive)
 }

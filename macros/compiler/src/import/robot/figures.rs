@@ -191,23 +191,30 @@ fn add(
     place: &Place,
     fields: &mut Vec<FileField>,
 ) -> Vec<Expr> {
+    let ident =
+        unused_name(&identifier(of, word, "link"), |name| fields.iter().any(|field| field.ident == name));
+    let field = FileField { ident, kind, of: of.to_string(), about, values, units };
+    let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
+    let expressions = field.member_accesses().into_iter().map(name_expression).collect();
+    fields.push(field);
+    expressions
+}
+
+/// Returns an identifier from a name of a file and a word. The `kind` of the named element distinguishes it
+/// from numbers and keywords.
+pub(in crate::import) fn identifier(of: &str, word: &str, kind: &str) -> String {
     let identifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut name: String = of.chars().map(identifier_character).collect();
     if !word.is_empty() {
         name = format!("{name}_{word}");
     }
     if name.starts_with(|c: char| c.is_ascii_digit()) || name.trim_matches('_').is_empty() {
-        name = format!("link_{name}");
+        name = format!("{kind}_{name}");
     }
     if syn::parse_str::<syn::Ident>(&name).is_err() {
-        name = format!("{name}_link");
+        name = format!("{name}_{kind}");
     }
-    let ident = unused_name(&name, |name| fields.iter().any(|field| field.ident == name));
-    let field = FileField { ident, kind, of: of.to_string(), about, values, units };
-    let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
-    let expressions = field.member_accesses().into_iter().map(name_expression).collect();
-    fields.push(field);
-    expressions
+    name
 }
 
 /// Returns mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
@@ -260,7 +267,7 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
         let [axis, angle] = arguments.as_slice() else { return None };
         return Some(axis_rotation(vector_components(axis)?, angle.literal_number()?));
     };
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut m = [[0.0; 3]; 3];
     (m[axis][axis], m[p][p], m[q][q], m[p][q], m[q][p]) = (1.0, c, c, -s, s);

@@ -22,7 +22,7 @@ mod visual;
 pub(super) use assemble::{assemble, bare_joint};
 pub(super) use closing::close_loops;
 pub(super) use collision::FileCollision;
-pub(super) use figures::make_fields;
+pub(super) use figures::{identifier, make_fields};
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};
 pub(super) use limit::{FileLimits, IGNORE_LIMITS};
 pub(super) use motion::resolve_motions;

@@ -27,7 +27,7 @@ impl Origin {
 
     /// Rotates a vector from the axes of this frame to those of its reference frame.
     pub(in crate::import) fn rotate_vector(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(f64::sin_cos);
+        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(libm::sincos);
         let (y, z) = (cr * y - sr * z, sr * y + cr * z);
         let (x, z) = (cp * x + sp * z, cp * z - sp * x);
         [cy * x - sy * y, sy * x + cy * y, z]

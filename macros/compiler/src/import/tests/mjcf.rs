@@ -180,8 +180,9 @@ fn sections() {
             "r.xml:2:35: unknown `coordinate` `global`\n= help: expected `local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
         ),
         (
-            "<worldbody/><actuator><muscle joint='j'/></actuator>",
-            "r.xml:2:23: actuator `<muscle>` is not supported\n= help: to ignore the actuators of the file, \
+            "<worldbody/><actuator><adhesion body='b'/></actuator>",
+            "r.xml:2:23: actuator `<adhesion>` is not supported\n= help: it acts at contacts, whose forces \
+             MuJoCo divides among them\n= help: to ignore the actuators of the file, \
              write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {

@@ -184,16 +184,20 @@ fn render_drive(drive: &Drive) -> String {
             format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
         }
     };
-    let law = match drive.law {
+    let law = match &drive.law {
         DriveLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
         DriveLaw::Slack { stiffness, range: [low, high] } => {
-            format!("spring {stiffness} outside of {low} to {high}")
+            let terms: Vec<String> = stiffness.iter().map(f64::to_string).collect();
+            let terms = terms.join(", ").replace(", 0, 0", "");
+            format!("spring {terms} outside of {low} to {high}")
         }
         DriveLaw::Damper(damping) => format!("damper {damping}"),
         DriveLaw::Friction(force) => format!("friction {force}"),
         DriveLaw::Inerter(inertance) => format!("inerter {inertance}"),
         DriveLaw::Push(force) => format!("push {force}"),
         DriveLaw::Input(unit) => format!("input in {unit}"),
+        DriveLaw::PolynomialDamper(terms) => format!("damper {terms:?}"),
+        DriveLaw::Expression { force, .. } => format!("force {}", render_expr(force)),
     };
     format!("{}: {law} on {on}", drive.name.text)
 }
@@ -218,7 +222,7 @@ fn render_expr(expr: &Expr) -> String {
         ExprKind::Method(object, method, arguments) => {
             format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
         }
-        ExprKind::Name(name) => name.clone(),
+        ExprKind::Name(name) => name.replace('\u{1}', ""),
         ExprKind::Field(base, member) => format!("{}.{}", render_expr(base), member.text),
         ExprKind::Binary(op, a, b, _) => {
             let sign = match op {

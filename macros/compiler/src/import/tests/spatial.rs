@@ -157,5 +157,34 @@ fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
         drive_lines("", "<motor body='b'/>"),
         "an actuator on no joint, tendon or site is not supported",
     );
-    assert_message_found(drive_lines("", "<muscle joint='j'/>"), "actuator `<muscle>` is not supported");
+    assert_message_found(drive_lines("", "<muscle joint='j'/>"), "a muscle without `force` is not supported");
+    assert_message_found(
+        drive_lines("", "<muscle joint='j' force='1'/>"),
+        "a muscle without `lengthrange` is not supported",
+    );
+    assert_message_found(
+        drive_lines("", "<muscle joint='j' force='1' lengthrange='0 1' lmin='2'/>"),
+        "a muscle needs an increasing `range`, lmin < 1 < lmax, vmax > 0 and fvmax > 1",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' ki='1' imax='2'/>"),
+        "`imax` is not supported: the rate of its state is not continuous",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' input='vel pos'/>"),
+        "`input` `vel pos` is not a list of inputs",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' ki='1' input='vel'/>"),
+        "`ki` without the input `pos`",
+    );
+    assert_message_found(
+        drive_lines("", "<dcmotor joint='j' motorconst='1'/>"),
+        "a motor needs a positive `resistance`, or `nominal` values from which it follows",
+    );
+    assert_message_found(
+        drive_lines("", "<dcmotor joint='j' resistance='1' motorconst='1' controller='1'/>"),
+        "the gains of `controller` have no effect without an input that it controls",
+    );
+    assert_message_found(drive_lines("", "<general joint='j' dyntype='pid'/>"), "`pid` with other types");
 }

@@ -91,6 +91,16 @@ fn energy_of<'g>(
         b.scope.in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
     };
     let force = read_scalar(e, cx)?;
+    if symbols_in(&[force]).iter().any(|s| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_))) {
+        let message = "the force of a spring is a law of `stretch`, but this contains coordinates";
+        cx.report_error(e.place.clone(), message)
+            .add_help("write the law in terms of `stretch` or `length`")
+            .add_help(
+                "a force that depends on other coordinates is a `Force` with a `value`, or follows from an \
+             `energy`",
+            );
+        return None;
+    }
     let value_of_local = |e: &syntax::Expr| {
         context.locals.iter().find(|(name, _)| e.as_name() == Some(name)).map(|(_, value)| *value)
     };

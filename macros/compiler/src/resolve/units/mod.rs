@@ -45,8 +45,9 @@ pub fn infer_units(
     let mut places = places::collect_expressions(d, &definitions, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.add_variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
-        // The expression of a diagram is a body, without a dimension.
-        if output.rank == Rank::FreeBody {
+        // The expression of a diagram is a body, without a dimension. Laws of a file contain numbers with
+        // units that the file does not specify.
+        if output.rank == Rank::FreeBody || output.value.place.file.is_some() {
             continue;
         }
         let (dimension, locals) = (Dimension::unknown_dimension(*v), Vec::new());
@@ -56,6 +57,9 @@ pub fn infer_units(
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
+        if output.value.place.file.is_some() {
+            continue;
+        }
         let Some(dimension) =
             Dimension::unknown_dimension(*parameter).dimension_of_quotient(&dimension::TIME)
         else {
@@ -94,12 +98,22 @@ pub fn infer_units(
         units.outputs.push(match output.rank {
             Rank::FreeBody => "N, N·m".to_string(),
             _ if energy => "J".to_string(),
+            _ if output.value.place.file.is_some() => rate_unit(d, &output.name.text, &units.parameters),
             _ => unit,
         });
     }
     units.constraints =
         model.constraints.iter().map(|c| constraint_units(c, &sides, &mut inference)).collect();
     units
+}
+
+/// Returns the unit of the rate of a file's state.
+fn rate_unit(d: &Description, rate: &str, parameters: &[String]) -> String {
+    let state = d.states.iter().find(|(name, _)| format!("{}{RATE_OF_STATE}", name.text) == rate);
+    match state.and_then(|(_, parameter)| parameters.get(*parameter)).map(String::as_str) {
+        Some("any") | None => "any".to_string(),
+        Some(unit) => format!("{unit}/s"),
+    }
 }
 
 /// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that

@@ -342,7 +342,7 @@ impl<'a> Inference<'a> {
         let base = self.value_of_expression(a);
         let exponent = self.expect_dimension(n, &PLAIN, "1", Reason::Argument);
         match (base, exponent) {
-            (Value::Number(value), Value::Number(n)) => Value::Number(value.powf(n)),
+            (Value::Number(value), Value::Number(n)) => Value::Number(libm::pow(value, n)),
             (Value::Number(_), _) => Value::quantity_of_dimension(PLAIN),
             (base, Value::Number(n)) => base.power_of_value(Ratio::from_value(n)),
             (Value::Quantity { dimension, anchor }, _) => {

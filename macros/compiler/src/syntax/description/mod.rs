@@ -13,7 +13,7 @@ mod structure;
 pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution_coefficient};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench, WrittenArguments};
+pub use force::{Action, Drive, DriveLaw, DriveOn, DriveQuantity, Target, Wrench, WrittenArguments};
 pub use geometry::{Collision, Mesh, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 
