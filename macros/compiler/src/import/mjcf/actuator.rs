@@ -141,7 +141,7 @@ impl<'a> Reader<'a> {
                 let limited = self.range(any, "actlimited", "actrange", cx).is_some();
                 self.count("ranges of activations", usize::from(limited));
                 names.extend(law.inputs.iter().map(|(input, _)| input.clone()));
-                self.add_law(named, on, law);
+                self.add_law(named, on, *law);
             }
         }
     }

@@ -18,7 +18,7 @@ pub(super) enum Force {
         bias: [f64; 3],
     },
     /// Any other force.
-    Law(ActuatorLaw),
+    Law(Box<ActuatorLaw>),
 }
 
 /// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
@@ -46,7 +46,7 @@ pub(super) fn read_force<'a>(
         "pid" => pid(&mut law, actuator, &record, named, cx)?,
         _ => general(&mut law, actuator, &record, named, cx)?,
     }
-    Some(Force::Law(law))
+    Some(Force::Law(Box::new(law)))
 }
 
 /// Reports types that are not supported, and damping that depends on the inertia.
