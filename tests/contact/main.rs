@@ -4,12 +4,14 @@
 mod bodies;
 mod both;
 mod boxes;
+mod cylinders;
 mod derivatives;
 mod events;
 mod files;
 mod forces;
 mod gains;
 mod gallery;
+mod hulls;
 mod lasting;
 mod laws;
 mod light;

@@ -41,6 +41,7 @@ pub fn read(
             merge(&mut mechanism, imported, cx);
         }
     }
+    files.extend(import::read_hulls(&mut mechanism.description, folder, cx));
     Some(Source { mechanism, files, imported: cx.len() == before })
 }
 

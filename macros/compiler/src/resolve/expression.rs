@@ -145,6 +145,10 @@ impl<'a, 'g> Scope<'a, 'g> {
                     .help(VECTOR_SYNTAX);
                 None
             }
+            ExprKind::Text(_) => {
+                cx.error(e.place.clone(), "expected a scalar or a vector, found a path");
+                None
+            }
             ExprKind::Tuple(items) => {
                 let error = cx.error(e.place.clone(), "expected a scalar or a vector, found a list");
                 match items.as_slice() {

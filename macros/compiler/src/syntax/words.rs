@@ -231,6 +231,7 @@ fn spell(e: &Expr) -> String {
         }
         ExprKind::Tuple(items) => format!("({})", spell_list(items)),
         ExprKind::Array(items) => format!("[{}]", spell_list(items)),
+        ExprKind::Text(text) => format!("{text:?}"),
     }
 }
 

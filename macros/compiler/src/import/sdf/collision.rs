@@ -3,40 +3,63 @@
 use super::frames::{Frames, origin_in};
 use super::scope::Scope;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, children, content, elements, place, required, tag};
+use crate::import::element::{
+    Node, check_attributes, children, content, elements, place, required, tag, word,
+};
+use crate::import::mesh;
 use crate::import::robot::FileCollision;
-use crate::syntax::{Name, Shape};
+use crate::syntax::{MeshVertices, Name, Shape};
+use std::path::Path;
 
 /// Shapes of collision geometry that are supported.
 pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
-/// Reads all collision geometry of a link.
+/// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
 pub(super) fn read(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
+    folder: &Path,
     cx: &mut Cx<'_>,
 ) -> Vec<FileCollision> {
     let parts = elements(node).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
+    parts.filter_map(|part| read_part(part, link, frames, folder, cx)).collect()
 }
 
 fn read_part(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
+    folder: &Path,
     cx: &mut Cx<'_>,
 ) -> Option<FileCollision> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required(geometry, node, "geometry", &[], cx)?;
     let mut shapes = elements(geometry).filter(|child| child.tag_name().name() != "empty");
-    let shape = shapes.next()?;
+    let form = shapes.next()?;
     if let Some(second) = shapes.next() {
         let help = "write a `<collision>` for each shape";
         cx.error(&place(second, cx), "second shape of one geometry", |d| d.help(help));
     }
     let origin = origin_in(node, link, frames, cx)?;
-    Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: place(node, cx) })
+    let shape = read_shape(form, cx)?;
+    let mesh = match shape {
+        Shape::Mesh => read_mesh(form, folder, cx),
+        _ => None,
+    };
+    Some(FileCollision { origin, shape, mesh, place: place(node, cx) })
+}
+
+/// Returns the source of the vertices of a mesh; `None` for a part of a mesh.
+fn read_mesh(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+    let [uri, scale, submesh] = children(form, ["uri", "scale", "submesh"], cx);
+    let path = word(required(uri, form, "uri", &[], cx)?, cx)?;
+    let scale = match scale {
+        Some(scale) => content(scale, cx)?.value,
+        None => [1.0; 3],
+    };
+    let paths = mesh::candidates(folder, &path.text);
+    submesh.is_none().then(|| MeshVertices::scaled(path, paths, scale))
 }
 
 /// Reads a child element of `<geometry>` as a shape.

@@ -106,11 +106,12 @@ pub(super) fn import(
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
-    imported(whole, &options.path, FileFormat::Sdf, cx, |root, cx| read(root, options, cx))
+    let folder = path.parent().unwrap_or(path);
+    imported(whole, &options.path, FileFormat::Sdf, cx, |root, cx| read(root, folder, options, cx))
 }
 
-/// Reads the root element of an SDF file.
-fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+/// Reads the root element of an SDF file in `folder`.
+fn read<'a>(root_node: Node<'a>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     let top = find_models(root_node, cx)?;
     let mut reader = Reader::default();
     reader.read_top(&top, cx)?;
@@ -123,7 +124,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
             robot.visuals.extend(parts.into_iter().map(|part| (number, part)));
         }
         if options.collisions {
-            let parts = collision::read(*node, (name, scope), &reader.frames, cx);
+            let parts = collision::read(*node, (name, scope), &reader.frames, folder, cx);
             robot.collisions.extend(parts.into_iter().map(|part| (number, part)));
         }
     }

@@ -21,7 +21,7 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(..) => self.sum(e, None),
             ExprKind::Call(function, arguments) => self.call(function, arguments),
             ExprKind::Array(items) => self.common_value(items, Reason::Components),
-            ExprKind::Method(..) | ExprKind::Tuple(_) => Value::Unknown,
+            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => Value::Unknown,
         }
     }
 
